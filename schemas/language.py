@@ -17,7 +17,8 @@ class Argument(Struct, frozen=True):
     """What fills a role. Words count from 1.
 
     `entity` is the one that is meant; where several may be, `candidates` has their names instead. One of them
-    is meant if it is `ambiguous`, any or all of them if it is not (*a cup*, *the cups*).
+    is meant if it is `ambiguous`, any or all of them if it is not (*a cup*, *the cups*); `number` of them
+    where a number is said (*two cups*).
     """
 
     role: str
@@ -27,11 +28,15 @@ class Argument(Struct, frozen=True):
     entity: str | None = None
     candidates: tuple[str, ...] = ()
     ambiguous: bool = False
+    number: int | None = None
 
     @property
     def filler(self) -> str:
-        """The entity's name, the names of those that it may be, or the words."""
-        return self.entity or "|".join(self.candidates) or f'"{self.text}"'
+        """The entity's name, the names of those that it may be (`2 of cup1|cup2|cup3`), or the words."""
+        several = "|".join(self.candidates)
+        if several and self.number is not None:
+            several = f"{self.number} of {several}"
+        return self.entity or several or f'"{self.text}"'
 
 
 class Frame(Struct, frozen=True):
@@ -70,7 +75,8 @@ class Understood(Struct, frozen=True):
 
     `unknown` are words used as verbs that nobody has taught; `language` is the one in which it was read. A
     `mood` other than "command" says why there are no frames: something is asked, or told of the past.
-    `question` is what to ask back where arguments are ambiguous.
+    `question` is what to ask back where arguments are ambiguous. `doubts` say, a sentence each, what of the
+    command does not fit the map: a thing is not where it is to be taken from, or there are not so many.
     """
 
     words: tuple[str, ...]
@@ -80,6 +86,7 @@ class Understood(Struct, frozen=True):
     language: Language = "english"
     mood: Mood = "command"
     question: str = ""
+    doubts: tuple[str, ...] = ()
 
 
 class Candidate(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -17,6 +17,10 @@ _MOVED: Final = {  # prepositions, also of clauses without a verb: "the cup to t
     **dict.fromkeys(("to", "into", "onto"), "goal"),
 }
 _GOALS: Final = ("goal", "beneficiary")
+_BEARING: Final = (
+    *("Location", "Connecting_Architecture", "Vessel", "Container", "Appliance", "Fixture", "Bed", "Table"),
+    *("Couch", "Furniture", "Person", "Robot"),
+)
 _NOT_LISTED: Final = ("robot", "speaker")
 
 
@@ -51,8 +55,8 @@ def _purpose(s: Sentence, i: int) -> int | None:
     k = s.phrase_of[i] + 1
     if k >= len(s.phrases) or s.phrases[k].preposition not in ("to", "from"):
         return None
-    is_place = bool(s.meant[k]) and s.branches[k] not in ("Food", "other")
-    if is_place or s.words[s.phrases[k].last].kind != "noun":
+    is_place = bool(s.meant[k]) and s.branches[k] in _BEARING
+    if is_place or s.words[s.phrases[k].last].kind not in ("noun", "adj"):
         return None
     return s.phrases[k].last if s.phrases[k].nominal == s.phrases[k].last else None
 

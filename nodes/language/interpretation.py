@@ -99,8 +99,10 @@ class Interpreter:
             elif not (name.startswith("Being_") and frames and referents.is_relative(s, verb)):
                 for clause in conjuncts.clauses(s, name, verb, spans):
                     frames.append(_frame(s, name, (first, last), clause, frames, scene, look_up))
-        unknown = (word.text for i, word in enumerate(s.words) if _is_unknown_verb(s, i))
-        return Understood(tuple(texts), tuple(frames), _grounded(s, frames), tuple(unknown), mood=mood)
+        unknown = tuple(word.text for i, word in enumerate(s.words) if _is_unknown_verb(s, i))
+        if mood == "command" and not frames and not unknown:  # "stop" by itself
+            unknown = tuple(word.text for word in s.words if word.kind == "verb")
+        return Understood(tuple(texts), tuple(frames), _grounded(s, frames), unknown, mood=mood)
 
     def _calls(self, s: Sentence) -> list[tuple[int, int, list[tuple[float, str]]]]:
         """Where frames are called for: first and last word, and the frames with their probabilities."""
@@ -224,6 +226,7 @@ def _frame(
                 names[0] if len(names) == 1 else None,
                 names if several else (),
                 several and ambiguous,
+                _number(s, k),
             )
         )
     negated = any(word.kind == "neg" for word in s.words[max(0, verb[0] - 2) : verb[0]])
@@ -238,6 +241,17 @@ def _head(s: Sentence, slot: str, first: int, last: int) -> int:
     phrases = (s.phrases[k] for k in range(s.phrase_of[first], s.phrase_of[last] + 1))
     head = next((phrase.head for phrase in phrases if phrase.names), last)
     return min(max(head, first), last)
+
+
+def _number(s: Sentence, k: int) -> int | None:
+    """How many things a phrase speaks of, where a number says so."""
+    phrase, counted = s.phrases[k], s.lexicon.numbers
+    if s.branches[k] in ("", "measure", "pronoun") or not s.meant[k]:
+        return None
+    said = [w.text for w in s.words[phrase.nominal : phrase.head] if w.kind == "num"]
+    if len(said) != 1:
+        return None
+    return int(said[0]) if said[0].isdecimal() and len(said[0]) < 4 else counted.get(said[0])
 
 
 def _opened(s: Sentence, frame: str, span: Span, scene: Scene) -> tuple[int, Things] | None:

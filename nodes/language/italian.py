@@ -13,6 +13,7 @@ from nodes.language.vocabulary import spoken
 from nodes.language.words import PartOfSpeech, plain
 
 _WORD: Final = re.compile(r"[^\W\d_]+'(?=\w)|po'|\d+(?:[.,]\d+)?|[^\W_]+(?:-[^\W_]+)*")
+_IS: Final = re.compile(r"(?<!\w)e'(?!\w)")  # è, as it is written where there is no such key
 _LONGEST: Final = 5  # words of an expression or of what a thing is called
 _FIRST: Final = ("me", "te", "ce", "ve", "glie", "se")
 _SECOND: Final = ("lo", "la", "li", "le", "ne")
@@ -55,7 +56,7 @@ def _tokens(text: str) -> list[str]:
     """The words, clitics written behind a verb apart and beginning with `-`."""
     known = italian()
     found: list[str] = []
-    for word in _WORD.findall(plain(text)):
+    for word in _WORD.findall(_IS.sub("è", plain(text))):
         previous = found[-1] if found else ""
         nominal = previous in ARTICULATED or known.expressions.get((previous,), "") in _DETERMINERS
         opens = not found or previous == "favore" or known.expressions.get((previous,), "") in _OPENING

@@ -28,6 +28,7 @@ PartOfSpeech = Literal[
 
 _WORD: Final = re.compile(r"n't\b|'\w+|\d+(?:[.,]\d+)?|[^\W\d_]+(?:-[^\W_]+)*(?=n't\b)|[^\W_]+(?:-[^\W_]+)*")
 _NOT_SAID: Final = re.compile(r"</?[a-zA-Z!][^<>]*>|\x1b\[[0-9;]*[A-Za-z]")
+_ACTED_ON: Final = ("it", "them")
 _OPENS_CLAUSE: Final = ("conj", "modal", "adv", "neg")
 
 
@@ -147,11 +148,15 @@ def _begins_as_verb(text: str, previous: Word | None, following: str, lexicon: L
     opens = previous is None or previous.kind in _OPENS_CLAUSE or lexicon.is_a(previous.text, "clause_opener")
     base = _verb(text, lexicon)
     if not base:  # not known, and yet said as one
+        if opens and lexicon.is_a(text, "untaught"):
+            return True
         known = any(lexicon.is_a(text, name) for name in ("preposition", "adverb", "adjective", "robot"))
-        return opens and not known and lexicon.is_a(following, "determiner")
+        return opens and not known and (lexicon.is_a(following, "determiner") or following in _ACTED_ON)
     if previous is not None and previous.kind == "verb":
         return lexicon.is_a(base, "always_verb")
     nominal = previous is not None and previous.kind in ("noun", "prep")
+    if lexicon.is_a(text, "adjective") and lexicon.is_a(following, "determiner"):
+        return True  # "go to the kitchen, open the fridge"
     return opens or not nominal or lexicon.is_a(base, "always_verb")
 
 

@@ -147,9 +147,27 @@ def test_words_count_from_one_and_heads_are_inside():
     }
 
 
-def test_unknown_verbs_are_said_to_be_unknown():
-    understood = read("frobnicate the bottle")
-    assert (understood.frames, understood.unknown) == ((), ("frobnicate",))
+@pytest.mark.parametrize(
+    ("text", "understood", "unknown"),
+    [
+        ("frobnicate the bottle", [], ("frobnicate",)),
+        ("stop", [], ("stop",)),
+        ("wait here", [], ("wait",)),
+        ("fermati", [], ("stop",)),
+        ("clean the sofa", [], ("clean",)),
+        ("take the bottle and wash it", ["Taking(Theme=bottle1)"], ("wash",)),
+        (
+            "go to the kitchen, open the fridge",
+            ["Motion(Goal=kitchen1)", "Closure(Containing_object=fridge1)"],
+            (),
+        ),
+        ("non andare mai in cucina", ["not Motion(Goal=kitchen1)"], ()),
+        ("prendi la bottiglia che e' sul divano", ["Taking(Theme=bottle1)"], ()),
+    ],
+)
+def test_unknown_verbs_are_said_to_be_unknown(text, understood, unknown):
+    told = shipped().understand(text, there(), resolve=lambda _: ())
+    assert ([frame.text for frame in told.frames], told.unknown) == (understood, unknown)
 
 
 def test_what_may_be_several_is_none_of_them():

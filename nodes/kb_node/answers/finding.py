@@ -9,9 +9,10 @@ from msgspec import structs
 from nodes.kb_node.answers.speakable import item, terms
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.relations.asked import Asked
+from nodes.kb_node.relations.measuring.phrases import SPOKEN
 from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.viewing import View
-from nodes.kb_node.relations.selection import only_meant
+from nodes.kb_node.relations.selection import is_in, is_on, only_meant
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.language.finding import asking_back, telling
 from nodes.language.finding.finding import find
@@ -65,6 +66,20 @@ class Finding:
         except errors.BadRequest:
             return ()
         return tuple(sorted(found.names))
+
+    def is_at(self, thing: str, other: str) -> bool:
+        """Whether a thing is on, in or inside another, or that cannot be told."""
+        space, left_out = self._map.places.space(), self._map.beliefs.left_out
+        solid = space.solids.get(thing)
+        if solid is None or other not in space.solids:
+            return True
+        return is_on(space, solid, {other}, left_out) or is_in(space, solid, {other}, left_out)
+
+    def where(self, thing: str) -> str:
+        """What a thing is on, inside or in: `on desk1`; "" for nothing."""
+        around = Asked(self._map.places.space(), None, self._map.beliefs.left_out)
+        relation, other = next(iter(around.whereabouts(thing)), (None, ""))
+        return f"{SPOKEN[relation].removeprefix('is ')} {other}" if relation else ""
 
     def question(self, names: tuple[str, ...], language: Language) -> str:
         """What to ask back to learn which of several entities is meant."""

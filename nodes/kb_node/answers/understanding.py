@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import product
+
 from msgspec import structs
 
 from nodes.kb_node.answers.finding import Finding
@@ -15,7 +18,7 @@ from nodes.language.words import split
 from schemas import errors
 from schemas.commands import Understand
 from schemas.entities import Entity
-from schemas.language import Understood
+from schemas.language import Frame, Understood
 
 _MOST_WORDS = 200  # of a command: a minute of speech
 
@@ -46,7 +49,21 @@ class Understanding:
             if argument.ambiguous
         )
         questions = (self._finding.question(names, found.language) for names in open_still)
-        return structs.replace(found, question=" ".join(questions))
+        doubts = dict.fromkeys(doubt for frame in found.frames for doubt in self._doubts(frame))
+        return structs.replace(found, question=" ".join(questions), doubts=tuple(doubts))
+
+    def _doubts(self, frame: Frame) -> Iterator[str]:
+        """What of a frame does not fit the map."""
+        for argument in frame.arguments:
+            there = len(argument.candidates) or int(argument.entity is not None)
+            if argument.number is not None and there < argument.number:
+                yield f"'{argument.text}': there {'is' if there == 1 else 'are'} only {there}"
+        sources = [a.entity for a in frame.arguments if a.role == "Source" and a.entity]
+        things = [a.entity for a in frame.arguments if a.role == "Theme" and a.entity]
+        for thing, source in product(things, sources):
+            if thing != source and not self._finding.is_at(thing, source):
+                where = self._finding.where(thing)
+                yield f"{thing} is not on or in {source}" + (f"; it is {where}" if where else "")
 
     def _there(self) -> Scene:
         """What there is to be spoken of, after the last commit."""

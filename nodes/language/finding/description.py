@@ -111,7 +111,7 @@ class AnyOf:
     @property
     def said(self) -> str:
         """As it was said."""
-        return " or ".join(restriction.said for restriction in self.restrictions)
+        return " or ".join(dict.fromkeys(restriction.said for restriction in self.restrictions))
 
 
 Restriction = Quality | State | Sized | Related | Has | Of | Among | Owned | Affords | Unknown | Not | AnyOf

@@ -103,7 +103,7 @@ def _answered(said: tuple[Description, ...], read: Reading, resolver: Resolver) 
 def _either(parts: list[Resolved], read: Reading, resolver: Resolver) -> Answer:
     """Things that are named with *or*: any of those that there are is meant."""
     names = tuple(dict.fromkeys(name for part in parts for name in part.names))
-    is_any = all(part.description.is_plural or not part.description.is_definite for part in parts)
+    is_any = any(part.description.is_plural or not part.description.is_definite for part in parts)
     outcome: Outcome = "several" if is_any else "ambiguous"
     if len(names) < 2:
         outcome = "one" if names else "none"

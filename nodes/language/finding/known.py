@@ -195,17 +195,10 @@ class Known:
             found.update(self.members.get(class_name, {}))
         return found
 
-    def called_exactly(self, key: str, language: Language) -> frozenset[str]:
-        """Of those the ones whose name, whole reference or own class it is: a desk is no such table."""
+    def is_called(self, name: str, key: str, language: Language) -> bool:
+        """Whether it is its name, all of a reference, or its own class: a desk is called no table."""
         nouns = self.nouns[language]
-        classes = nouns.whole.get(key, set())
-        of_class = (
-            name
-            for cls in classes
-            for name in self.members.get(cls, ())
-            if self.items[name].class_name in classes
-        )
-        return frozenset((*nouns.exact.get(key, ()), *of_class))
+        return name in nouns.exact.get(key, ()) or self.items[name].class_name in nouns.whole.get(key, ())
 
     def spoken(self, item: Item, language: Language) -> str:
         """What an entity is called in a language: by a reference, or by its class's label.

@@ -125,7 +125,8 @@ class _Parser:
         while i < len(self._words):
             made, j = self._phrase(i, 0)
             if j == i:  # nothing begins here that is understood: the word must not be lost
-                made, j = replace(made, restrictions=(Unknown(self._words[i]),)), i + 1
+                unread = Unknown(self._words[i])
+                made, j = replace(made, said=unread.said, restrictions=(unread,)), i + 1
             joined = any(self._length(kind, j) for kind in ("and", "or", "definite", "indefinite"))
             if j < len(self._words) and not joined:  # the next word goes with nothing that was said
                 unread = Unknown(self._words[j])
@@ -576,7 +577,9 @@ class _Parser:
             other, end = self._phrase(end + joined, depth + 1)
             others.append(other)
         said = self._said(i, end)
-        related = Related(said, name, tuple(others))
+        related: Restriction = Related(said, "isInside" if name == "at" else name, tuple(others))
+        if name == "at":  # in a room, or beside a table
+            related = AnyOf((related, Related(said, "isNextTo", tuple(others))))
         draft.restrictions.append(Not(said, related) if no else related)
         return end
 

@@ -112,8 +112,8 @@ class Resolver:
         if len(names) > 1 and said.is_definite and not said.is_plural:
             names = self._smallest_of_the_small(names, said)
             if said.head == "noun" and said.order is None:
-                exactly = self.known.called_exactly(said.key, self.language)
-                names = tuple(name for name in names if name in exactly) or names
+                so = (name for name in names if self.known.is_called(name, said.key, self.language))
+                names = tuple(so) or names
         is_tied = False
         if said.order is not None and names:
             names, is_tied = self._ordered(names, said.order, said)
@@ -126,6 +126,8 @@ class Resolver:
         if said.head != "noun":
             return tuple(sorted(name for name, item in self.known.items.items() if not item.is_place))
         found = self.known.called(said.key, self.language)
+        if not found and (one := self.known.nouns[self.language].describing.counted(said.key)) != said.key:
+            found = self.known.called(one, self.language)  # glasses to drink from
         for restriction in said.restrictions:
             if isinstance(restriction, Of) and restriction.is_content:
                 content = self.resolve(restriction.other, scope)
@@ -217,9 +219,15 @@ class Resolver:
         return relation in ("isNextTo", "isNear") and (other in adjacent[0] or name in adjacent[1])
 
     def _bears(self, name: str, other: str) -> bool:
-        return self._is_said("isInside", other, name) or any(
+        """Whether another is on or in it, or both stand side by side on the floor: a chair with a table."""
+        if self._is_said("isInside", other, name) or any(
             self.around.related(how, other, name) for how in ("isOn", "isInside")
-        )
+        ):
+            return True
+        items, around = self.known.items, self.around
+        if items[name].is_place or items[other].is_place or not around.related("isNextTo", name, other):
+            return False
+        return around.is_on_floor(name) and around.is_on_floor(other)
 
     def _is_of(self, item: Item, others: Resolved) -> bool:
         """Of a place, an owner, a whole, a thing that bears it, what it holds, or what it is itself."""

@@ -18,6 +18,7 @@ class Lexicon:
     prepositions: tuple[tuple[str, ...], ...]  # of several words, longest first
     manner_ending: str
     synonyms: dict[str, str]  # what is said -> class of the household TBox
+    numbers: dict[str, int]  # from two to ten
 
     def is_a(self, word: str, kind: str) -> bool:
         """Whether a word is of a class, as the lexicon names it."""
@@ -44,4 +45,5 @@ def load(language: str = "english") -> Lexicon:
         tuple(sorted(several, key=len, reverse=True)),
         table["manner_ending"],
         {word: name for name, words in table["synonyms"].items() for word in words},
+        {word: n for n, word in enumerate(table["words"]["number"][:11]) if n > 1},
     )

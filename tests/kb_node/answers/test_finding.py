@@ -181,6 +181,24 @@ def test_an_order_says_what_was_measured_and_asks_from_where(flat):
     assert "from where" not in found.question
 
 
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("chair without a table", {"armchair1"}),  # a desk is a table, too
+        ("the desk with a chair", {"desk1"}),
+        ("the chairs at the table", {"chair1", "chair2", "chair3", "chair4"}),
+        ("the chairs that are not at the table", {"armchair1", "chair5"}),
+        ("the door that connects the kitchen and the corridor", {"door3"}),
+        ("the door that leads to the studio", {"door6"}),
+        ("cups or glasses", {"cup1", "glass1"}),
+        ("is anybody in the studio?", {"person1"}),
+        ("nobody in the studio", set()),
+    ],
+)
+def test_what_stands_beside_and_what_leads_where(flat, text, meant):
+    assert names(Finding(flat).find(Find(text=text)).found) == meant
+
+
 def test_who_looks_and_who_asks_must_be_there(flat):
     with pytest.raises(errors.UnknownName):
         Finding(flat).find(Find(text="my cup", asker="nobody"))

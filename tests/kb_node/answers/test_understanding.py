@@ -40,6 +40,7 @@ def understanding(flat):
         ("take the blue cup and the red one", ["Taking(Theme=bluecup, Theme=redcup)"]),
         ("give me something to read", ['Giving(Recipient="me", Theme=book1|book2|book3)']),
         ("portami qualcosa da bere", ['Bringing(Beneficiary="mi", Theme=milk1|water1)']),
+        ("portami qualcosa da leggere", ['Bringing(Beneficiary="mi", Theme=book1|book2|book3)']),
         ("bring something to me", ['Bringing(Theme="something", Beneficiary="to me")']),
         ("spegni le lampade", ["Change_operational_state(Device=abat_jour1|lamp1)"]),
         ("open the fridge door", ["Closure(Containing_object=fridge1)"]),
@@ -54,3 +55,22 @@ def test_it_is_asked_once_which_is_meant(understanding):
     assert understood.frames[1].arguments[0].candidates == ("bluecup", "redcup")
     assert understood.question.startswith("Which one: the cup called blue cup or the one called red cup?")
     assert understood.question.count("red cup") == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "understood", "doubts"),
+    [
+        (
+            "take the red cup from the desk",
+            "Taking(Theme=redcup, Source=desk1)",
+            ("redcup is not on or in desk1; it is on table1",),
+        ),
+        ("take the red cup from the table", "Taking(Theme=redcup, Source=table1)", ()),
+        ("take the laptop from the studio", "Taking(Theme=laptop1, Source=studio1)", ()),
+        ("take 3 plates", "Taking(Theme=3 of plate1|plate2)", ("'3 plates': there are only 2",)),
+        ("prendi due tazze", "Taking(Theme=2 of bluecup|cup1|redcup)", ()),
+    ],
+)
+def test_what_does_not_fit_the_map_is_said(understanding, text, understood, doubts):
+    told = understanding.understand(Understand(text=text))
+    assert ([frame.text for frame in told.frames], told.doubts) == ([understood], doubts)

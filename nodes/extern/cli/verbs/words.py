@@ -107,6 +107,8 @@ def understand(client: Client, text: str, format: str, language: Language | None
         print_json(lu4r.document(found))
     else:
         print_lines([frame.text for frame in found.frames] + ([found.question] if found.question else []))
+    for doubt in found.doubts:
+        complain(doubt)
     if found.unknown:
         complain(f"unknown {'verbs' if len(found.unknown) > 1 else 'verb'}: {', '.join(found.unknown)}")
     if not found.frames:

@@ -65,6 +65,10 @@ class Describing:
         word = self.lemmas.get(word, word)
         return _stem(word) if self.language == "italian" else lemma(word, lexicon.load())
 
+    def counted(self, key: str) -> str:
+        """What one of them is where a plural may also be meant by the piece: glasses, a glass."""
+        return lemma(key, lexicon.load()) if key in self.pluralia and self.language == "english" else key
+
     def key(self, words: Iterator[str] | list[str] | _Words) -> str:
         """Words in their base forms, by which a noun is looked up."""
         return " ".join([self.base(word) for word in words])
