@@ -32,9 +32,10 @@ def test_boxes_along_the_axes(at, size, other_at, other_size):
     searched_one, searched_other = box(turned(*at), size, YAW), box(turned(*other_at), other_size, YAW)
     assert not searched_one.is_square
     found, searched = contact(one, other), contact(searched_one, searched_other)
-    assert (
-        searched.distance - 1e-9 <= found.distance <= searched.distance + 5e-3
-    )  # its normals are 0.6° apart
+    # The search ends at a normal that may be some tenths of a degree off, which counts with the lever arm; of
+    # 245 000 random pairs the worst was 0.0045 of it.
+    lever = math.dist(at, other_at) + math.hypot(*size) / 2.0 + math.hypot(*other_size) / 2.0
+    assert searched.distance - 1e-9 <= found.distance <= searched.distance + 5e-3 * lever
     assert math.hypot(*found.normal) == pytest.approx(1.0)
 
 
