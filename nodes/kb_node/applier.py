@@ -21,8 +21,6 @@ from schemas.commits import Commit
 from schemas.entities import Entity
 from schemas.explanations import Term, Triple
 
-FEW: Final = 8
-"""Entities that a commit changes: what holds of them is worked out while the disk takes it."""
 PART: Final = 250_000
 """Triples that the reasoner takes in at once, in a second or two; in smaller parts it takes longer in all."""
 
@@ -42,14 +40,10 @@ class Applier:
         commit: Commit,
         make_durable: Callable[[Commit], Commit],
         noted: Callable[[Commit], Commit] = lambda commit: commit,
-        make_durable_beside: Callable[[Commit, Callable[[], Commit]], Commit] | None = None,
     ) -> Commit:
         """The commit, durable and with its effects. Raises Inconsistent, and what `make_durable` raises.
 
         On any error all is as before. `noted` adds a word on the change while the reasoner has it already.
-
-        Once nothing can refuse a commit of few entities, `make_durable_beside(commit, finish)` is called, if
-        it is given: `finish()` adds what holds of places, which takes about as long as the disk.
         """
         state = self._state
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
@@ -70,10 +64,6 @@ class Applier:
                 self._require_agreement(commit)
             commit = noted(self._with_effects(commit, owners, change, subjects - known))
             del owners, subjects, known, change  # of a large commit a third of the memory that it takes
-            is_certain = state.follows and not restores and len(commit.names) <= FEW
-            if is_certain and make_durable_beside is not None:
-                accepted = commit
-                return make_durable_beside(accepted, lambda: self._with_places(accepted))
             if state.follows:
                 commit = self._with_places(commit)
             if restores and state.follows:

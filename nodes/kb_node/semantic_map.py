@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
 from typing import Any, Final, NamedTuple, TypeVar
 
 from msgspec import structs
@@ -144,9 +143,8 @@ class SemanticMap(MapState):
             if self._look is not None:
                 return self._taken(apply(commit, self._write, noted))
             give_up, begun = self.foretell(commit), commit_encoding.early(commit, self.digest)
-            write, beside = partial(self._write, begun=begun), None if begun else self._write_beside
             try:
-                return self._taken(apply(commit, write, noted, beside))
+                return self._taken(apply(commit, lambda whole: self._write(whole, begun=begun), noted))
             except BaseException:
                 give_up()
                 if begun is not None:
@@ -180,11 +178,6 @@ class SemanticMap(MapState):
         if self._look is not None:
             raise _Tried(self._look(commit))
         return structs.replace(commit, digest=self._journal.append(commit, tbox, begun=begun).hex())
-
-    def _write_beside(self, commit: Commit, finish: Callable[[], Commit]) -> Commit:
-        """What `finish` makes of the commit, durable and with its digest. Raises NotWritten."""
-        finished, digest = self._journal.append_beside(commit, finish)
-        return structs.replace(finished, digest=digest.hex())
 
     def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
         """Let another TBox hold, in one commit with the transaction's changes of the ABox.

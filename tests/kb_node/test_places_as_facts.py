@@ -12,9 +12,7 @@ from nodes.kb_node.documents import rdf
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.journal.pace import Pace
 from nodes.kb_node.storage.journal.sqlite_file import NotWritten
-from nodes.kb_node.storage.journal.verification import verify
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
 from schemas import errors
@@ -129,43 +127,6 @@ def test_what_the_disk_does_not_take_is_taken_back(flat, monkeypatch):
     with pytest.raises(NotWritten, match="full"):
         flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0)))
     assert state(flat) == before
-
-
-def test_what_the_disk_does_not_take_is_taken_back_with_what_was_worked_out_meanwhile(flat, monkeypatch):
-    before = state(flat)
-    finished = []
-
-    def full(commit, finish):
-        finished.append(finish())
-        raise NotWritten("full")
-
-    with monkeypatch.context() as patched:
-        patched.setattr(flat._journal, "append_beside", full)
-        for name, at in (("cup1", (3.95, 0.55, 0.42)), ("counter1", (2.0, 2.0, 0.0))):
-            with pytest.raises(NotWritten, match="full"):
-                flat.commit(moved(flat, name, at))
-            assert state(flat) == before
-    assert len(finished) == 2
-    home_again = flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0)))
-    assert flat._journal.commit(home_again.seq) == home_again
-
-
-def test_a_commit_is_in_the_journal_as_it_is_answered_whatever_it_did_to_places(flat, monkeypatch):
-    dice = random.Random(7)
-    movable = [name for name in flat.names if not flat.entity(name).place]
-    spots = [flat.entity(name).pose.position_m for name in movable]
-    monkeypatch.setattr(Pace, "is_slow", lambda _: True)
-    replaced = []
-    replace = flat._journal._replace
-    monkeypatch.setattr(
-        flat._journal, "_replace", lambda *these: replaced.append(these[0].seq) or replace(*these)
-    )
-    for _ in range(40):
-        made = flat.commit(moved(flat, dice.choice(movable), dice.choice(spots)))
-        if made is not None:
-            assert flat._journal.commit(made.seq) == made
-    assert replaced  # in some, others are in another class than before
-    verify(flat._journal)
 
 
 def test_a_removal_that_is_only_tried_or_not_taken_leaves_all(flat, monkeypatch):

@@ -7,7 +7,6 @@ commits, the indexes, is compared with them. A journal that was compacted begins
 
 from __future__ import annotations
 
-import logging
 import sqlite3
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -20,18 +19,15 @@ from nodes.kb_node.storage.encoding import checkpoint_encoding, commit_encoding,
 from nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
 from nodes.kb_node.storage.journal import beginning, checkpoints, index_check, rows
 from nodes.kb_node.storage.journal.beginning import Beginning
-from nodes.kb_node.storage.journal.beside import Work
 from nodes.kb_node.storage.journal.digests import chained, is_sound
 from nodes.kb_node.storage.journal.layout import COMPACTED, FORMAT, SCHEMA
 from nodes.kb_node.storage.journal.rows import Damaged, Row
-from nodes.kb_node.storage.journal.sqlite_file import ANEW, JournalFile, NotWritten, mend
+from nodes.kb_node.storage.journal.sqlite_file import ANEW, JournalFile, mend
 from nodes.kb_node.storage.journal.stamps import Stamps
 from schemas import errors
 from schemas.commits import Commit
 
 T = TypeVar("T")
-
-log = logging.getLogger(__name__)
 
 _TOUCH = "INSERT INTO touches VALUES (?, ?)"
 _DENSE_FROM = 1 << 16
@@ -162,17 +158,11 @@ class Journal:
             return [seq for (seq,) in found]
 
     def append(
-        self,
-        commit: Commit,
-        tbox: bytes | None = None,
-        *,
-        begun: commit_encoding.EarlyBody | None = None,
-        meanwhile: Work | None = None,
+        self, commit: Commit, tbox: bytes | None = None, *, begun: commit_encoding.EarlyBody | None = None
     ) -> bytes:
         """Make `commit` durable, with the TBox (N-Triples) that holds from now on if it is another.
 
-        `begun` is its body, if that was begun before. `meanwhile` is called while the disk takes it (see
-        `JournalFile.writing`). Returns the digest of all commits with this one.
+        `begun` is its body, if that was begun before. Returns the digest of all commits with this one.
 
         Raises NotWritten when the disk does not take it.
         """
@@ -180,7 +170,7 @@ class Journal:
             self._digest = self.digest(self.last)
         commit = structs.replace(commit, digest=self._digest.hex())
         whole = None if begun is None else begun.finish(commit)
-        with self.file.writing(f"commit {commit.seq}", meanwhile) as db:
+        with self.file.writing(f"commit {commit.seq}") as db:
             touches = [(name, commit.seq) for name in commit.names]
             if len(touches) == 1:
                 db.execute(_TOUCH, touches[0])
@@ -194,41 +184,6 @@ class Journal:
                 db.execute("INSERT INTO tboxes VALUES (?, ?, ?)", row)
         self._digest = digest
         return digest
-
-    def append_beside(self, commit: Commit, finish: Callable[[], Commit]) -> tuple[Commit, bytes]:
-        """Make `commit` durable while `finish()` works out, on another thread, the commit as it is to stand.
-
-        That one and its digest are returned. Where it is otherwise, its record is written anew before anybody
-        can read it; after a loss of power in between, or where the disk takes the first and not the second,
-        the first one stands. On a disk that is done before a thread is awake, and within `together`, `finish`
-        comes first. Raises NotWritten for the first; what `finish` raises, and then it may be durable.
-        """
-        if self.file.is_writing or not self.file.pace.is_slow():
-            finished = finish()
-            return finished, self.append(finished)
-        found: list[Commit] = []
-        with self.file.reading():  # nobody else, until it stands as it will
-            before = self.digest(commit.seq - 1) if self._digest is None else self._digest
-            digest = self.append(commit, meanwhile=lambda: found.append(finish()))
-            (finished,) = found
-            if finished is commit or finished == commit:
-                return finished, digest
-            try:
-                return finished, self._replace(commit, finished, before)
-            except NotWritten as error:
-                self._digest = digest
-                log.warning("commit %d stands without what it did to places: %s", commit.seq, error.text)
-                return finished, digest
-
-    def _replace(self, last: Commit, by: Commit, before: bytes) -> bytes:
-        """Let another commit stand in place of the last one; `before` is the digest before both."""
-        with self.file.writing(f"commit {by.seq}") as db:
-            db.execute("DELETE FROM commits WHERE seq = ?", (last.seq,))
-            db.executemany(
-                "DELETE FROM touches WHERE name = ? AND seq = ?", [(n, last.seq) for n in last.names]
-            )
-            self._digest = before
-            return self.append(by)
 
     @contextmanager
     def together(self) -> Iterator[None]:

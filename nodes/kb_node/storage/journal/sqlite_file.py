@@ -6,15 +6,12 @@ import os
 import shlex
 import sqlite3
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
 from nodes.kb_node.storage.journal import write_ahead
-from nodes.kb_node.storage.journal.beside import Beside, Work
-from nodes.kb_node.storage.journal.pace import Pace
 from schemas import errors
 
 _PAGE_BYTES: Final = 4096
@@ -66,8 +63,6 @@ class JournalFile:
     def _open(self, path: Path) -> None:
         self.path = path
         self._lock = threading.RLock()
-        self._beside = Beside()
-        self.pace = Pace()
         try:
             self._db = sqlite3.connect(path, isolation_level=None, timeout=2.0, check_same_thread=False)
         except sqlite3.DatabaseError as error:
@@ -87,14 +82,8 @@ class JournalFile:
 
     def close(self) -> None:
         """Release it."""
-        self._beside.close()
         with self._lock:
             self._db.close()
-
-    @property
-    def is_writing(self) -> bool:
-        """Is it within a transaction, so that what is written now becomes durable at the end of that?"""
-        return self._db.in_transaction
 
     @contextmanager
     def reading(self) -> Iterator[sqlite3.Connection]:
@@ -110,13 +99,10 @@ class JournalFile:
             raise _refusal(self.path, error) from None
 
     @contextmanager
-    def writing(self, what: str, meanwhile: Work | None = None) -> Iterator[sqlite3.Connection]:
+    def writing(self, what: str) -> Iterator[sqlite3.Connection]:
         """The connection in a transaction: all of it or nothing, and durable at its end.
 
-        Within another it is a part of that. `meanwhile()`, if given, is called on another thread while the
-        disk takes it, and must not touch the file; within another transaction it is not called.
-
-        Raises NotWritten when the disk does not take `what`; else what `meanwhile` raises, and it is durable.
+        Within another it is a part of that. Raises NotWritten when the disk does not take `what`.
         """
         db = self._db
         try:
@@ -127,13 +113,7 @@ class JournalFile:
                 db.execute("BEGIN IMMEDIATE")
                 try:
                     yield db
-                    if meanwhile is None:
-                        began_s = time.perf_counter()
-                        db.execute("COMMIT")
-                        self.pace.took(time.perf_counter() - began_s)
-                    else:
-                        with self._beside.doing(meanwhile):
-                            db.execute("COMMIT")
+                    db.execute("COMMIT")
                 finally:
                     if db.in_transaction:
                         db.execute("ROLLBACK")
