@@ -222,7 +222,10 @@ class _Foreground:
             self._supervisor.replace(hang.pid)
 
     def _introduce(self) -> None:
-        """Let the coordinator have heard of every node before anybody is told that the system is ready."""
+        """Let the coordinator know every node, and bodies stand, before anybody is told that all is ready.
+
+        Not for long: where there are many bodies, or one cannot be as the map says, it is ready before.
+        """
         with (
             contextlib.suppress(errors.SemmapError, OSError),
             bus.open_session(self._network()) as session,
@@ -230,7 +233,9 @@ class _Foreground:
             deadline_s = time.monotonic() + _INTRODUCED_S
             while time.monotonic() < deadline_s:
                 status = bus.ask(session, keys.CMD, Status.VERB, Status(), reply_type(Status))
-                if {node.pid for node in status.nodes if node.state == "ready"} >= {*self._pids.values()}:
+                known = {node.pid for node in status.nodes if node.state == "ready"}
+                stands = status.in_agreement or status.truth == "perceived" or "sim_node" not in self._pids
+                if stands and known >= {*self._pids.values()}:
                     break
                 time.sleep(0.05)
             self._tell_of_truth(status.truth)
