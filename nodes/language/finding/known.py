@@ -71,7 +71,9 @@ class Nouns:
         self.forms: Final[dict[str, str]] = {}
         """Words in base form, as they are written."""
         tag, known = TAGS[language], {name for _, name, _ in terms.classes}
-        labels = [(name, text) for said, name, text in terms.classes if said in (tag, "")]
+        # A noun of a language that nothing else is known of stands in the grammar of the first.
+        others = {*TAGS.values()} - {tag} if language == LANGUAGES[0] else None
+        labels = [(name, text) for said, name, text in terms.classes if _serves(said, tag, others)]
         synonyms = [(name, word) for name, words in self.describing.synonyms.items() for word in words]
         named = [(name, tuple(self.keys(text))) for name, text in (*labels, *synonyms) if name in known]
         for name, keys in named:
@@ -85,12 +87,12 @@ class Nouns:
                 if key not in whole:  # else the taxonomy says what is a table
                     self.classes.setdefault(key, set()).add(name)
         for said, name, text in terms.qualities:
-            if said in (tag, ""):
+            if _serves(said, tag, others):
                 for word in (text, *self.describing.qualities.get(spoken(text), ())):
                     for key in self.keys(word):
                         self.qualities.setdefault(key, set()).add(name)
         for said, name, text in terms.affordances:
-            if said in (tag, ""):
+            if _serves(said, tag, others):
                 self.actions.setdefault(_action(text), set()).add(name)
         self.verbs: Final = frozenset(action.partition(" ")[0] for action in self.actions)
         for key in (*self.classes, *self.qualities):
@@ -221,6 +223,11 @@ class Known:
         """What can be done with an entity, by its classes and by what is said of it."""
         own = item.values.get("hasAffordance", frozenset())
         return own.union(*(self.terms.affords.get(name, frozenset()) for name in item.types))
+
+
+def _serves(said: str, tag: str, others: set[str] | None) -> bool:
+    """Whether a label of that language tag is read in a grammar: its own, or any but those of others."""
+    return said in (tag, "") or (others is not None and said not in others)
 
 
 def _action(label: str) -> str:

@@ -2,6 +2,7 @@
 
 import random
 from contextlib import suppress
+from dataclasses import replace
 
 import pytest
 
@@ -237,3 +238,23 @@ def test_the_order_of_the_entities_does_not_matter():
     there = Known(TERMS)
     there.update(random.Random(3).sample(ITEMS, len(ITEMS)))
     assert [find(text, there, Written()).names for text in texts] == first
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("Tasse", {"cup1", "cup2", "cup3"}),
+        ("the red Tasse on the table", {"cup1"}),
+        ("rote Tasse", {"cup1", "cup3"}),
+    ],
+)
+def test_a_label_of_any_language_is_a_noun(text, names):
+    made = Known(
+        replace(
+            TERMS,
+            classes=(*TERMS.classes, ("de", "Cup", "Tasse")),
+            qualities=(*TERMS.qualities, ("de", "color_red", "rote")),
+        )
+    )
+    made.update(ITEMS)
+    assert set(find(text, made, Written()).names) == names
