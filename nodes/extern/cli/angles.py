@@ -46,3 +46,12 @@ yaw_option = click.option(
     help="Rotation about the z axis: radians, or degrees as in 90deg.",
 )
 """How a thing is turned."""
+
+from_pose: Final = click.option(
+    "--from-pose",
+    "viewpoint",
+    type=(float, float, float, ANGLE),
+    metavar="X Y Z YAW",
+    help="The same, from a position [m] and a direction: radians, or degrees as in 90deg.",
+)
+"""Who looks, for verbs that have `--from` as well."""

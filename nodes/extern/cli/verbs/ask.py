@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from nodes.extern.cli import output
-from nodes.extern.cli.angles import ANGLE
+from nodes.extern.cli.angles import from_pose
 from nodes.extern.cli.calling import (
     TIME,
     answered_by_robots,
@@ -176,13 +176,7 @@ def could(client: Client, name: str, predicate: str, value: str, format: str) ->
 @click.argument("name", shell_complete=entity_names)
 @click.argument("other", required=False, shell_complete=entity_names)
 @click.option("--from", "viewer", metavar="ENTITY", help="Also left of, behind ... as seen from there.")
-@click.option(
-    "--from-pose",
-    "viewpoint",
-    type=(float, float, float, ANGLE),
-    metavar="X Y Z YAW",
-    help="The same, from a position [m] and a direction: radians, or degrees as in 90deg.",
-)
+@from_pose
 @_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
 @_as_of
 @talks

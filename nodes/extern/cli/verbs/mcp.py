@@ -51,7 +51,7 @@ def _names(_: click.Context, __: click.Parameter, said: str | None) -> frozenset
     is_flag=False,
     flag_value=7448,
     metavar="[PORT]",
-    help="Serve over HTTP on this machine (port 7448), for who bears the token that is printed.",
+    help="Serve over HTTP on this machine (port 7448), for whoever sends the token that it prints.",
 )
 @_with_its_extra
 @talks

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from nodes.extern.cli.angles import ANGLE
+from nodes.extern.cli.angles import from_pose
 from nodes.extern.cli.calling import complain, print_json, print_lines, talks
 from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.output import lines, lu4r
@@ -40,7 +40,7 @@ _WHY: Final[dict[Mood, str]] = {
 def tell(client: Client, name: str | None, words: int, format: str) -> None:
     """Tell in a few words what is there.
 
-    In the map, or in a place, or of a thing: by its name, or a reference or class that only one has.
+    Of the whole map, of a place, or of one thing: by its name, or by a reference or class that only one has.
     """
     found = client.tell(name, words=words)
     if format == "json":
@@ -55,21 +55,15 @@ def tell(client: Client, name: str | None, words: int, format: str) -> None:
 @click.option(
     "--from", "viewer", metavar="VIEWER", help="Who looks: for left of, behind, the second from the left ..."
 )
-@click.option(
-    "--from-pose",
-    "viewpoint",
-    type=(float, float, float, ANGLE),
-    metavar="X Y Z YAW",
-    help="The same, from a position [m] and a direction: radians, or degrees as in 90deg.",
-)
+@from_pose
 @click.option("--for", "asker", metavar="NAME", help="Who asks: whose things *my* means.")
 @click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @talks
 def find(client: Client, text: str, format: str, **fields: Any) -> None:
     """Find the entities that words describe (English, Italian).
 
-    For example: semmap find "the red cup on the kitchen table". Where several may be meant, there is the
-    question to ask back. The exit status is 1 if nothing fits.
+    For example: semmap find "the red cup on the kitchen table". If several fit, it prints
+    the question to ask back. The exit status is 1 if nothing fits.
     """
     found = client.find(text=text, **fields)
     if format == "json":
@@ -90,12 +84,12 @@ def find(client: Client, text: str, format: str, **fields: Any) -> None:
     show_default=True,
     help="lu4r: as the LU4R interpreter writes frames.",
 )
-@click.option("--language", type=click.Choice(["english", "italian"]), help="Unless the words tell.")
+@click.option("--language", type=click.Choice(["english", "italian"]), help="Default: as the words tell.")
 @talks
 def understand(client: Client, text: str, format: str, language: Language | None) -> None:
-    """Show what a command in words asks for, and of what.
+    """Show what a spoken command asks for, and of which entities.
 
-    In English or Italian, with the entities that it is about.
+    In English or Italian.
 
     For example: semmap understand "take the bottle from the table". The frames and roles are FrameNet's. The
     exit status is 1 if no frame is understood.
