@@ -20,6 +20,8 @@ MODULES: Mapping[str, tuple[str, ...]] = {
     "record": ("PIL", "numpy", "rerun"),
     "keys": ("cryptography",),
     "mcp": ("anyio", "mcp", "uvicorn"),
+    "web": ("nicegui", "numpy", "uvicorn", "viser"),
+    "movie": ("av", "numpy"),
 }
 """What each extra installs, as it is imported."""
 
