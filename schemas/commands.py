@@ -55,6 +55,8 @@ from schemas.sparql import SparqlResult, Watching
 RDF_FORMATS = ("rdfxml", "turtle", "ntriples", "jsonld")
 RdfFormat = Literal["rdfxml", "turtle", "ntriples", "jsonld"]
 ListFormat = Literal["json", "lu4r", "legacy"]
+ExtentText = Annotated[str, Meta(min_length=1, max_length=50_000)]
+"""What a place covers, seen from above: `POLYGON ((x y, ...))` in WKT; see `schemas.polygons`."""
 ClassName = Annotated[str, Meta(min_length=1, max_length=200)]
 Since = Annotated[int, Meta(ge=0, le=1 << 53)]
 """A commit: if one after it has changed what is to be `unchanged`, a command is refused."""
@@ -96,7 +98,8 @@ class Add(Command[Changed], frozen=True, tag="add"):
 
     Without `name` one is made from the class; without `at` it goes to the next free place near the default
     pose; with `default` it also gets the class's label as reference. `set` are properties, each written
-    `PROPERTY=VALUE`. `wait` delays the reply until its body stands in the scene.
+    `PROPERTY=VALUE`. `wait` delays the reply until its body stands in the scene. `extent` is for places: with
+    it only the z of `at` counts, the height of the floor, and the z of `size`, how high the place is.
 
     Like every command that changes entities, it is refused with PreconditionFailed where one of those that
     are to be `unchanged` is gone, or was changed by a commit after `since`.
@@ -108,6 +111,7 @@ class Add(Command[Changed], frozen=True, tag="add"):
     yaw: Angle | None = None
     orientation: Quaternion | None = None
     size: Size | None = None
+    extent: ExtentText | None = None
     ref: Text | None = None
     alt: tuple[Text, ...] = ()
     confidence: Probability | None = None
@@ -126,7 +130,8 @@ class Update(Command[Changed], frozen=True, tag="update"):
     `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values; both of one
     property replace its values. A class that would make an object a place, or a place an object, is refused
     without `force`. With `carry`, what stands on the entity or is inside it moves with it as one rigid body,
-    in the same commit; not what `leave` names, and what stands on that.
+    in the same commit; not what `leave` names, and what stands on that. `extent` is as for `add`; who has one
+    is moved by another.
     """
 
     name: Word
@@ -135,6 +140,7 @@ class Update(Command[Changed], frozen=True, tag="update"):
     yaw: Angle | None = None
     orientation: Quaternion | None = None
     size: Size | None = None
+    extent: ExtentText | None = None
     ref: Text | None = None
     alt: tuple[Text, ...] | None = None
     conflict: Remark | None = None

@@ -45,6 +45,7 @@ _describing = _options(
     yaw_option,
     click.option("--orientation", nargs=4, type=float, metavar="W X Y Z", help="Unit quaternion."),
     vector_option("--size", metavar="X Y Z", help="Size along its own axes [m]."),
+    click.option("--extent", metavar="WKT", help="What a place covers: 'POLYGON ((X Y, ...))' [m]."),
     click.option("--ref", metavar="TEXT", help="Preferred reference: what people call it."),
     click.option("--alt", multiple=True, metavar="TEXT", help="Alternative reference; may be repeated."),
     click.option("--confidence", type=float, metavar="P", help="Confidence, 0 to 1."),
