@@ -6,16 +6,16 @@ import logging
 import time
 from concurrent.futures import Future
 
+from nodes.drawing.scene_state import SceneState
+from nodes.drawing.surfaces import Kind
 from nodes.recorder.config import RecorderConfig
 from nodes.recorder.drawing.graph import graph_of
 from nodes.recorder.drawing.stage import Stage
-from nodes.recorder.drawing.surfaces import Kind
 from nodes.recorder.growth import LOOK_S, Growth
 from nodes.recorder.perception_recorder import PerceptionRecorder
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
 from nodes.recorder.retention import KEEP_ALL, Retention, recordings
 from nodes.recorder.state.map_relations import Relations, missed
-from nodes.recorder.state.scene_state import SceneState
 from nodes.runtime.following import Begun, Follower
 from nodes.runtime.loop import Node, open_node
 from nodes.runtime.map_replica import MapReplica

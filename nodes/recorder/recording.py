@@ -13,9 +13,9 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from nodes.drawing.figures import Figure
 from nodes.recorder import commit_text
 from nodes.recorder.drawing.blueprint import bounds_of, layout
-from nodes.recorder.drawing.figures import Figure
 from nodes.recorder.drawing.geometry import shape_of
 from nodes.recorder.drawing.graph import Graph, nodes_and_edges
 from schemas import errors

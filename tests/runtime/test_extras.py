@@ -26,6 +26,7 @@ NOT_ASKED_FOR = {"glfw", "open3d", "rapidfuzz", "typing_extensions"}
 AREAS = {
     "nodes/bus": (),
     "nodes/coordinator": ("kb",),
+    "nodes/drawing": ("record",),  # or web, with less
     "nodes/extern": tuple(extras.MODULES),  # which asks for them first
     "nodes/identity": ("keys",),
     "nodes/kb_node": ("kb",),
@@ -87,7 +88,7 @@ def test_all_is_every_extra():
 
 def test_every_node_has_an_extra():
     assert set(extras.OF_NODE) == {*NODES, ROUTER}
-    assert set(extras.OF_NODE.values()) == set(extras.MODULES) - {"keys", "mcp"}
+    assert set(extras.OF_NODE.values()) == set(extras.MODULES) - {"keys", "mcp", "movie", "web"}
 
 
 def test_with_everything_nothing_is_missing():

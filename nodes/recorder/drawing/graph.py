@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import rerun as rr
 
-from nodes.recorder.drawing.palette import colour_of
+from nodes.drawing.palette import colour_of
 from nodes.recorder.state.map_relations import Relation
 from schemas.entities import Entity
 

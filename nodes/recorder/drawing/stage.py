@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from nodes.recorder.drawing.figures import Figure, figure_of, pose_of, still
+from nodes.drawing.figures import Figure, figure_of, pose_of, still
+from nodes.drawing.surfaces import SurfaceCache
 from nodes.recorder.drawing.graph import Graph
-from nodes.recorder.drawing.surfaces import SurfaceCache
 from nodes.recorder.recording import Recording
 from schemas.entities import Entity, Pose
 from schemas.scenes import Body

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from nodes.language import nouns
-from nodes.language.inventory import Group, How
+from nodes.language.telling.inventory import Group, How
 
 _ON_AND_IN: Final[tuple[How, How]] = ("on", "in")
 

@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from nodes.language.grounding import Thing, called
+from nodes.language.understanding.grounding import Thing, called
 from tests.language.household import LEXICON, THINGS, there
 
 

@@ -11,8 +11,8 @@ from itertools import chain
 from typing import Final, NamedTuple
 
 from nodes.language import nouns
-from nodes.language.inventory import Group, How, Inventory
-from nodes.language.paragraphs import Paragraph, Piece, spoken_of, there_are
+from nodes.language.telling.inventory import Group, How, Inventory
+from nodes.language.telling.paragraphs import Paragraph, Piece, spoken_of, there_are
 
 _FEW: Final = 3
 """Troubles that are told before anything else."""

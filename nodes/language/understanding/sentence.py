@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from nodes.language import grounding
-from nodes.language.grounding import Scene, Things
 from nodes.language.lexicon import Lexicon
 from nodes.language.phrases import Phrase, phrases
+from nodes.language.understanding import grounding
+from nodes.language.understanding.grounding import Scene, Things
 from nodes.language.words import PartOfSpeech, Word, based, tag
 
 _MOST_PAIRS = 400  # of things, to be looked at for the nearest: a tenth of a millisecond

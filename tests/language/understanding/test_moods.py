@@ -2,7 +2,7 @@
 
 import pytest
 
-from nodes.language.interpretation import shipped
+from nodes.language.understanding.interpretation import shipped
 from tests.language.household import there
 
 

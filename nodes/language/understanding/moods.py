@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nodes.language.sentence import Sentence
+from nodes.language.understanding.sentence import Sentence
 from schemas.language import Mood
 
 _NOT_YET = ("adv", "conj", "neg")  # what may stand before the word that opens a question

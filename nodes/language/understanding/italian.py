@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
-from nodes.language.gloss import Gloss, Glossed
-from nodes.language.grounding import Scene
 from nodes.language.lexicon.italian import ARTICULATED, Italian, italian, singulars
+from nodes.language.understanding.gloss import Gloss, Glossed
+from nodes.language.understanding.grounding import Scene
 from nodes.language.vocabulary import spoken
 from nodes.language.words import PartOfSpeech, plain
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from nodes.language.grounding import Scene
+from nodes.language.understanding.grounding import Scene
 from schemas.language import Argument, Frame
 
 _PRONOUNS: Final = ("it", "them", "they", "one")

@@ -10,12 +10,11 @@ from typing import Final
 
 import pycrfsuite
 
-from nodes.language import (
+from nodes.language import languages, lexicon
+from nodes.language.understanding import (
     conjuncts,
     grounding,
     italian,
-    languages,
-    lexicon,
     moods,
     predicates,
     pronouns,
@@ -23,11 +22,11 @@ from nodes.language import (
     roles,
     slots,
 )
-from nodes.language.conjuncts import Span
-from nodes.language.gloss import Gloss
-from nodes.language.grounding import Scene, Thing, Things
-from nodes.language.referents import Referents, Resolve
-from nodes.language.sentence import Sentence, sentence
+from nodes.language.understanding.conjuncts import Span
+from nodes.language.understanding.gloss import Gloss
+from nodes.language.understanding.grounding import Scene, Thing, Things
+from nodes.language.understanding.referents import Referents, Resolve
+from nodes.language.understanding.sentence import Sentence, sentence
 from nodes.language.words import PartOfSpeech, split
 from schemas.language import Argument, Frame, Grounded, Language, Understood
 
@@ -141,7 +140,7 @@ class Interpreter:
 @functools.cache
 def shipped(language: str = "english") -> Interpreter:
     """The interpreter that comes with the package, learnt by `make train-language`."""
-    folder = resources.files(__package__) / "learnt"
+    folder = resources.files("nodes.language") / "learnt"
     return Interpreter(
         str(folder / f"{language}_frames.crfsuite"), str(folder / f"{language}_roles.crfsuite"), language
     )
