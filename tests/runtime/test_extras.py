@@ -26,6 +26,7 @@ NOT_ASKED_FOR = {"glfw", "open3d", "rapidfuzz", "typing_extensions"}
 AREAS = {
     "nodes/bus": (),
     "nodes/coordinator": ("kb",),
+    "nodes/drawing": ("record",),  # or web, with less
     "nodes/extern": tuple(extras.MODULES),  # which asks for them first
     "nodes/identity": ("keys",),
     "nodes/kb_node": ("kb",),
