@@ -18,9 +18,9 @@ from typing import Any, Final, Literal, TypeVar
 from msgspec import Struct
 
 from nodes import bus
+from nodes.drawing.scene_state import SceneState
 from nodes.extern.client import Client
 from nodes.identity import Identity
-from nodes.recorder.state.scene_state import SceneState
 from nodes.runtime.following import Begun, Follower
 from nodes.runtime.loop import Node
 from nodes.runtime.map_replica import MapReplica
