@@ -1,0 +1,1 @@
+"""What the panels of knowledge show, as plain data: pure functions of the map and of replies."""
