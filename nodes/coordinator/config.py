@@ -24,8 +24,8 @@ class Thresholds:
 class CoordinatorConfig:
     """`truth` says who owns existence: in `map` the scene follows the map, in `scene` the other way.
 
-    In `perceived` the simulator stands for the world itself: only perception updates the map. In `replayed` the
-    map is the past, which the scene follows and never changes.
+    In `perceived` the simulator stands for the world itself: only perception updates the map. In
+    `replayed` the map is the past, which the scene follows and never changes.
     """
 
     truth: Truth = "map"

@@ -1,17 +1,15 @@
-"""The past of a map, run again from its journal as a system of its own, beside the one that may be running."""
+"""The past of a map, run again from its journal as a system of its own beside the one that may run."""
 
 from __future__ import annotations
 
-import os
-import shutil
 import socket
-import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 
 from msgspec import structs
 
+from nodes.extern.journals import journal_copy, own_folder
 from nodes.runtime import extras, rhythm
 from nodes.supervisor.settings import SETTINGS, Replay, Settings
 from ontology import EMPTY_WORLD, FLAT_WORLD, HOUSEHOLD_TTL
@@ -56,11 +54,45 @@ def replay(
             truth="replayed",
             sim=sim,
             record=record,
-            replay=Replay(
-                of=str(data), since=span.since, until=span.until, speed=speed, longest_s=longest_s
-            ),
+            replay=Replay(of=str(data), since=span.since, until=span.until, speed=speed, longest_s=longest_s),
         )
         up(settings, say=say)
+
+
+def check(
+    file: Path,
+    data: Path | None = None,
+    *,
+    where: str | None = None,
+    identity: str | None = None,
+    namespace: str | None = None,
+    tell: Callable[[str], None],
+) -> str:
+    """Compare the commits of a recording with those in the journal of a data folder, or of a running system.
+
+    Returns what was compared, in a sentence; `tell` is told of what cannot be read of the recording. Raises
+    Refused with the first difference; BadFile for no recording or no map.
+    """
+    extras.require("semmap replay --check", "kb", "record")
+    from nodes.kb_node.storage.journal import Journal
+    from nodes.recorder.checking import check as compare
+    from nodes.recorder.recorded_commits import commits_of
+    from nodes.recorder.whole_part import whole_part
+
+    with whole_part(file) as whole:
+        if told := whole.told(file):
+            tell(told)
+        recorded = commits_of(whole.path)
+    with (
+        journal_copy(
+            "semmap replay --check", data, where=where, identity=identity, namespace=namespace
+        ) as copy,
+        closing(Journal(copy.path)) as journal,
+    ):
+        verdict = compare(recorded, journal.commit, first=journal.first, last=journal.last)
+    if not verdict.is_same:
+        raise errors.Refused(f"{file} is not a recording of this map: {verdict.text}")
+    return f"{file}: {verdict.text}"
 
 
 def settings_of(data: Path, world: Path | None = None) -> Settings:
@@ -87,16 +119,6 @@ def settings_of(data: Path, world: Path | None = None) -> Settings:
         world=str(scene.resolve()),
         models=None if before is None else before.models,
     )
-
-
-@contextmanager
-def own_folder() -> Iterator[Path]:
-    """A folder that nobody else may read, deleted at the end."""
-    folder = Path(tempfile.mkdtemp(prefix=f"semmap-replay-{os.getpid()}-"))
-    try:
-        yield folder
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _free_endpoint() -> str:

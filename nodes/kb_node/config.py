@@ -23,7 +23,7 @@ class Replay:
 
 @dataclass(frozen=True)
 class KbConfig:
-    """`data` is the folder of the journal; it must have been seeded (see seed.py), or prepared for a replay."""
+    """`data` is the folder of the journal; it must have been seeded, or prepared for a replay."""
 
     data: Path
     network: Network = field(default_factory=Network)

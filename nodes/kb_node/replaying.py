@@ -36,7 +36,12 @@ class Player:
     """Commits one commit after another, each when its time has come. Owned by the node's thread."""
 
     def __init__(
-        self, node: Node, semantic_map: SemanticMap, data: Path, replay: Replay, spread: Callable[[Commit], None]
+        self,
+        node: Node,
+        semantic_map: SemanticMap,
+        data: Path,
+        replay: Replay,
+        spread: Callable[[Commit], None],
     ) -> None:
         """`data` is the folder of the replay; `spread(commit)` tells everybody of a new commit."""
         self._node = node

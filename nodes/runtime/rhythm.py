@@ -16,7 +16,9 @@ LONGEST_S: Final = 3.0
 def require_speed(speed: float) -> float:
     """`speed` if it is one: 1 is as it was, 10 ten times as fast. Raises BadRequest."""
     if not math.isfinite(speed) or speed <= 0.0:
-        raise BadRequest(f"the speed must be greater than 0, not {speed:g}: 1 is as it was, 10 is ten times that")
+        raise BadRequest(
+            f"the speed must be greater than 0, not {speed:g}: 1 is as it was, 10 is ten times that"
+        )
     return speed
 
 

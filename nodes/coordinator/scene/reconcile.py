@@ -7,8 +7,8 @@ come from the scene, the body is ordered there; otherwise a body that rests else
 follows.
 
 If only perception updates the map (`perceived`), nothing is to be done: an entity without a body is a belief,
-a body without an entity has not been seen yet, and a pose that differs will be seen. If the map is `replayed`,
-every pose of it is an order, also those that came from the scene, and the map follows nothing.
+a body without an entity has not been seen yet, and a pose that differs will be seen. If the map is
+`replayed`, every pose of it is an order, also those that came from the scene, and the map follows nothing.
 """
 
 from __future__ import annotations
