@@ -29,6 +29,7 @@ _MODULES = {
     "keys": ("keys",),
     "fleet": ("fleet",),
     "mcp": ("mcp",),
+    "web": ("web",),
     "approve": ("approve",),
     "completion": ("completion",),
 }
