@@ -131,6 +131,7 @@ def test_without_the_knowledge_base_there_is_no_way_around(without):
         (["repair"], "pyoxigraph", "kb"),
         (["down"], "supervisor", "kb"),
         (["mcp"], "uvicorn", "mcp"),
+        (["web"], "nicegui", "web"),
     ],
 )
 def test_a_verb_without_its_extra_exits_with_2(without, capsys, monkeypatch, tmp_path, words, module, extra):

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from rich.table import Table
 
 from nodes.extern.cli.output.lines import touched
-from nodes.extern.cli.output.tables import author, card, moment, pose_text, provenance_text, table
+from nodes.extern.cli.output.tables import card, table
+from nodes.extern.phrasing import author, moment, pose_text, provenance_text
 from schemas.replies import LoggedCommit, Sighting
 
 

@@ -1,1 +1,1 @@
-"""What the panels of the page show, as plain rows, texts and positions: pure, and known to no browser."""
+"""What the panels of the page show, as plain data: rows, texts, trees and positions."""
