@@ -6,9 +6,9 @@ import re
 from collections.abc import Collection, Iterable, Iterator
 from typing import Final, Literal, NamedTuple
 
-from ontology import vocabulary as v
-from schemas.entities import Entity
-from schemas.explanations import Explanation, Triple
+from nodes.extern.web.views.steps import HOW, Line, lines, words_of
+from schemas.entities import ClassInfo, Entity
+from schemas.explanations import Explanation
 from schemas.replies import Checked
 
 Gravity = Literal["contradiction", "withheld", "denied", "doubt", "body", "crowd"]
@@ -23,6 +23,7 @@ TITLES: Final[dict[Gravity, str]] = {
 }
 UNSURE: Final = 0.5
 """An entity that somebody is less sure of than this is in doubt."""
+NBSP: Final = "\u00a0"
 _WORD: Final = re.compile(r"[^\W\d][\w.\-]*")
 
 
@@ -35,10 +36,12 @@ class Finding(NamedTuple):
     why: tuple[str, ...] = ()
 
 
-def findings(checked: Checked, entities: Iterable[Entity]) -> tuple[Finding, ...]:
+def findings(
+    checked: Checked, entities: Iterable[Entity], classes: Iterable[ClassInfo] = ()
+) -> tuple[Finding, ...]:
     """All there is to look at, the gravest first."""
     known = {entity.name: entity for entity in entities}
-    return (*_of_check(checked, known), *_of_entities(known.values()))
+    return (*_of_check(checked, known, classes), *_of_entities(known.values()))
 
 
 def verdict(checked: Checked) -> str:
@@ -53,7 +56,7 @@ def names_in(text: str, known: Collection[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(word for word in words if word in known))
 
 
-def _of_check(checked: Checked, known: Collection[str]) -> Iterator[Finding]:
+def _of_check(checked: Checked, known: Collection[str], classes: Iterable[ClassInfo]) -> Iterator[Finding]:
     if not checked.consistent:
         explained = checked.explanation
         text = checked.text if explained is None else explained.text
@@ -92,11 +95,11 @@ _BODY: Final = {
 }
 
 
-def why(explanation: Explanation) -> tuple[str, ...]:
-    """The steps of a proof, one line each, after what was asserted."""
+def why(explanation: Explanation, classes: Iterable[ClassInfo] = ()) -> tuple[str, ...]:
+    """The proof, a line a step, with what each rests on below it and further in."""
+    words = words_of(classes, ())
+    return tuple(f"{2 * line.depth * NBSP}{line.text} ({_how(line)})" for line in lines(explanation, words))
 
-    def said(triple: Triple | None) -> str:
-        return "a contradiction" if triple is None else v.spoken(triple)
 
-    asserted = [f"asserted: {said(triple)}" for triple in explanation.support]
-    return (*asserted, *(f"{step.rule}: {said(step.conclusion)}" for step in explanation.steps))
+def _how(line: Line) -> str:
+    return f"follows: {line.rule}" if line.how == "follows" and line.rule else HOW[line.how]

@@ -7,9 +7,11 @@ from datetime import datetime
 from typing import Any, Final, NamedTuple
 
 from nodes.extern.cli.output.lines import touched
+from nodes.extern.phrasing import author
 from schemas.health import Health
 from schemas.replies import LoggedCommit
 
+WARNING: Final = "warning"
 MOST: Final = 2000
 """Lines that are kept."""
 
@@ -20,9 +22,10 @@ class Line(NamedTuple):
     stamp_ns: int
     commit: int | None
     by: str
+    kind: str
+    """The source of a commit, or "warning"."""
     text: str
     names: tuple[str, ...] = ()
-    warns: bool = False
 
 
 class Log:
@@ -53,7 +56,7 @@ class Log:
     def hear(self, health: Health) -> None:
         """Take over what a node warns of, once for as long as it does."""
         if health.last_error and self._warned.get(health.node) != health.last_error:
-            self._add(Line(health.stamp_ns, None, health.node, health.last_error, warns=True))
+            self._add(Line(health.stamp_ns, None, health.node, WARNING, health.last_error))
         self._warned[health.node] = health.last_error
 
     def _add(self, line: Line) -> None:
@@ -69,8 +72,8 @@ def line_of(commit: LoggedCommit) -> Line:
     reason = f"{commit.reason}: " if commit.reason else f"{commit.verb}: " if commit.verb else ""
     notes = "".join(f" ({note})" for note in commit.notes)
     names = tuple(dict.fromkeys((*commit.changed, *commit.removed)))
-    by = f"{commit.source} {commit.agent}".strip()
-    return Line(commit.stamp_ns, commit.seq, by, f"{reason}{touched(commit)}{notes}", names)
+    text = f"{reason}{touched(commit)}{notes}"
+    return Line(commit.stamp_ns, commit.seq, author(commit), commit.source, text, names)
 
 
 def rows_of(lines: Iterable[Line], wanted: str = "", kinds: Collection[str] = ()) -> list[dict[str, Any]]:
@@ -81,7 +84,6 @@ def rows_of(lines: Iterable[Line], wanted: str = "", kinds: Collection[str] = ()
     words = wanted.casefold().split()
     rows = []
     for i, line in enumerate(lines):
-        kind = "warning" if line.warns else line.by.partition(" ")[0]
         row = {
             "id": f"c{line.commit}" if line.commit is not None else f"w{line.stamp_ns}.{i}",
             "time": clock(line.stamp_ns),
@@ -89,10 +91,10 @@ def rows_of(lines: Iterable[Line], wanted: str = "", kinds: Collection[str] = ()
             "by": line.by,
             "text": line.text,
             "names": list(line.names),
-            "kind": kind,
+            "kind": line.kind,
         }
         said = f"{row['commit']} {line.by} {line.text}".casefold()
-        if (not kinds or kind in kinds) and all(word in said for word in words):
+        if (not kinds or line.kind in kinds) and all(word in said for word in words):
             rows.append(row)
     return rows
 

@@ -1,5 +1,5 @@
 from nodes.extern.web.views import happened
-from nodes.extern.web.views.happened import Log, line_of, rows_of
+from nodes.extern.web.views.happened import WARNING, Log, line_of, rows_of
 from schemas.changes import Change
 from schemas.health import Health
 from schemas.replies import LoggedCommit
@@ -28,7 +28,7 @@ def test_commits_are_told_once_the_newest_first():
 def test_a_line_says_why_and_what():
     commit = logged(4, reason="tidied up", notes=("carried plate1 along",), changed=("cup1", "plate1"))
     line = line_of(commit)
-    assert line.by == "operator ann"
+    assert line.by == "operator/ann"
     assert line.text == "tidied up: 2 entities (carried plate1 along)"
     assert line.names == ("cup1", "plate1")
     assert line_of(logged(5)).text == "update: 1 entity"
@@ -39,7 +39,7 @@ def test_warnings_are_told_once_for_as_long_as_they_last():
     for stamp, error in enumerate(("no room", "no room", "", "no room")):
         log.hear(beat(error, stamp))
     assert [line.text for line in log.lines] == ["no room", "no room"]
-    assert all(line.warns for line in log.lines)
+    assert all(line.kind == WARNING for line in log.lines)
 
 
 def test_the_filter_takes_words_and_kinds():
