@@ -64,7 +64,7 @@ class Simulator:
         self._node = node
         models = Models(config.models, config.data)
         self._world = open_world(config.world, models, node.tick, self._classes(config))
-        self._paused = False
+        self._paused = config.still
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
         self._studio = Studio(config.cameras, bus.watched(node.session, keys.SEGMENTS))
