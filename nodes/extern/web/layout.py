@@ -27,7 +27,6 @@ from nodes.extern.web.panels.sparql import sparql
 from nodes.extern.web.panels.standing import standing
 from nodes.extern.web.panels.status import status
 from nodes.extern.web.panels.timeline import timeline
-from nodes.extern.web.proxy import PATH
 from schemas import wording
 
 Panel = Callable[[Page], None]
@@ -77,7 +76,8 @@ def layout(page: Page) -> None:
         centre = _Tabs(page, CENTRE, "Views")
         centre.draw()
         with centre.containers["Scene"].classes("semmap-scene"):
-            ui.element("iframe").props(f'src="{PATH}/{page.id}/" title="The scene in three dimensions"')
+            if page.draw_scene is not None:
+                page.draw_scene()
         with ui.element("div").classes("semmap-time"):
             timeline(page)
 

@@ -1,5 +1,5 @@
-// What has to happen in the browser: keys, in the page and in the scene's frame alike; and the look of the
-// browser, which only it knows.
+// What has to happen in the browser: keys, and the look of the browser, which only it knows. The scene's frame
+// passes on the keys that are pressed in it.
 (() => {
   const HANDLED = new Set(["/", "?", "u", "Delete", "Home", "Escape"]);
   const isWriting = (element) =>
@@ -22,14 +22,6 @@
     emitEvent("semmap_key", { key: event.key });
   }
 
-  function withFrame(frame) {
-    const listen = () => {
-      try { frame.contentDocument.addEventListener("keydown", onKey); } catch { /* not loaded yet */ }
-    };
-    frame.addEventListener("load", listen);
-    listen();
-  }
-
   function tellLook() {
     emitEvent("semmap_look", {
       dark: document.body.classList.contains("body--dark"),
@@ -39,7 +31,6 @@
 
   document.addEventListener("keydown", onKey);
   window.semmapStart = () => {
-    document.querySelectorAll(".semmap-scene iframe").forEach(withFrame);
     new MutationObserver(tellLook).observe(document.body, { attributeFilter: ["class"] });
     window.matchMedia("(max-width: 760px)").addEventListener("change", tellLook);
     tellLook();

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable, Coroutine, Iterable, Mapping
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping
 from typing import Any, Final, Literal, Protocol, TypeVar
 
 from msgspec import Struct
@@ -17,6 +17,7 @@ from nodes.extern.web.live import Happening, Live
 from schemas import errors
 from schemas.commands import Command, List
 from schemas.entities import Entity, Pose
+from schemas.relations import ViewPoint
 
 log = logging.getLogger(__name__)
 
@@ -55,6 +56,9 @@ class Moment(Struct, frozen=True):
 
 NOW: Final = Moment()
 
+Place = tuple[float, float, float, float]
+"""x, y, z [m] and yaw [rad], map frame."""
+
 
 class Past(Struct, frozen=True, kw_only=True):
     """The map as it was after a commit."""
@@ -81,6 +85,12 @@ class Page:
         """The browser has said how it looks."""
         self.refuse: Callable[[Command[Any], errors.SemmapError], None] | None = None
         """Shows why a change was refused; set by the layout."""
+        self.draw_scene: Callable[[], None] | None = None
+        """Draws the scene with its switches where it is called; set by the scene."""
+        self.pick: Callable[[], Awaitable[Place | None]] | None = None
+        """Lets a person point at a place; set by the scene."""
+        self.look: Callable[[], ViewPoint | None] | None = None
+        """Whence the scene is seen; set by the scene."""
         self._on_select: list[Callable[[], None]] = []
         self._on_moment: list[Callable[[], None]] = []
         self._on_change: list[Callable[[], None]] = []
@@ -121,6 +131,17 @@ class Page:
     def on_select(self, function: Callable[[], None]) -> None:
         """Call it when something else is selected."""
         self._on_select.append(function)
+
+    # Where a person points, and whence he looks
+
+    async def pick_place(self) -> Place | None:
+        """The place that a person clicks at in the scene next; None for none, as when there is no scene."""
+        return None if self.pick is None else await self.pick()
+
+    @property
+    def viewpoint(self) -> ViewPoint | None:
+        """Whence the scene is seen, for commands that tell left from right; None without a scene."""
+        return None if self.look is None else self.look()
 
     # The moment
 
