@@ -35,6 +35,7 @@ from schemas.explanations import Explanation
 from schemas.happenings import Difference, KeptRelation, Spells
 from schemas.language import Account, Found, Language, Understood
 from schemas.moments import When
+from schemas.plans import HEIGHTS_M, RADIUS_M, Clearance, HeightRange, Plan, Way
 from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
     Changed,
@@ -375,6 +376,30 @@ class Find(Command[Found], frozen=True, tag="find"):
     viewer: Word | None = None
     viewpoint: ViewPoint | None = None
     asker: Word | None = None
+
+
+class PlanFloor(Command[Plan], frozen=True, tag="floorplan"):
+    """Places, things and walls as outlines seen from above; with `as_of` the map as it was then.
+
+    `semmap.navigation` makes occupancy grids and GeoJSON of it.
+    """
+
+    as_of: When | None = None
+
+
+class FindWay(Command[Way], frozen=True, tag="route"):
+    """The shortest way for a robot of a `radius` [m], over places and through doors.
+
+    `from` and `to` are places, things, persons (by name, reference or class) or positions, written `2.5,1`
+    [m]. What has a part within `heights` [m] above the floor is in the way, and so are places that are
+    forbidden. A way through closed doors names them. Raises Refused, with the reason, where there is none.
+    """
+
+    from_: Word = field(name="from")
+    to: Word
+    radius: Clearance = RADIUS_M
+    heights: HeightRange = HEIGHTS_M
+    as_of: When | None = None
 
 
 class Export(Command[Document], frozen=True, tag="export"):

@@ -19,6 +19,7 @@ from nodes.coordinator.door import Door
 from nodes.coordinator.early_commands import EarlyCommands
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
+from nodes.coordinator.scene.among_walls import AmongWalls
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
 from nodes.coordinator.turns import Change, Results, Turns
@@ -61,6 +62,7 @@ class Coordinator:
         self._waiting: list[tuple[str, float, Changed, Future[Changed]]] = []
         door = self._door
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
+        among_walls = AmongWalls(self._keeping, self._ask_sim, self._bridge.ask_later)
         running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
         relay = self._bridge.relay
         of_the_map = calls.by_verb(
@@ -92,6 +94,8 @@ class Coordinator:
             c.Diff.answered_by(relay),
             c.WasWhen.answered_by(relay),
             c.Export.answered_by(relay),
+            c.PlanFloor.answered_by(among_walls.plan),
+            c.FindWay.answered_by(among_walls.route),
             c.Classes.answered_by(relay),
             c.Properties.answered_by(relay),
             c.Sparql.answered_by(relay),

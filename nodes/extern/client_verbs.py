@@ -31,6 +31,7 @@ from schemas.commands import Command
 from schemas.entities import Entity, Value
 from schemas.moments import When
 from schemas.packing import packed
+from schemas.plans import HEIGHTS_M, RADIUS_M, HeightRange, Way
 from schemas.scenes import Picture
 
 if TYPE_CHECKING:
@@ -229,6 +230,24 @@ def _list_as(
     return commands.List(class_=class_, format=format, as_of=as_of)
 
 
+def _route(
+    from_: str | Sequence[float],
+    to: str | Sequence[float],
+    *,
+    radius: float = RADIUS_M,
+    heights: HeightRange = HEIGHTS_M,
+    as_of: When | None = None,
+) -> Command[Way]:
+    """The shortest way for a robot of a `radius` [m], over places and through doors.
+
+    From and to places, things or persons (by name, reference or class), or positions (x, y) [m] in the map
+    frame. What has a part within `heights` [m] above the floor is in the way. A way through closed doors
+    names them in `closed`: it is none until they are opened. Raises Refused, with the reason, where there is none.
+    """
+    start, end = (word if isinstance(word, str) else ",".join(map(repr, word)) for word in (from_, to))
+    return commands.FindWay(from_=start, to=end, radius=radius, heights=heights, as_of=as_of)
+
+
 def _entities(reply: tuple[Entity, ...] | dict[str, Any]) -> tuple[Entity, ...]:
     assert isinstance(reply, tuple)
     return reply
@@ -275,6 +294,8 @@ class Verbs:
     diff = Verb(commands.Diff)
     when = Verb(commands.WasWhen)
     export = Verb(commands.Export)
+    floorplan = Verb(commands.PlanFloor)
+    route = Verb(_route)
     classes = Verb(commands.Classes)
     properties = Verb(commands.Properties)
     status = Verb(commands.Status)

@@ -25,6 +25,8 @@ MOST_CELLS: Final = 16_000_000
 _MARGIN_M: Final = 0.5
 _DOORWAY_M: Final = 0.4
 """How thick a wall may be for a door to lead through it."""
+_OWN_SHARE: Final = 0.4
+"""Of its cells, in which a place must be alone."""
 _TOUCH: Final = 1e-6
 """What only touches a cell is not in it [m]."""
 
@@ -218,13 +220,21 @@ def forbidden(plan: Plan, frame: Frame) -> Mask:
 
 
 def rooms_by_cell(plan: Plan, frame: Frame) -> NDArray[np.int32]:
-    """(height, width) which place each cell is in, the smallest that is no part of a room; -1 for none."""
+    """(height, width) which place each cell is in, the smallest that is no part of a room; -1 for none.
+
+    What is mostly made up of other places, as a flat is of its rooms, is no place to be in.
+    """
     found = np.full((frame.height, frame.width), -1, dtype=np.int32)
+    sizes: dict[int, int] = {}
     order = [k for k, place in enumerate(plan.places) if not place.part]
     for k in sorted(order, key=lambda k: -_area(plan.places[k])):
         mask = frame.mask()
         frame.add_rings(mask, plan.places[k].rings)
         found[mask] = k
+        sizes[k] = int(mask.sum())
+    own = np.bincount(found[found >= 0], minlength=len(plan.places))
+    whole = [k for k, size in sizes.items() if own[k] < _OWN_SHARE * size]
+    found[np.isin(found, whole)] = -1
     return found
 
 

@@ -1,6 +1,7 @@
 """Occupancy grids as ROS's map server keeps them: a YAML file and an image, PNG or PGM.
 
-The first row of the image is the one with the greatest y. Dark is occupied, light is free, in between unknown.
+The first row of the image is the one with the greatest y. Dark is occupied, light is free,
+the rest unknown.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ _WHITE, _GREY, _BLACK = 254, 205, 0
 _OCCUPIED_FROM, _FREE_TO = 0.65, 0.196
 """With these, grey is unknown: (255 - 205) / 255 is just above the second."""
 _COARSEST_M: Final = 10.0
+_GAP = rb"((?:\s+|#[^\n]*\n)+)"
+_PGM_HEAD = re.compile(rb"P([25])" + _GAP + rb"(\d+)" + _GAP + rb"(\d+)" + _GAP + rb"(\d+)\s")
 
 
 @dataclass(frozen=True)
@@ -147,7 +150,10 @@ def _origin(text: str, name: str) -> tuple[float, float, float]:
 
 
 def read_image(content: bytes, name: str, decode: Callable[[bytes], Pixels]) -> Pixels:
-    """The grey pixels (height, width) of a PGM file, or of a PNG file, which `decode` reads. Raises BadFile."""
+    """The grey pixels (height, width) of a PGM file, or of a PNG file, which `decode` reads.
+
+    Raises BadFile.
+    """
     if content[:2] in (b"P2", b"P5"):
         return _pgm(content, name)
     if content[:8] == b"\x89PNG\r\n\x1a\n":
@@ -156,16 +162,12 @@ def read_image(content: bytes, name: str, decode: Callable[[bytes], Pixels]) -> 
 
 
 def _pgm(content: bytes, name: str) -> Pixels:
-    head = re.match(
-        rb"P([25])((?:\s+|#[^\n]*\n)+)(\d+)((?:\s+|#[^\n]*\n)+)(\d+)((?:\s+|#[^\n]*\n)+)(\d+)\s", content
-    )
+    head = _PGM_HEAD.match(content)
     if head is None:
         raise errors.BadFile(f"{name} is not a PGM file: its head is broken")
     width, height, most = int(head[3]), int(head[5]), int(head[7])
     if not (width > 0 and height > 0 and width * height <= MOST_CELLS and 0 < most < 65536):
-        raise errors.BadFile(
-            f"{name}: a map has at most {MOST_CELLS:,} pixels, and this is {width} x {height}"
-        )
+        raise errors.BadFile(f"{name} is {width} x {height}; a map has at most {MOST_CELLS:,} pixels")
     body = content[head.end() :]
     try:
         if head[1] == b"2":
@@ -191,3 +193,9 @@ def grid_of(described: Described, pixels: Pixels) -> OccupancyGrid:
         cells[occupied > described.occupied_thresh] = OCCUPIED
     height, width = pixels.shape
     return OccupancyGrid(Frame(0.0, 0.0, described.resolution, width, height), cells[::-1].copy())
+
+
+def pgm(pixels: Pixels) -> bytes:
+    """A PGM file of grey pixels (height, width)."""
+    height, width = pixels.shape
+    return b"P5\n%d %d\n255\n" % (width, height) + pixels.tobytes()

@@ -21,6 +21,7 @@ _MODULES = {
     "past": ("undo", "history", "diff", "when", "last-seen"),
     "run": ("run",),
     "perceive": ("perceive",),
+    "navigation": ("floorplan", "route"),
     "scene": ("move", "pause", "step", "reset", "picture"),
     "replay": ("replay",),
     "lifecycle": ("up", "down", "node", "repair"),
