@@ -29,11 +29,11 @@ def write_floorplan(
     as_of: When | None = None,
     furniture: bool = True,
 ) -> tuple[Path, ...]:
-    """Write the plan of a system's map, of the kind that the name of `file` says; the files that were written.
+    """Write the plan of a system's map, of the kind that the name of `file` says; answers what was written.
 
-    A grid (`.png`, `.pgm`) comes with its `.yaml`, as ROS's map server has them: `resolution` [m]
-    a pixel; what has a part within `heights` [m] above the floor is occupied. Where places are forbidden, it comes
-    with a mask of them, too. Raises BadRequest, Refused.
+    A grid (`.png`, `.pgm`) comes with its `.yaml`, as ROS's map server has them: `resolution` is metres a
+    pixel, and what has a part within `heights` [m] above the floor is occupied. Where places are forbidden,
+    it comes with a mask of them, too. Raises BadRequest, Refused.
     """
     extras.require("a floor plan", "kb")
     kind = file.suffix.lower()
