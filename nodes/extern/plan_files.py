@@ -47,9 +47,7 @@ def _png(content: bytes) -> Pixels:
         with Image.open(io.BytesIO(content)) as picture:
             width, height = picture.size
             if width * height > MOST_CELLS:
-                raise errors.BadFile(
-                    f"the image is {width} x {height}; a plan has at most {MOST_CELLS:,} pixels"
-                )
+                raise errors.BadFile(f"the image is {width} x {height}; it has at most {MOST_CELLS:,} pixels")
             return np.asarray(picture.convert("L"), dtype=np.uint8)
     except (OSError, SyntaxError, ValueError) as error:
         raise errors.BadFile(f"the image is not a PNG file that can be read: {error}") from None

@@ -26,7 +26,7 @@ Labels = NDArray[np.int32]
 WIDEST_DOOR_M: Final = 1.3
 LEAST_ROOM_M2: Final = 2.0
 _NARROWED: Final = 0.9
-_BEYOND_M: Final = 0.6
+_BEYOND_M: Final = 0.7
 """A neck has less than that share of the clearance that there is within so far, on both sides."""
 _SPECK_M: Final = 0.12
 """Obstacles smaller than this across are noise."""
@@ -110,7 +110,10 @@ def _islands(free: Mask, resolution: float) -> Mask:
     found: Mask = np.zeros_like(free)
     for k, (rows, columns) in enumerate(ndimage.find_objects(numbered), start=1):
         deep, wide = rows.stop - rows.start, columns.stop - columns.start
-        if thick[k - 1] and max(deep, wide) * resolution <= _LARGEST_ISLAND_M:
+        at_the_edge = 0 in (rows.start, columns.start) or (
+            rows.stop == free.shape[0] or columns.stop == free.shape[1]
+        )
+        if thick[k - 1] and not at_the_edge and max(deep, wide) * resolution <= _LARGEST_ISLAND_M:
             found[rows, columns] |= numbered[rows, columns] == k
     return found
 
