@@ -192,13 +192,21 @@ def find_way(plan: Plan, start: Point | str, end: Point | str, radius_m: float, 
     """
     ground = Ground(plan, radius_m, heights)
     tries: tuple[dict[str, bool], ...] = ({}, {"through_closed": True})
+    no_room: errors.Refused | None = None
     for allowed in tries:
         free = ground.passable(**allowed)
-        ends = [_end(ground, word, free) for word in (start, end)]
+        try:
+            ends = [_end(ground, word, free) for word in (start, end)]
+        except errors.Refused as error:
+            no_room = error
+            continue
         cells = shortest(free, ends[0].cells, ends[1].cells)
         if cells is not None:
             return _way(ground, ends, cells, free)
-    raise errors.Refused(_why_none(ground, start, end))
+    reason = _why_none(ground, start, end)
+    if no_room is not None and "forbidden" not in reason:
+        raise no_room
+    raise errors.Refused(reason)
 
 
 def _end(ground: Ground, word: Point | str, free: Mask) -> End:
@@ -253,7 +261,10 @@ def _why_none(ground: Ground, start: Point | str, end: Point | str) -> str:
         {"through_things": True, "through_forbidden": True},
     ):
         free = ground.passable(through_closed=True, **allowed)
-        ends = [_end(ground, word, free) for word in (start, end)]
+        try:
+            ends = [_end(ground, word, free) for word in (start, end)]
+        except errors.Refused:
+            continue
         cells = shortest(free, ends[0].cells, ends[1].cells)
         if cells is None:
             continue

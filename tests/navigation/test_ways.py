@@ -67,6 +67,16 @@ def test_forbidden_places_are_gone_around_or_named():
     assert way(plan(DOOR, places=(*PLACES, corner)), "west", "east").metres > 3.0
 
 
+def test_what_is_in_a_forbidden_place_is_not_reached_and_that_is_said():
+    west, east = PLACES
+    made = plan(
+        DOOR, thing("crate1", box(6.0, 2.0, 7.0, 3.0)), places=(west, structs.replace(east, forbidden=True))
+    )
+    for end in ("east", "crate1", (5.0, 1.0)):
+        with pytest.raises(Refused, match="through east, which is forbidden"):
+            way(made, "west", end)
+
+
 def test_things_are_reached_beside_them_in_their_own_room():
     shelf = thing("shelf1", box(4.1, 3.0, 4.5, 4.0, high=1.8))
     found = way(plan(DOOR, shelf), (3.0, 3.5), "shelf1")
