@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 import numpy as np
-from viser import BatchedGlbHandle, LabelHandle, SceneApi
+from viser import BatchedGlbHandle, SceneApi
 
 from nodes.drawing.palette import colour_of
+from nodes.extern.web.scene.marks import Written
 from nodes.extern.web.scene.meshes import cube, glb, linear, srgb
 from schemas.entities import Entity
 from schemas.scenes import Surface
 
 _SHEET_M = 0.01
-_PALE = 0.72
+_ROOMS_IN_ROOM = 2
+_PALE = 0.6
 """How much of a room's colour is the background's."""
-_NAME_M = 0.24
 
 
 class Rooms:
@@ -25,7 +26,8 @@ class Rooms:
         self._scene = scene
         self._paper = 0.02 if dark else 1.0
         self._drawn: tuple[tuple[object, ...], ...] = ()
-        self._names: dict[str, LabelHandle] = {}
+        self.names: dict[str, Written] = {}
+        """What the places are called, and where that may be written."""
         self._walls: BatchedGlbHandle | None = None
 
     def show(self, entities: Mapping[str, Entity]) -> None:
@@ -39,7 +41,7 @@ class Rooms:
             return
         self._drawn = drawn
         self._sheets([place for place in places if place.size_m is not None])
-        self._write(places)
+        self.names = {place.name: _written(place) for place in places if not _is_around(place, places)}
 
     def _sheets(self, places: list[Entity]) -> None:
         if not places:
@@ -64,24 +66,6 @@ class Rooms:
             cast_shadow=False,
         )
 
-    def _write(self, places: Iterable[Entity]) -> None:
-        for handle in self._names.values():
-            handle.remove()
-        self._names.clear()
-        for number, place in enumerate(places):
-            assert place.pose is not None
-            x, y, z = place.pose.position_m
-            depth = place.size_m[1] / 2.0 if place.size_m is not None else 0.0
-            self._names[place.name] = self._scene.add_label(
-                f"/rooms/names/{number}",
-                _called(place),
-                position=(x, y - max(0.0, depth - _NAME_M), z + 0.02),
-                font_size_mode="scene",
-                font_scene_height=_NAME_M,
-                depth_test=True,
-                anchor="bottom-center",
-            )
-
     def walls(self, surface: Surface | None) -> None:
         """Draw the walls, seen through; None for none."""
         if self._walls is not None:
@@ -101,6 +85,24 @@ class Rooms:
 
 def _area(place: Entity) -> float:
     return place.size_m[0] * place.size_m[1] if place.size_m is not None else 0.0
+
+
+def _is_around(place: Entity, places: Iterable[Entity]) -> bool:
+    """Does it have several others in it, so that its name belongs nowhere in particular?"""
+    if place.pose is None or place.size_m is None:
+        return False
+    (x, y, _), (width, depth, _) = place.pose.position_m, place.size_m
+    inner = 0
+    for other in places:
+        if other is not place and other.pose is not None:
+            ox, oy, _ = other.pose.position_m
+            inner += abs(ox - x) <= width / 2.0 and abs(oy - y) <= depth / 2.0
+    return inner > _ROOMS_IN_ROOM
+
+
+def _written(place: Entity) -> Written:
+    assert place.pose is not None
+    return _called(place).upper(), place.pose.position_m
 
 
 def _called(place: Entity) -> str:
