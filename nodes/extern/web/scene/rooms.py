@@ -15,6 +15,8 @@ from schemas.scenes import Surface
 
 _SHEET_M = 0.01
 _ROOMS_IN_ROOM = 2
+_LIGHT, _DARK = 1.0, 0.03
+"""The background, as linear light."""
 _PALE = 0.6
 """How much of a room's colour is the background's."""
 
@@ -22,10 +24,11 @@ _PALE = 0.6
 class Rooms:
     """The places of the map and the walls of the world, in one tab's view."""
 
-    def __init__(self, scene: SceneApi, *, dark: bool) -> None:
+    def __init__(self, scene: SceneApi) -> None:
         self._scene = scene
-        self._paper = 0.02 if dark else 1.0
+        self._paper = _LIGHT
         self._drawn: tuple[tuple[object, ...], ...] = ()
+        self._places: list[Entity] = []
         self.names: dict[str, Written] = {}
         """What the places are called, and where that may be written."""
         self._walls: BatchedGlbHandle | None = None
@@ -39,9 +42,16 @@ class Rooms:
         drawn = tuple((p.name, p.class_, p.pose, p.size_m, _called(p)) for p in places)
         if drawn == self._drawn:
             return
-        self._drawn = drawn
+        self._drawn, self._places = drawn, places
         self._sheets([place for place in places if place.size_m is not None])
         self.names = {place.name: _written(place) for place in places if not _is_around(place, places)}
+
+    def darken(self, dark: bool) -> None:
+        """Let the floors go with a dark background, or a light one."""
+        paper = _DARK if dark else _LIGHT
+        if paper != self._paper:
+            self._paper = paper
+            self._sheets([place for place in self._places if place.size_m is not None])
 
     def _sheets(self, places: list[Entity]) -> None:
         if not places:

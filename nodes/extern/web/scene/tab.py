@@ -79,6 +79,7 @@ class TabScene:
         page.on_change(self._draw)
         page.on_poses(self._on_poses)
         page.on_select(self._on_select)
+        page.on_look(self._on_look)
         page.pick, page.look = self.pick_place, self.viewpoint
 
     # A frame comes and goes
@@ -89,7 +90,7 @@ class TabScene:
         scene.configure_environment_map(None)
         scene.add_light_hemisphere("/sky", sky_color=_SKY, ground_color=_GROUND, intensity=1.6)
         self._bodies = Bodies(scene, self._glb_of, self._hop(self._on_click))
-        self._rooms = Rooms(scene, dark=False)
+        self._rooms = Rooms(scene)
         self._labels = Labels(scene, "/names", depth_test=False)
         self._strong_labels = Labels(scene, "/selected/names", scale=1.15)
         self._line_labels = Labels(scene, "/relations/names", scale=0.95)
@@ -103,6 +104,7 @@ class TabScene:
         self._gizmo = Gizmo(scene, self._hop(self._on_drag))
         self._seen = Seen(scene, self.page.live)
         self._listen(client)
+        self._on_look()
         self._known.clear()
         self._look_over(client)
         self._rooms.walls(self._assets.walls if "walls" in self.on else None)
@@ -168,6 +170,11 @@ class TabScene:
         aspect = camera.image_width / max(1, camera.image_height)
         eye, target = first_view(self._assets.extent(self.page.state), aspect)
         camera.position, camera.look_at = eye, target
+
+    def _on_look(self) -> None:
+        if self._client is not None:
+            self._client.gui.configure_theme(dark_mode=self.page.dark)
+            self._rooms.darken(self.page.dark)
 
     # Drawing
 
