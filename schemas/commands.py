@@ -372,10 +372,14 @@ class Find(Command[Found], frozen=True, tag="find"):
 
 
 class Export(Command[Document], frozen=True, tag="export"):
-    """Export the map as a document, checked first; with `inferred` including inferred facts."""
+    """Export the map as a document, checked first; with `inferred` including inferred facts.
+
+    With `as_of` the map as it was then, as it was asserted.
+    """
 
     format: RdfFormat = "rdfxml"
     inferred: bool = False
+    as_of: When | None = None
 
 
 class Classes(Command[tuple[ClassInfo, ...]], frozen=True, tag="classes"):

@@ -77,6 +77,8 @@ class Page:
         self.state: State = live
         self.refuse: Callable[[Command[Any], errors.SemmapError], None] | None = None
         """Shows why a change was refused; set by the layout."""
+        self.watch: Callable[[str, bool], object] | None = None
+        """Watches a query, with what follows or without; set by the panel of standing queries."""
         self._on_select: list[Callable[[], None]] = []
         self._on_moment: list[Callable[[], None]] = []
         self._on_change: list[Callable[[], None]] = []
