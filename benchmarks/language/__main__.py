@@ -11,7 +11,7 @@ from typing import Any
 from benchmarks.language import ablations, baseline, errors, finding, trials
 from benchmarks.language.scoring import Scores, scores
 from benchmarks.table import Row, as_json, lines
-from nodes.language.interpretation import shipped
+from nodes.language.understanding.interpretation import shipped
 from nodes.training.language import corpus
 from nodes.training.language.corpus import Example
 

@@ -10,7 +10,7 @@ from typing import Any, Final
 from benchmarks.language import trials
 from benchmarks.language.scoring import scores
 from benchmarks.table import Row
-from nodes.language.interpretation import Seen
+from nodes.language.understanding.interpretation import Seen
 from nodes.training.language.corpus import Example
 from nodes.training.language.household import household
 

@@ -9,8 +9,8 @@ from rapidfuzz.distance import Levenshtein
 
 from benchmarks.language.trials import Pairs, Split, scene_of
 from nodes.language import lexicon
-from nodes.language.grounding import Thing
-from nodes.language.sentence import Sentence, sentence
+from nodes.language.understanding.grounding import Thing
+from nodes.language.understanding.sentence import Sentence, sentence
 from nodes.training.language.corpus import Example
 from schemas.language import Argument, Frame, Grounded, Understood
 

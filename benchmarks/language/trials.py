@@ -14,8 +14,8 @@ from statistics import median
 from typing import Any
 
 from nodes.language import lexicon
-from nodes.language.grounding import Scene, Thing, scene
-from nodes.language.interpretation import Interpreter, Seen, shipped
+from nodes.language.understanding.grounding import Scene, Thing, scene
+from nodes.language.understanding.interpretation import Interpreter, Seen, shipped
 from nodes.language.vocabulary import Vocabulary
 from nodes.training.language import made
 from nodes.training.language.__main__ import TIMES_MADE

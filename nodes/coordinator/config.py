@@ -9,7 +9,7 @@ from typing import Literal
 
 from nodes.bus import Network
 
-Truth = Literal["map", "scene", "perceived"]
+Truth = Literal["map", "scene", "perceived", "replayed"]
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,8 @@ class Thresholds:
 class CoordinatorConfig:
     """`truth` says who owns existence: in `map` the scene follows the map, in `scene` the other way.
 
-    In `perceived` the simulator stands for the world itself: only perception updates the map.
+    In `perceived` the simulator stands for the world itself: only perception updates the map. In
+    `replayed` the map is the past, which the scene follows and never changes.
     """
 
     truth: Truth = "map"

@@ -1,1 +1,1 @@
-"""Understanding what people say about a map: words, phrases, frames, entities."""
+"""What people say about a map and what is said of it: words, nouns and phrases, which all parts share."""

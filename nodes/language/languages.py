@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import functools
 
-from nodes.language import italian, lexicon
+from nodes.language import lexicon
+from nodes.language.understanding import italian
 from nodes.language.words import is_verb, lemma, split
 from schemas.language import Language
 

@@ -8,9 +8,10 @@ import pytest
 from benchmarks.language import __main__ as language
 from benchmarks.language import ablations, errors, trials
 from benchmarks.language.scoring import scores
-from nodes.language import lexicon, predicates, roles
-from nodes.language.grounding import Thing
-from nodes.language.sentence import sentence
+from nodes.language import lexicon
+from nodes.language.understanding import predicates, roles
+from nodes.language.understanding.grounding import Thing
+from nodes.language.understanding.sentence import sentence
 from nodes.training.language import corpus
 from nodes.training.language.corpus import Example, Filled, Role
 from schemas.language import Argument, Frame, Grounded, Understood

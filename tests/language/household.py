@@ -1,7 +1,7 @@
 """A small household to speak of."""
 
 from nodes.language import lexicon
-from nodes.language.grounding import Thing, scene
+from nodes.language.understanding.grounding import Thing, scene
 from nodes.training.language.household import household
 
 LEXICON = lexicon.load()

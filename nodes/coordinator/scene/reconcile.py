@@ -7,7 +7,8 @@ come from the scene, the body is ordered there; otherwise a body that rests else
 follows. The same goes for joints, by the commits that concern these.
 
 If only perception updates the map (`perceived`), nothing is to be done: an entity without a body is a belief,
-a body without an entity has not been seen yet, and a pose that differs will be seen.
+a body without an entity has not been seen yet, and a pose that differs will be seen. If the map is
+`replayed`, every pose of it is an order, also those that came from the scene, and the map follows nothing.
 """
 
 from __future__ import annotations
@@ -75,14 +76,15 @@ def reconcile(
                 if body is not None:
                     delete.append(name)
         else:
-            if _ordered_since(entity, body):
+            replayed = truth == "replayed"
+            if _ordered_since(entity, body) or (replayed and _posed_since(entity, body)):
                 assert entity.pose is not None
                 place.append(Placement(name=name, pose=entity.pose, commit=entity.pose_provenance.commit))
-            elif _moved(entity, body, thresholds):
+            elif not replayed and _moved(entity, body, thresholds):
                 follow.append(Placement(name=name, pose=body.pose))
-            if body.joints and _joints_ordered_since(entity, body):
+            if body.joints and _joints_ordered_since(entity, body, whoever=replayed):
                 joints.append(joint_order(entity, body, thresholds))
-            elif body.joints and body.resting and _stand_elsewhere(entity, body, thresholds):
+            elif body.joints and not replayed and body.resting and _stand_elsewhere(entity, body, thresholds):
                 opened.append(name)
     for name, body in bodies.items():
         if name not in entities:
@@ -162,9 +164,10 @@ def _tolerance(joint: Joint, thresholds: Thresholds) -> float:
     return thresholds.distance_m if joint.kind == "slide" else thresholds.angle_rad
 
 
-def _joints_ordered_since(entity: Entity, body: Body) -> bool:
+def _joints_ordered_since(entity: Entity, body: Body, *, whoever: bool = False) -> bool:
+    """Has the map said since how they are to stand: by anybody but the scene, or by `whoever`?"""
     said = entity.joint_provenance
-    return said is not None and said.source != "scene" and said.commit > body.joint_commit
+    return said is not None and (whoever or said.source != "scene") and said.commit > body.joint_commit
 
 
 def _reshaped(entity: Entity, body: Body) -> bool:
@@ -177,8 +180,11 @@ def _comes_with(entity: Entity, body: Body, coming: Set[int]) -> bool:
 
 
 def _ordered_since(entity: Entity, body: Body) -> bool:
-    posed = entity.pose_provenance
-    return entity.pose is not None and posed.source != "scene" and posed.commit > body.commit
+    return entity.pose_provenance.source != "scene" and _posed_since(entity, body)
+
+
+def _posed_since(entity: Entity, body: Body) -> bool:
+    return entity.pose is not None and entity.pose_provenance.commit > body.commit
 
 
 def _moved(entity: Entity, body: Body, thresholds: Thresholds) -> bool:

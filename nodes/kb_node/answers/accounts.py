@@ -11,9 +11,10 @@ from nodes.kb_node.answers.sightings import Sightings
 from nodes.kb_node.answers.whereabouts import Now
 from nodes.kb_node.relations.selection import only_meant
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.language import account, nouns
-from nodes.language.account import Account
-from nodes.language.inventory import Inventory
+from nodes.language import nouns
+from nodes.language.telling import account
+from nodes.language.telling.account import Account
+from nodes.language.telling.inventory import Inventory
 from nodes.language.vocabulary import spoken
 from ontology.model_shapes import own_size_m
 from schemas import language

@@ -13,7 +13,7 @@ from nodes.kb_node.relations.measuring import measures
 from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.language import nouns
-from nodes.language.inventory import How, Inventory, Place, Thing
+from nodes.language.telling.inventory import How, Inventory, Place, Thing
 from nodes.language.vocabulary import spoken
 from ontology.model_shapes import own_size_m
 from schemas.entities import Entity

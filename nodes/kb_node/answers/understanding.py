@@ -11,8 +11,8 @@ from nodes.kb_node.answers.finding import Finding
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.language import lexicon
-from nodes.language.grounding import Scene, Thing, scene
-from nodes.language.interpretation import shipped
+from nodes.language.understanding.grounding import Scene, Thing, scene
+from nodes.language.understanding.interpretation import shipped
 from nodes.language.vocabulary import Vocabulary, vocabulary
 from nodes.language.words import split
 from schemas import errors

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from itertools import combinations
 from typing import Any, Final
 
@@ -11,10 +11,8 @@ from nodes.language.finding.description import (
     Affords,
     Among,
     AnyOf,
-    Axis,
     Description,
     Has,
-    Head,
     Not,
     Of,
     Order,
@@ -22,34 +20,12 @@ from nodes.language.finding.description import (
     Quality,
     Related,
     Restriction,
-    Sized,
     State,
     Unknown,
 )
+from nodes.language.finding.noun_words import Draft, NounWords
 from nodes.language.finding.reading import Reading, forms
 
-_BOUNDS: Final = (
-    *("relations", "relative", "where", "be", "have", "lack", "not", "except", "no", "and", "or", "of"),
-    *("possessive", "afford", "from"),
-)
-"""Kinds of words that end the words around a noun."""
-_BEFORE_A_NOUN: Final = (
-    *("quality", "states", "sizes", "sides", "ordinals", "numbers", "mine", "he", "filler", "every"),
-)
-_DETERMINERS: Final = (
-    *(
-        "every",
-        "pair",
-        "bounds",
-        "definite",
-        "indefinite",
-        "mine",
-        "he",
-        "filler",
-        "numbers",
-        "plural_determiner",
-    ),
-)
 _BEGINS: Final = (
     *("definite", "indefinite", "noun", "it", "one", "mine", "quality", "numbers", "sizes"),
     *("plural_determiner", "anything", "ordinals", "sides", "every", "he"),
@@ -74,44 +50,12 @@ def parses(reading: Reading) -> Iterator[tuple[Description, ...]]:
             yield _Parser(reading, frozenset(high)).all()
 
 
-@dataclass(slots=True)
-class _Draft:
-    """A description as it is being read."""
-
-    first: int
-    head: Head = "one"
-    key: str = ""
-    noun: str = ""
-    is_definite: bool = True
-    is_plural: bool = False
-    number: int | None = None
-    beyond: int = 0
-    restrictions: list[Restriction] = field(default_factory=list)
-    place: int | None = None
-    axis: tuple[Axis, int] | None = None
-    said_order: str = ""
-    to: Description | None = None
-
-
-class _Parser:
+class _Parser(NounWords):
     def __init__(self, reading: Reading, high: frozenset[int] = frozenset()) -> None:
-        self._r = reading
-        self._words = reading.words
+        super().__init__(reading)
         self._high = high
         self.inner: list[int] = []
         """Where phrases begin that may belong to what was named before."""
-
-    # What stands where
-
-    def _sense(self, kind: str, i: int) -> tuple[int, Any] | None:
-        return self._r.senses[i].get(kind) if i < len(self._words) else None
-
-    def _length(self, kind: str, i: int) -> int:
-        found = self._sense(kind, i)
-        return 0 if found is None else found[0]
-
-    def _said(self, first: int, end: int) -> str:
-        return " ".join(self._words[first:end])
 
     # Phrases
 
@@ -148,7 +92,7 @@ class _Parser:
         return iter(found)
 
     def _phrase(self, i: int, depth: int, owner: Restriction | None = None) -> tuple[Description, int]:
-        draft = _Draft(i)
+        draft = Draft(i)
         if owner is not None:
             draft.restrictions.append(owner)
         if (it := self._length("it", i)) and not self._length("noun", i) > it:
@@ -168,7 +112,7 @@ class _Parser:
         i = self._after_the_noun(draft, i, depth)
         return self._done(draft, i), i
 
-    def _done(self, draft: _Draft, end: int) -> Description:
+    def _done(self, draft: Draft, end: int) -> Description:
         order = None
         if draft.axis is not None or draft.place is not None:
             axis, sign = draft.axis or ("", 1)
@@ -178,187 +122,9 @@ class _Parser:
             draft.is_plural, draft.number, tuple(draft.restrictions), order,
         )  # fmt: skip
 
-    def _determiners(self, draft: _Draft, i: int) -> int:
-        while i < len(self._words):
-            best = max(_DETERMINERS, key=lambda kind: self._length(kind, i))
-            length, value = self._sense(best, i) or (0, None)
-            if not length or self._length("noun", i) > length or self._length("anything", i) > length:
-                break
-            if self._length("ordinals", i) > length or self._length("sides", i) > length:
-                break
-            if self._length("plural_determiner", i) == length or self._length("every", i) == length:
-                draft.is_plural = True
-            if self._length("pair", i) == length:
-                draft.number, draft.is_plural = 2, True
-            if best == "indefinite":
-                draft.is_definite = False
-            elif best == "mine":
-                draft.restrictions.append(Owned(self._said(i, i + length)))
-            elif best == "he":
-                draft.restrictions.append(Owned(self._said(i, i + length), Description("it", "it")))
-            elif best == "bounds":
-                draft.is_definite, draft.beyond = False, int(value or 0)
-            elif best == "numbers" and value:
-                draft.is_definite = draft.is_definite and draft.first != i
-                self._number(draft, value)
-            i += length
-        return i
-
-    def _number(self, draft: _Draft, value: int) -> None:
-        draft.number = value + draft.beyond
-        draft.is_plural = draft.number > 1
-
-    def _run_end(self, i: int) -> int:
-        """Behind the words around a noun that begin at i."""
-        seen_noun = False
-        while i < len(self._words):
-            noun = self._length("noun", i)
-            bound = max(self._length(kind, i) for kind in _BOUNDS)
-            beside = max(self._length(kind, i) for kind in _BEFORE_A_NOUN)
-            if anything := self._length("anything", i):
-                i, seen_noun = i + anything, True
-            elif noun > 1 and noun >= bound:
-                i, seen_noun = i + noun, True
-            elif self._joins_qualities(i) and not seen_noun:
-                i += 1
-            elif (bound and (bound >= beside or self._length("states", i) == beside)) or (
-                beside and self._length("sides", i) == beside and seen_noun and beside > 1
-            ):
-                break
-            else:
-                seen_noun = seen_noun or (bool(noun) and not self._followed_by_noun(i + noun))
-                i += 1 if not beside or noun else beside
-        return i
-
-    def _joins_qualities(self, i: int) -> bool:
-        """Whether an *and* or *or* is between two adjectives before a noun."""
-        if not (self._length("and", i) or self._length("or", i)):
-            return False
-        adjectives = ("quality", "states", "sizes")
-        following = any(self._length(kind, i + 1) for kind in adjectives)
-        before = i > 0 and any(self._length(kind, i - 1) for kind in adjectives)
-        return following and before and self._r.nouns.describing.head_is_last
-
-    def _followed_by_noun(self, i: int) -> bool:
-        return bool(self._length("noun", i))
-
-    def _around_the_noun(self, draft: _Draft, i: int) -> int:
-        end = self._run_end(i)
-        head = self._head(draft, i, end)
-        if head is None:
-            self._modifiers(draft, i, end)
-            return end
-        first, last = head
-        self._modifiers(draft, i, first)
-        self._modifiers(draft, last, end)
-        return end
-
-    def _head(self, draft: _Draft, first: int, end: int) -> tuple[int, int] | None:
-        """Where the noun is; the last one, or the first, as the language has it."""
-        is_last = self._r.nouns.describing.head_is_last
-        spans = [
-            (i, i + length)
-            for i in range(first, end)
-            for length in range(1, end - i + 1)
-            if self._sense(f"noun{length}", i) is not None
-            and not (length > 1 and i > first and self._joins_qualities(i - 1))
-        ]
-        if spans:
-            if is_last:
-                start, stop = max(spans, key=lambda span: (span[1], span[1] - span[0]))
-            else:
-                start, stop = min(spans, key=lambda span: (span[0], span[0] - span[1]))
-            sense = self._sense(f"noun{stop - start}", start)
-            assert sense is not None
-            draft.head, draft.key, draft.noun = "noun", sense[1], self._said(start, stop)
-            self._say_number(draft, stop - 1 if is_last else start)
-            return start, stop
-        for kind in ("anything", "one"):
-            for i in range(first, end):
-                if length := self._length(kind, i):
-                    draft.head = "anything" if kind == "anything" else "one"
-                    if kind == "anything":
-                        articles = ("definite", "ordinals", "sides")
-                        draft.is_definite = any(
-                            self._length(article, j) for article in articles for j in range(draft.first, i)
-                        )
-                    if self._words[i] in ("ones", "things", "objects"):
-                        draft.is_plural = True
-                    return i, i + length
-        return None
-
-    def _say_number(self, draft: _Draft, i: int) -> None:
-        describing, word = self._r.nouns.describing, self._words[i]
-        if word in describing.pluralia:
-            if draft.number is None:
-                draft.is_plural = draft.is_plural and not self._only_agrees(draft)
-        elif describing.head_is_last and describing.base(word) != word and word.endswith(("s", "ves", "men")):
-            draft.is_plural = True
-
-    def _only_agrees(self, draft: _Draft) -> bool:
-        """Whether it is plural in its article alone: le chiavi."""
-        return not any(self._length("every", i) for i in range(draft.first, len(self._words)))
-
-    def _modifiers(self, draft: _Draft, i: int, end: int) -> None:
-        either: Restriction | None = None
-        while i < end:
-            if self._length("and", i) or self._length("or", i):
-                either = draft.restrictions.pop() if draft.restrictions else None
-                i += 1
-                continue
-            i = self._modifier(draft, i, end)
-            if either is not None and draft.restrictions:
-                draft.restrictions.append(AnyOf((either, draft.restrictions.pop())))
-                either = None
-        if either is not None:
-            draft.restrictions.append(either)
-
-    def _modifier(self, draft: _Draft, i: int, end: int) -> int:
-        """One word, or several, beside the noun; where the next one is."""
-        kinds = [kind for kind in _BEFORE_A_NOUN if 0 < self._length(kind, i) <= end - i]
-        noun = self._sense("noun", i)
-        best = max(kinds, key=lambda kind: self._length(kind, i), default="")
-        if noun is not None and noun[0] <= end - i and noun[0] > (self._length(best, i) if best else 0):
-            said = self._said(i, i + noun[0])
-            draft.restrictions.append(Of(said, Description(said, "noun", noun[1], said, is_definite=False)))
-            return i + noun[0]
-        if not best:
-            if any(
-                self._length(kind, i)
-                for kind in ("definite", "indefinite", "relative", "be", "to", "possibly")
-            ):
-                return i + 1
-            draft.restrictions.append(Unknown(self._words[i]))
-            return i + 1
-        sense = self._sense(best, i)
-        assert sense is not None
-        length, value = sense
-        said = self._said(i, i + length)
-        match best:
-            case "quality" | "states" | "sizes":
-                draft.restrictions.append(self._adjective(best, said, value))
-            case "sides":
-                draft.axis, draft.said_order = value, f"{draft.said_order} {said}".strip()
-            case "ordinals":
-                draft.place, draft.said_order = value, f"{draft.said_order} {said}".strip()
-            case "numbers" if value:
-                self._number(draft, value)
-            case "mine":
-                draft.restrictions.append(Owned(said))
-            case "every":
-                draft.is_plural = True
-        return i + length
-
-    def _adjective(self, kind: str, said: str, value: Any) -> Restriction:
-        if kind == "quality":
-            return Quality(said, value)
-        if kind == "sizes":
-            return Sized(said, value[0], value[1])
-        return State(said, value[0], value[1])
-
     # What follows a noun
 
-    def _after_the_noun(self, draft: _Draft, i: int, depth: int) -> int:
+    def _after_the_noun(self, draft: Draft, i: int, depth: int) -> int:
         negated = False
         either = False
         while i < len(self._words):
@@ -419,7 +185,7 @@ class _Parser:
             self._length("noun", i) and not self._length("quality", i)
         )
 
-    def _one_after(self, draft: _Draft, i: int, depth: int) -> int:
+    def _one_after(self, draft: Draft, i: int, depth: int) -> int:
         """One thing that is said behind the noun; where the next one is, or i if there is none."""
         if (action := self._action(i)) is not None:
             length, affordances = action
@@ -514,7 +280,7 @@ class _Parser:
             return (length + 1, found) if found else None
         return None
 
-    def _ordering(self, draft: _Draft, i: int, depth: int) -> int:
+    def _ordering(self, draft: Draft, i: int, depth: int) -> int:
         """*From the left*, *from the door*: what an order goes by."""
         is_distance = draft.axis is not None and draft.axis[0] == "distance" and draft.to is None
         length = max(self._length("from", i), self._length("to", i) if is_distance else 0)
@@ -534,7 +300,7 @@ class _Parser:
         draft.said_order = f"{draft.said_order} {self._said(i, end)}".strip()
         return end
 
-    def _of(self, draft: _Draft, i: int, length: int, depth: int) -> int:
+    def _of(self, draft: Draft, i: int, length: int, depth: int) -> int:
         """*Of wood*, *of the kitchen*, *of Anna*, *of water*; 0 if that is not what follows."""
         j = i + length
         article = self._length("definite", j)
@@ -551,7 +317,7 @@ class _Parser:
         draft.restrictions.append(Of(self._said(i, end), other, is_content))
         return end
 
-    def _related(self, draft: _Draft, i: int, relation: tuple[int, Any], depth: int) -> int:
+    def _related(self, draft: Draft, i: int, relation: tuple[int, Any], depth: int) -> int:
         length, name = relation
         j = i + length
         which = self._length("relative", j)
@@ -583,7 +349,7 @@ class _Parser:
         draft.restrictions.append(Not(said, related) if no else related)
         return end
 
-    def _lacking(self, draft: _Draft, i: int, length: int, depth: int) -> int:
+    def _lacking(self, draft: Draft, i: int, length: int, depth: int) -> int:
         said, j = self._said(i, i + length), i + length
         if said.endswith(("nothing", "niente")):
             relation = self._length("relations", j)

@@ -8,9 +8,10 @@ from typing import Final
 
 import pycrfsuite
 
-from nodes.language import grounding, lexicon, predicates, roles, slots
-from nodes.language.interpretation import Seen
-from nodes.language.sentence import Sentence, sentence
+from nodes.language import lexicon
+from nodes.language.understanding import grounding, predicates, roles, slots
+from nodes.language.understanding.interpretation import Seen
+from nodes.language.understanding.sentence import Sentence, sentence
 from nodes.language.vocabulary import Vocabulary
 from nodes.training.language.corpus import Example, Filled
 

@@ -9,7 +9,7 @@ from importlib import resources
 from typing import Final, NamedTuple
 
 from nodes.language import lexicon
-from nodes.language.grounding import Thing
+from nodes.language.understanding.grounding import Thing
 from nodes.language.vocabulary import Vocabulary
 from nodes.training.language.corpus import Example, Filled, Role
 

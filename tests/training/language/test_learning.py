@@ -2,7 +2,7 @@
 
 from benchmarks.language import trials
 from benchmarks.language.scoring import scores
-from nodes.language.interpretation import Interpreter
+from nodes.language.understanding.interpretation import Interpreter
 from nodes.training.language import corpus, made
 from nodes.training.language.household import household
 from nodes.training.language.learning import learn

@@ -1,6 +1,7 @@
 """Commands of our own making."""
 
-from nodes.language import lexicon, slots
+from nodes.language import lexicon
+from nodes.language.understanding import slots
 from nodes.training.language import made
 from nodes.training.language.household import household
 

@@ -1,0 +1,1 @@
+"""Saying what a map holds in paragraphs that a person would write."""

@@ -1,0 +1,306 @@
+"""Italian told with English words: clitics and articles apart, verbs and nouns for what they are."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Final, NamedTuple
+
+from nodes.language.lexicon.italian import ARTICULATED, Italian, italian, singulars
+from nodes.language.understanding.gloss import Gloss, Glossed
+from nodes.language.understanding.grounding import Scene
+from nodes.language.vocabulary import spoken
+from nodes.language.words import PartOfSpeech, plain
+
+_WORD: Final = re.compile(r"[^\W\d_]+'(?=\w)|po'|\d+(?:[.,]\d+)?|[^\W_]+(?:-[^\W_]+)*")
+_IS: Final = re.compile(r"(?<!\w)e'(?!\w)")  # è, as it is written where there is no such key
+_LONGEST: Final = 5  # words of an expression or of what a thing is called
+_FIRST: Final = ("me", "te", "ce", "ve", "glie", "se")
+_SECOND: Final = ("lo", "la", "li", "le", "ne")
+_CLITICS: Final = {
+    **{first + second: (first, second) for first in _FIRST for second in _SECOND},
+    **{one: (one,) for one in ("mi", "ti", "ci", "vi", *_SECOND, "gli", "si")},
+}
+_SHORT: Final = ("da", "va", "fa", "sta")  # before these a clitic's consonant is doubled: dammi
+_DETERMINERS: Final = ("the", "a", "this", "that", "my", "your", "his", "our", "their", "some", "no", "every")
+_POSSESSIVES: Final = ("my", "your", "his", "our", "their")
+_PLURAL: Final = ("i", "gli", "le")
+_GIVING: Final = ("give", "hand", "offer")
+_NUMBERS: Final = ("two", "three", "four", "five", "ten", "thirty", "ninety")
+_ENDING: Final = ("and", "then", "please", "to", "from", "in", "on", "with", "near", "for", "here", "there")
+_OPENING: Final = (
+    *("and", "or", "but", "then", "please", "robot", "sorry", "hey", "hello", "you", "not", "to", "okay"),
+    *("would", "should", "while", "thanks", "now"),
+)  # behind these a clause begins
+
+
+def split(text: str) -> list[str]:
+    """The words of a text in lower case: `portamela` is `porta me la`, `dell'acqua` is `dell' acqua`."""
+    return [token.removeprefix("-") for token in _tokens(text)]
+
+
+def gloss(text: str, scene: Scene) -> Gloss:
+    """A sentence with English words for it; nouns are looked up among what things and classes are called."""
+    tokens = _tokens(text)
+    words = _Glossing(tokens, scene, italian()).words()
+    return Gloss(tuple(token.removeprefix("-") for token in tokens), tuple(words))
+
+
+def share(text: str) -> int:
+    """How many words of a text are of the Italian lexicon."""
+    known = italian()
+    return sum(token.startswith("-") or known.is_word(token) for token in _tokens(text))
+
+
+def _tokens(text: str) -> list[str]:
+    """The words, clitics written behind a verb apart and beginning with `-`."""
+    known = italian()
+    found: list[str] = []
+    for word in _WORD.findall(_IS.sub("è", plain(text))):
+        previous = found[-1] if found else ""
+        nominal = previous in ARTICULATED or known.expressions.get((previous,), "") in _DETERMINERS
+        opens = not found or previous == "favore" or known.expressions.get((previous,), "") in _OPENING
+        apart = None if nominal and not previous.startswith("-") else _parted(word, opens, known)
+        found += [word] if apart is None else [apart[0], *(f"-{clitic}" for clitic in apart[1])]
+    return found
+
+
+def _parted(word: str, opens: bool, known: Italian) -> tuple[str, tuple[str, ...]] | None:
+    """A verb and the clitics behind it, None for a word that is not such."""
+    if known.is_word(word) and not (opens and word in ARTICULATED):
+        return None
+    for ending, clitics in sorted(_CLITICS.items(), key=lambda item: -len(item[0])):
+        stem = word.removesuffix(ending)
+        if stem != word and stem in known.verbs:
+            return stem, clitics
+        if stem[:-1] in _SHORT and stem != word and stem[-1] == ending[0]:
+            return stem[:-1], clitics
+    return None
+
+
+class _Piece(NamedTuple):
+    """A word, or a part of an articulated preposition. token: its index among the words."""
+
+    text: str
+    token: int
+    is_clitic: bool = False
+
+
+class _Glossing:
+    """Reads the pieces from left to right."""
+
+    def __init__(self, tokens: Sequence[str], scene: Scene, known: Italian) -> None:
+        self._tokens, self._scene, self._known = tokens, scene, known
+        self._pieces = list(self._pieced())
+        self._found: list[Glossed] = []
+        self._before_verb: list[Glossed] = []  # clitics that English says behind it
+
+    def words(self) -> list[Glossed]:
+        """The English words."""
+        i = 0
+        while i < len(self._pieces):
+            i += self._read(i)
+        return self._found + self._before_verb
+
+    def _pieced(self) -> Iterator[_Piece]:
+        for n, token in enumerate(self._tokens):
+            if token.startswith("-"):
+                yield _Piece(token[1:], n, True)
+            elif token in ARTICULATED and not self._gives(n):
+                yield from (_Piece(part, n) for part in ARTICULATED[token])
+            else:
+                yield _Piece(token, n)
+
+    def _gives(self, n: int) -> bool:
+        """Whether a word is `dai` (give) and not `da i` (from the): an article or a clitic follows."""
+        following = self._tokens[n + 1] if n + 1 < len(self._tokens) else ""
+        article = self._known.expressions.get((following,), "") in _DETERMINERS
+        return self._tokens[n] in self._known.verbs and (following.startswith("-") or article)
+
+    def _read(self, i: int) -> int:
+        """Tell the next words in English. Returns how many pieces they are."""
+        piece = self._pieces[i]
+        if piece.is_clitic:
+            self._clitic(i)
+            return 1
+        if self._is_verb(i):
+            self._say(self._known.verbs[piece.text], i, i, "verb")
+            self._found += self._before_verb
+            self._before_verb = []
+            return 1
+        for length in range(min(_LONGEST, len(self._tokens) - piece.token), 1, -1):
+            if (name := self._called(i, length)) is not None:
+                return self._noun(name, i, length)
+        if self._stands_before_verb(i):
+            self._clitic(i)
+            return 1
+        if (english := self._known.adjectives.get(piece.text)) and self._follows("noun"):
+            self._adjective(english, i)
+            return 1
+        for length in range(min(_LONGEST + 2, len(self._pieces) - i), 0, -1):
+            said = tuple(p.text for p in self._pieces[i : i + length])
+            if said[-1] == "di" and self._counts(i + length):  # "a sinistra di 90 gradi" is by how much
+                if length == 1:
+                    self._say("by", i, i, "prep")
+                    return 1
+            elif said in self._known.expressions:
+                return self._expression(self._known.expressions[said], i, length)
+        if piece.text in self._known.relative:
+            self._say(self._known.relative[piece.text], i, i, "rel")
+        elif english:
+            self._say(english, i, i, "noun" if self._ends(i) and self._follows("det") else "adj")
+        elif (name := self._called(i, 1)) is not None:
+            self._noun(name, i, 1)
+        else:
+            self._say(piece.text, i, i, None)
+        return 1
+
+    def _say(self, english: str, first: int, last: int, kind: PartOfSpeech | None) -> None:
+        """Add English words for pieces; what is in parentheses nobody said."""
+        start, end = self._pieces[first].token + 1, self._pieces[last].token + 1
+        for word in english.split():
+            if word.startswith("("):
+                self._found.append(Glossed(word.strip("()"), 1, 0, end))
+            else:
+                is_plural = kind == "det" and self._pieces[last].text in _PLURAL
+                self._found.append(Glossed(word, start, end, end, kind, is_plural))
+
+    def _expression(self, english: str, i: int, length: int) -> int:
+        following = self._pieces[i + 1].text if i + 1 < len(self._pieces) else ""
+        if english == "of" and self._is_partitive(i):
+            self._say("some", i, i + 1, "det")
+            return 2
+        if english == "of" and self._is_compound(i):  # "il tavolo della cucina" is the kitchen table
+            return 2 + self._compound(i + 2)
+        if english == "the" and self._known.expressions.get((following,)) in _POSSESSIVES:
+            self._say(self._known.expressions[(following,)], i, i + 1, "det")
+            return 2
+        if english == "a" and self._ends(i):
+            self._say("one", i, i, "pron")
+            return 1
+        self._say(english, i, i + length - 1, "det" if english in _DETERMINERS else None)
+        return length
+
+    def _counts(self, i: int) -> bool:
+        """Whether a number stands here."""
+        text = self._pieces[i].text if i < len(self._pieces) else ""
+        return text[:1].isdigit() or self._known.expressions.get((text,), "") in _NUMBERS
+
+    def _is_partitive(self, i: int) -> bool:
+        """Whether `di` and an article begin an object: `prendi del latte`."""
+        joined = i + 1 < len(self._pieces) and self._pieces[i].token == self._pieces[i + 1].token
+        before = self._found[-1] if self._found else None
+        return joined and (
+            before is None
+            or before.kind in ("verb", "pron")
+            or before.text in ("like", "need", "is", "are", "want", "please", "there")
+        )
+
+    def _is_compound(self, i: int) -> bool:
+        """Whether `di` and an article stand between two nouns."""
+        joined = i + 2 < len(self._pieces) and self._pieces[i].token == self._pieces[i + 1].token
+        return joined and self._follows("noun") and self._called(i + 2, 1) is not None
+
+    def _compound(self, i: int) -> int:
+        """Say the noun at a piece before the one that it tells more of. Returns how many pieces it is."""
+        lengths = range(min(_LONGEST, len(self._tokens) - self._pieces[i].token), 0, -1)
+        length = next(n for n in lengths if self._called(i, n) is not None)
+        pieces = self._noun(self._called(i, length) or "", i, length)
+        self._found[-2:] = reversed(self._found[-2:])
+        return pieces
+
+    def _noun(self, name: str, i: int, length: int) -> int:
+        first = self._pieces[i].token
+        self._found.append(Glossed(name, first + 1, first + length, first + 1, "noun"))
+        pieces = [piece for piece in self._pieces[i:] if piece.token < first + length]
+        return len(pieces)
+
+    def _adjective(self, english: str, i: int) -> None:
+        """Say an adjective before its noun."""
+        token = self._pieces[i].token + 1
+        self._found.insert(len(self._found) - 1, Glossed(english, token, token, token, "adj"))
+
+    def _clitic(self, i: int) -> None:
+        text, token = self._pieces[i].text, self._pieces[i].token + 1
+        verb = next((word for word in reversed(self._found) if word.kind == "verb"), None)
+        behind = verb is not None and self._pieces[i].is_clitic
+        moves = behind and verb is not None and self._tokens[verb.first - 1] in self._known.moving
+        english = self._known.clitics[text]
+        if moves and text in ("ti", "ci", "si"):
+            english = "there" if text == "ci" else ""
+        elif text == "le" and verb is not None and verb.text in _GIVING and not self._ends(i):
+            english = "her"
+        if english:
+            kind: PartOfSpeech = "adv" if english == "there" else "pron"
+            (self._found if behind else self._before_verb).append(Glossed(english, token, token, token, kind))
+
+    def _stands_before_verb(self, i: int) -> bool:
+        """Whether a clitic stands here by itself: `mi porti`, `lo prendi`."""
+        if self._pieces[i].text not in self._known.clitics:
+            return False
+        j = i + 1
+        while j < len(self._pieces) and self._pieces[j].text in self._known.clitics and j < i + 2:
+            j += 1
+        is_article = (self._pieces[i].text,) in self._known.expressions
+        return (
+            j < len(self._pieces)
+            and self._pieces[j].text in self._known.verbs
+            and not (is_article and self._called(j, 1) is not None)
+            and not (i > 0 and self._pieces[i - 1].token == self._pieces[i].token)
+        )
+
+    def _is_verb(self, i: int) -> bool:
+        """Whether a verb stands here, and no noun or preposition that is written alike."""
+        text = self._pieces[i].text
+        if text not in self._known.verbs or (i and self._pieces[i - 1].token == self._pieces[i].token):
+            return False
+        before = self._found[-1] if self._found else None
+        opens = before is None or bool(self._before_verb) or before.text in _OPENING
+        if before is not None and before.kind in ("det", "adj"):
+            return False
+        following = self._pieces[i + 1] if i + 1 < len(self._pieces) else None
+        if (text,) in self._known.expressions:  # "da", "sei"
+            return opens and following is not None and following.is_clitic
+        if text.endswith(("are", "ere", "ire", "r")) or (following is not None and following.is_clitic):
+            return True
+        if self._called(i, 1) is not None or (
+            before is not None and before.text in ("in", "of", "from", "on")
+        ):
+            takes = following is not None and (
+                self._known.expressions.get((following.text,)) in _DETERMINERS or following.text == "di"
+            )
+            return opens or (takes and self._follows("noun"))
+        return True
+
+    def _follows(self, kind: PartOfSpeech) -> bool:
+        return bool(self._found) and self._found[-1].kind == kind
+
+    def _ends(self, i: int) -> bool:
+        """Whether no noun follows: the sentence ends, or a preposition, conjunction or verb comes."""
+        if i + 1 == len(self._pieces):
+            return True
+        following = self._pieces[i + 1]
+        english = self._known.expressions.get((following.text,), "")
+        return (
+            english in _ENDING
+            or following.is_clitic
+            or (following.text in self._known.verbs and self._called(i + 1, 1) is None)
+        )
+
+    def _called(self, i: int, length: int) -> str | None:
+        """What a thing or class is called by the words from a piece on, None if nothing is."""
+        token = self._pieces[i].token
+        if i and self._pieces[i - 1].token == token:
+            return None
+        words = self._tokens[token : token + length]
+        if any(word.startswith("-") for word in words):
+            return None
+        rest = " ".join(["", *words[1:]]).replace("' ", "'")
+        for first in singulars(words[0]):
+            text = first + rest
+            if text in self._scene.called:
+                return text
+            name = self._scene.vocabulary.class_of(text) or self._known.synonyms.get(text)
+            if name is not None:
+                return spoken(name)
+        return None

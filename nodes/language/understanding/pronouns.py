@@ -1,0 +1,71 @@
+"""What `it` and `them` stand for: the last thing acted on before that suits what is to be done with it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from nodes.language.understanding.grounding import Scene
+from schemas.language import Argument, Frame
+
+_PRONOUNS: Final = ("it", "them", "they", "one")
+_SEVERAL: Final = ("them", "they")
+_DOERS: Final = ("Agent", "Perceiver", "Cognizer", "Inspector", "Donor")
+_PEOPLE: Final = ("Beneficiary", "Recipient")
+_ACTED_ON: Final = (
+    *("Theme", "Item", "Device", "Entity", "Sought_entity", "Phenomenon", "Containing_object", "Ground"),
+    "Container_portal",
+)
+
+
+_FOR_OPENING: Final = dict.fromkeys(("Containing_object", "Container_portal"), "Openable_Thing")
+_WANTED: Final = {  # frame -> role -> class of the household TBox: what affords it
+    "Closure": _FOR_OPENING,
+    "Change_operational_state": {"Device": "Switchable_Thing"},
+}
+_WHERE: Final = {  # preposition -> class of what is spoken of so
+    **dict.fromkeys(("in", "into", "inside", "out of"), "Containing_Thing"),
+    **dict.fromkeys(("on", "onto", "on top of"), "Supporting_Thing"),
+}
+_CARRYING: Final = ("Bringing", "Giving", "Manipulation", "Placing", "Releasing", "Taking")
+_NEVER_CARRIED: Final = frozenset({"Location", "Connecting_Architecture"})
+
+
+def antecedent(
+    pronoun: str, preposition: str, frame: str, role: str, before: Sequence[Frame], scene: Scene
+) -> tuple[str, ...]:
+    """The names of the entities that a pronoun stands for, none for what has none.
+
+    preposition: the words before the pronoun, "" for none. frame, role: what it fills. before: the frames of
+    the sentence so far; what fills the same frame is not meant (*put the pizza in it*). The last that was
+    acted on comes first, then the last of the others: the first that affords what is to be done is meant,
+    and the first of all where none does. Places are not carried. Several names are those that may be meant
+    where it was not clear before; of *them*, all that were acted on together.
+    """
+    if pronoun not in _PRONOUNS:
+        return ()
+    named = list(dict.fromkeys(_mentioned(before, pronoun in _SEVERAL)))
+    if frame in _CARRYING and role in _ACTED_ON:
+        named = [names for names in named if not any(_NEVER_CARRIED & scene.kinds_of(name) for name in names)]
+    wanted = _WHERE.get(preposition) or _WANTED.get(frame, {}).get(role)
+    suited = (
+        names for names in named if wanted is None or all(wanted in scene.kinds_of(name) for name in names)
+    )
+    return next(suited, named[0] if named else ())
+
+
+def _mentioned(before: Sequence[Frame], together: bool) -> Iterator[tuple[str, ...]]:
+    """What was spoken of, the last first; together: what one frame acts on, all at once."""
+    for frame in reversed(before):
+        acted_on = [names for a in frame.arguments if a.role in _ACTED_ON and (names := _names(a))]
+        if together and len(acted_on) > 1:
+            yield tuple(name for names in acted_on for name in names)
+        yield from reversed(acted_on)
+    for frame in reversed(before):
+        for argument in reversed(frame.arguments):
+            if argument.role not in (*_ACTED_ON, *_DOERS, *_PEOPLE) and (names := _names(argument)):
+                yield names
+
+
+def _names(argument: Argument) -> tuple[str, ...]:
+    return (argument.entity,) if argument.entity else argument.candidates

@@ -1,0 +1,95 @@
+"""A sentence as far as it is understood before anything learnt is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from nodes.language.lexicon import Lexicon
+from nodes.language.phrases import Phrase, phrases
+from nodes.language.understanding import grounding
+from nodes.language.understanding.grounding import Scene, Things
+from nodes.language.words import PartOfSpeech, Word, based, tag
+
+_MOST_PAIRS = 400  # of things, to be looked at for the nearest: a tenth of a millisecond
+_NEAR_M = 1.5  # of what is nearer, one says where it is by the other
+
+
+@dataclass(frozen=True, slots=True)
+class Sentence:
+    """Words, phrases, and what each phrase may mean in the map."""
+
+    words: Sequence[Word]
+    phrases: Sequence[Phrase]
+    phrase_of: Sequence[int]  # for each word the index of its phrase
+    branches: Sequence[str]  # for each phrase what kind of thing it speaks of, "" for none
+    meant: Sequence[Things]  # for each phrase what it may mean
+    lexicon: Lexicon
+
+    def near(self, one: int, other: int) -> Literal["near", "far", "unknown"]:
+        """Whether what two phrases mean is near each other over the ground; of several the nearest count."""
+        ones, others = self.meant[one], self.meant[other]
+        if not 0 < len(ones) * len(others) <= _MOST_PAIRS:
+            return "unknown"
+        metres = min(grounding.distance(a, b) for a in ones for b in others)
+        return "unknown" if metres == float("inf") else "near" if metres < _NEAR_M else "far"
+
+    def clause(self, verb: int) -> range:
+        """The phrases that follow the verb at a word, up to the next verb or sentence."""
+        start = end = self.phrase_of[verb] + 1
+        while end < len(self.phrases):
+            kind = self.phrases[end].kind
+            if kind in ("verb", "aux", "modal", "rel"):
+                break
+            if kind == "conj" and not (end + 1 < len(self.phrases) and self.phrases[end + 1].names):
+                break
+            end += 1
+        return range(start, end)
+
+    def verb_frames(self, verb: int) -> tuple[str, ...]:
+        """The frames that the lexicon gives to the verb at a word, with its particle if it has one."""
+        lemma = self.words[verb].lemma
+        for i in range(verb + 1, min(verb + 5, len(self.words))):
+            if self.words[i].kind == "verb":
+                break
+            both = f"{lemma} {self.words[i].text}"
+            if both in self.lexicon.frames and (i == verb + 1 or self.words[i].kind == "particle"):
+                return self.lexicon.frames[both]
+        return self.lexicon.frames.get(lemma, ())
+
+
+def sentence(
+    texts: Sequence[str], scene: Scene, lexicon: Lexicon, kinds: Sequence[PartOfSpeech | None] = ()
+) -> Sentence:
+    """Read a sentence. texts: its words in lower case; kinds: their parts of speech where they are known."""
+    words = tag(texts, lexicon, kinds)
+    found = phrases(words, lexicon)
+    phrase_of = [k for k, phrase in enumerate(found) for _ in range(phrase.first, phrase.last + 1)]
+    meant = [grounding.meant(phrase, words, scene, lexicon) if phrase.names else () for phrase in found]
+    branches = [
+        _branch(phrase, words, things, scene, lexicon) if phrase.names else ""
+        for phrase, things in zip(found, meant, strict=True)
+    ]
+    return Sentence(words, found, phrase_of, branches, meant, lexicon)
+
+
+def _branch(phrase: Phrase, words: Sequence[Word], things: Things, scene: Scene, lexicon: Lexicon) -> str:
+    """What kind of thing a phrase speaks of: a branch of the taxonomy, or a class of words of its head."""
+    head = words[phrase.head]
+    for kind in ("robot", "speaker"):
+        if lexicon.is_a(head.text, kind):
+            return kind
+    if head.kind == "pron":
+        return "pronoun"
+    if lexicon.is_a(head.lemma, "unit"):
+        return "measure"
+    if lexicon.is_a(head.text, "direction"):
+        return "direction"
+    inside = words[phrase.nominal : phrase.last + 1]
+    text = " ".join(word.text for word in inside if word.kind in ("noun", "adj"))
+    known = scene.vocabulary
+    name = known.class_of(text) or known.class_of(based(text, lexicon)) or known.class_of(head.lemma)
+    if name is None and things:
+        name = known.class_of(things[0].class_name.lower()) or things[0].class_name
+    return known.branch(name)

@@ -1,0 +1,40 @@
+from nodes.drawing.scene_state import SceneState
+from tests.recorder.messages import body, pose, poses, scene
+
+
+def taken():
+    state = SceneState()
+    state.take(scene(body("a"), body("b", at=pose(1.0))))
+    return state
+
+
+def test_poses_of_another_version_or_run_ask_for_a_snapshot():
+    assert not SceneState().matches(poses({}))
+    assert taken().matches(poses({"a": pose()}))
+    assert not taken().matches(poses({"a": pose()}, version=2))
+
+
+def test_only_what_moved_is_told():
+    state = taken()
+    assert dict(state.follow(poses({"a": pose(), "b": pose(1.0)}))) == {"a": pose(), "b": pose(1.0)}
+    assert dict(state.follow(poses({"a": pose(), "b": pose(1.5)}))) == {"b": pose(1.5)}
+    assert state.bodies["b"].pose == pose(1.5)
+    assert dict(state.follow(poses({"a": pose(), "b": pose(1.5)}))) == {}
+
+
+def test_a_slow_creep_is_told_in_the_end():
+    state = taken()
+    list(state.follow(poses({"a": pose(), "b": pose(1.0)})))
+    creep = [dict(state.follow(poses({"a": pose(i * 1e-4), "b": pose(1.0)}))) for i in range(1, 4)]
+    assert creep == [{}, {}, {"a": pose(3 * 1e-4)}]
+
+
+def test_an_unknown_body_is_left_alone():
+    assert dict(taken().follow(poses({"z": pose()}))) == {}
+
+
+def test_a_scene_may_become_empty():
+    state = taken()
+    list(state.follow(poses({"a": pose(), "b": pose(1.0)})))
+    state.take(scene())
+    assert dict(state.follow(poses({}))) == {}

@@ -1,0 +1,26 @@
+from nodes.drawing.surfaces import SurfaceCache
+from tests.recorder.messages import body, surface
+
+SURFACE = surface()
+
+
+def test_each_model_at_each_size_is_asked_for_once():
+    cache = SurfaceCache()
+    chairs = [body(f"chair{i}", model="chair") for i in range(3)]
+    wanted = cache.wanted(chairs)
+    assert list(wanted) == ["chair0"]
+    assert cache.wanted(chairs) == {}
+    assert cache.of(chairs[1]) is None
+    cache.take(wanted["chair0"], SURFACE)
+    assert cache.of(chairs[2]) is SURFACE
+    assert cache.of(None) is None
+
+
+def test_what_was_asked_for_in_vain_is_asked_for_again():
+    cache = SurfaceCache()
+    chair, table = body("chair1", model="chair"), body("table1", model="table")
+    wanted = cache.wanted([chair, table])
+    cache.take(wanted["table1"], SURFACE)
+    cache.give_up(wanted.values())
+    assert list(cache.wanted([chair, table])) == ["chair1"]
+    assert cache.of(table) is SURFACE

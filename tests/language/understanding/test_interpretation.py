@@ -1,0 +1,188 @@
+"""Commands, read with what ships."""
+
+import random
+
+import pytest
+
+from nodes.language.understanding.grounding import Thing
+from nodes.language.understanding.interpretation import shipped
+from tests.language.household import THINGS, there
+
+
+def read(text, things=THINGS):
+    return shipped().understand(text, there(things))
+
+
+def frames(text, things=THINGS):
+    return [frame.text for frame in read(text, things).frames]
+
+
+@pytest.mark.parametrize(
+    ("text", "understood"),
+    [
+        ("take the bottle from the kitchen table", ["Taking(Theme=bottle1, Source=table1)"]),
+        ("Could you bring the novel to the sofa?", ["Bringing(Agent=robot1, Theme=book1, Goal=couch1)"]),
+        (
+            "go to the kitchen and open the fridge",
+            ["Motion(Goal=kitchen1)", "Closure(Containing_object=fridge1)"],
+        ),
+        (
+            "find the novel and bring it to me",
+            ["Locating(Sought_entity=book1)", 'Bringing(Theme=book1, Beneficiary="to me")'],
+        ),
+        ("follow me slowly", ['Cotheme(Cotheme="me", Manner="slowly")']),
+        ("this is the kitchen", ['Being_in_category(Item="this", Category=kitchen1)']),
+        ("don't open the fridge", ["not Closure(Containing_object=fridge1)"]),
+        ("turn left by 90 degrees", ['Change_direction(Direction="left", Angle="by 90 degrees")']),
+    ],
+)
+def test_a_command_is_frames_with_entities(text, understood):
+    assert frames(text) == understood
+
+
+def test_where_things_are_tells_taking_from_bringing():
+    near = [t for t in THINGS if t.name != "table2"]
+    assert frames("take the bottle on the table", near)[0].startswith("Taking")
+    far = [t for t in THINGS if t.name != "table1"]
+    assert frames("take the bottle on the table", far) == ["Bringing(Theme=bottle1, Goal=table2)"]
+
+
+def test_of_several_things_the_nearest_tells():
+    chairs = tuple(Thing(f"chair{n}", "Chair", (), (2.0 + n, 2.5, 0.0)) for n in range(5))
+    things = (Thing("desk1", "Desk", (), (6.2, 2.5, 0.0)), *chairs)
+    for order in (things, things[::-1]):
+        assert frames("take the chair near the desk", order) == ["Taking(Theme=chair4)"]
+
+
+@pytest.mark.parametrize(
+    ("text", "ambiguous"),
+    [
+        ("take the bottle", True),
+        ("take a bottle", False),
+        ("take the bottles", False),
+        ("take both bottles", False),
+        ("prendi la bottiglia", True),
+        ("prendi le bottiglie", False),
+        ("prendi una bottiglia", False),
+    ],
+)
+def test_any_and_several_are_not_ambiguous(text, ambiguous):
+    bottles = tuple(Thing(f"bottle{n}", "Bottle") for n in (1, 2))
+    assert read(text, bottles).frames[0].arguments[0].ambiguous == ambiguous
+
+
+def test_whoever_sees_the_map_says_which():
+    bottles = tuple(Thing(f"bottle{n}", "Bottle") for n in (1, 2, 3))
+    asked = []
+
+    def resolve(text):
+        asked.append(text)
+        return ("bottle2", "bottle3", "cup1")
+
+    theme = (
+        shipped().understand("take the red bottle", there(bottles), resolve=resolve).frames[0].arguments[0]
+    )
+    assert asked == ["the red bottle"]
+    assert theme.candidates == ("bottle2", "bottle3")
+
+
+LISTED = (
+    *(thing for thing in THINGS if thing.name != "fridge1"),
+    Thing("oven1", "Oven", ("oven",), (7.0, 0.4, 0.0), ("Openable_Thing",)),
+    Thing("door1", "Door", (), (5.0, 5.0, 0.0)),
+    Thing("door2", "Door", (), (9.0, 5.0, 0.0)),
+    Thing("fridge1", "Fridge", ("fridge",), (6.4, 0.4, 0.0), ("Openable_Thing",)),
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "understood"),
+    [
+        ("open the fridge and the oven", ["Closure(Containing_object=fridge1, Containing_object=oven1)"]),
+        ("apri il frigo e il forno", ["Closure(Containing_object=fridge1, Containing_object=oven1)"]),
+        (
+            "bring the bottle, the novel and the robot to the kitchen",
+            ["Bringing(Theme=bottle1, Theme=book1, Theme=robot1, Goal=kitchen1)"],
+        ),
+        ("go to the kitchen and the sofa", ["Motion(Goal=kitchen1, Goal=couch1)"]),
+        ("take the bottle and go to the sofa", ["Taking(Theme=bottle1)", "Motion(Goal=couch1)"]),
+        (
+            "place the bottle between the sofa and the fridge",
+            ["Placing(Theme=bottle1, Goal=couch1, Goal=fridge1)"],
+        ),
+        (
+            "grab the bottle from the kitchen table and the novel from the side table",
+            ["Taking(Theme=bottle1, Source=table1)", "Taking(Theme=book1, Source=table2)"],
+        ),
+        ("push the sofa to the side table", ["Manipulation(Entity=couch1, Goal=table2)"]),
+        (
+            "porta la bottiglia e il libro in cucina",
+            ["Bringing(Theme=bottle1, Theme=book1, Goal=kitchen1)"],
+        ),
+        ("open the door of the fridge", ["Closure(Containing_object=fridge1)"]),
+        ("apri la porta del frigo", ["Closure(Containing_object=fridge1)"]),
+        ("open the door", ["Closure(Container_portal=door1|door2)"]),
+        ("take the bottle that is on the side table", ["Taking(Theme=bottle1)"]),
+    ],
+)
+def test_a_list_has_an_argument_for_each_thing(text, understood):
+    told = shipped().understand(text, there(LISTED), resolve=lambda _: ())
+    assert [frame.text for frame in told.frames] == understood
+
+
+def test_the_corpus_has_lists_and_relative_clauses_whole():
+    assert frames("grab the bottle and the novel") == ["Taking(Theme=bottle1)"]
+    assert len(frames("take the bottle that is on the side table")) == 2
+
+
+def test_words_count_from_one_and_heads_are_inside():
+    understood = read("take the bottle from the kitchen table")
+    theme, source = understood.frames[0].arguments
+    assert (understood.words[theme.head - 1], theme.span) == ("bottle", (2, 3))
+    assert (understood.words[source.head - 1], source.text) == ("table", "from the kitchen table")
+    assert {(g.token, g.entity) for g in understood.groundings} == {
+        (3, "bottle1"),
+        (6, "table1"),
+        (7, "table1"),
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "understood", "unknown"),
+    [
+        ("frobnicate the bottle", [], ("frobnicate",)),
+        ("stop", [], ("stop",)),
+        ("wait here", [], ("wait",)),
+        ("fermati", [], ("stop",)),
+        ("clean the sofa", [], ("clean",)),
+        ("take the bottle and wash it", ["Taking(Theme=bottle1)"], ("wash",)),
+        (
+            "go to the kitchen, open the fridge",
+            ["Motion(Goal=kitchen1)", "Closure(Containing_object=fridge1)"],
+            (),
+        ),
+        ("non andare mai in cucina", ["not Motion(Goal=kitchen1)"], ()),
+        ("prendi la bottiglia che e' sul divano", ["Taking(Theme=bottle1)"], ()),
+    ],
+)
+def test_unknown_verbs_are_said_to_be_unknown(text, understood, unknown):
+    told = shipped().understand(text, there(), resolve=lambda _: ())
+    assert ([frame.text for frame in told.frames], told.unknown) == (understood, unknown)
+
+
+def test_what_may_be_several_is_none_of_them():
+    bottles = (*THINGS, *(type(THINGS[4])(f"bottle{n}", "Bottle", ("bottle",), None) for n in (2, 3)))
+    theme = read("grab the bottle", bottles).frames[0].arguments[0]
+    assert (theme.entity, theme.candidates) == (None, ("bottle1", "bottle2", "bottle3"))
+
+
+def test_the_order_of_the_map_does_not_matter():
+    text = "take the bottle near the novel on the table to the sofa"
+    expected = read(text)
+    for seed in range(5):
+        assert read(text, random.Random(seed).sample(THINGS, len(THINGS))) == expected
+
+
+@pytest.mark.parametrize("text", ["", "please", "the the the", "of on to", "9 9 9", "and and", "you"])
+def test_what_is_no_command_is_no_frame(text):
+    assert read(text).frames == ()
