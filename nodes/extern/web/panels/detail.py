@@ -81,8 +81,8 @@ class _Detail:
         self._head = ui.column().classes("w-full gap-0")
         self._words = ui.label().classes("semmap-sentence")
         self._doubt = ui.label().classes("semmap-doubt").props('role="status"')
-        self._states = States(page, entity)
         self._facts = ui.column().classes("w-full gap-0")
+        self._states = States(page, entity)
         with ui.expansion("History", icon="history").props("dense").classes("w-full") as past:
             self._past = ui.column().classes("w-full gap-2")
         with ui.expansion("Who said so", icon="badge").props("dense").classes("w-full"):

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
+from msgspec import structs
 from nicegui import ui
 
+from nodes.extern.web.deleting import delete_selected
 from nodes.extern.web.page import Page
 from nodes.extern.web.panels.fields import Fields
 from nodes.extern.web.panels.states import states_in_common
@@ -58,8 +60,6 @@ class Edit:
             self._page.tell("; ".join((done.text, *done.notes)), "positive")
 
     async def _delete(self) -> None:
-        from nodes.extern.web.deleting import delete_selected
-
         await delete_selected(self._page)
 
 
@@ -103,8 +103,6 @@ def _chip(page: Page, name: str) -> None:
 
 
 async def _delete(page: Page) -> None:
-    from nodes.extern.web.deleting import delete_selected
-
     await delete_selected(page)
 
 
@@ -125,10 +123,4 @@ async def _move(page: Page, names: tuple[str, ...], by: list[float | None]) -> N
 
 def _named(filled: forms.Filled, entity: Entity) -> forms.Filled:
     """The form has no field for the name, which stays."""
-    from msgspec import structs
-
     return structs.replace(filled, name=entity.name)
-
-
-def edit(page: Page) -> None:
-    """Nothing of its own: what may be changed is drawn with the details, beside what it changes."""

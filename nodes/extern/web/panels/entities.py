@@ -14,7 +14,7 @@ from nodes.extern.web.views.forms import class_choices
 
 _BY: Final = "entities"
 _COLUMNS: Final = (
-    {"field": "name", "headerName": "Name", "width": 130, "sort": "asc"},
+    {"field": "name", "headerName": "Name", "width": 120, "sort": "asc", "pinned": "left"},
     {"field": "called", "headerName": "Called", "width": 130},
     {"field": "class", "headerName": "Class", "width": 120},
     {"field": "room", "headerName": "Room", "width": 110},
@@ -31,7 +31,7 @@ _OPTIONS: Final = {
     "rowData": [],
     ":getRowId": "(row) => row.data.name",
     "rowSelection": {"mode": "multiRow", "enableClickSelection": True, "headerCheckbox": True},
-    "selectionColumnDef": {"width": 44, "pinned": "left"},
+    "selectionColumnDef": {"width": 40, "pinned": "left"},
     "rowHeight": 30,
     "headerHeight": 34,
     "animateRows": False,

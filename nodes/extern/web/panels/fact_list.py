@@ -27,7 +27,7 @@ def fact_list(page: Page, facts: Facts) -> None:
 
 def _group(page: Page, title: str, what: str, facts: tuple[Fact, ...], *, is_open: bool) -> None:
     with (
-        ui.expansion(f"{title}: {len(facts)}", caption=what, value=is_open and bool(facts))
+        ui.expansion(f"{title} ({len(facts)}): {what}", value=is_open and bool(facts))
         .props("dense")
         .classes("w-full semmap-facts")
     ):

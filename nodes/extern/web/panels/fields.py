@@ -21,9 +21,7 @@ class Fields:
         with ui.column().classes("w-full gap-2 semmap-fields"):
             self._class = (
                 ui.select({}, label="Class", with_input=True, new_value_mode="add-unique", clearable=True)
-                .props(
-                    'dense outlined options-dense hint="A class, a label, or what people call it" hide-hint'
-                )
+                .props("dense outlined options-dense hide-bottom-space")
                 .classes("w-full")
             )
             self._name = ui.input("Name (made from the class, if empty)") if named else None
@@ -38,7 +36,7 @@ class Fields:
             self._at = self._vector("Position [m]", "position")
             with ui.row().classes("w-full items-center gap-2 no-wrap"):
                 self._yaw = _number("Turned by [°]")
-                if hasattr(page, "pick_place"):
+                if page.pick is not None:
                     ui.button("Point at the place", icon="my_location", on_click=self._pick).props(
                         "flat dense no-caps"
                     )
@@ -81,7 +79,7 @@ class Fields:
 
     async def _pick(self) -> None:
         self._page.tell("Click in the scene where it is to be.")
-        place = await self._page.pick_place()  # type: ignore[attr-defined, unused-ignore]
+        place = await self._page.pick_place()
         if place is not None:
             for field, value in zip(self._at, place, strict=False):
                 field.value = round(value, 3)

@@ -32,7 +32,7 @@ class _Find:
                 .props('dense outlined clearable aria-label="Find by words" maxlength=1000')
                 .classes("w-full semmap-find")
                 .on("keydown.enter", self._look)
-                .on("clear", lambda: self._answers.close())
+                .on("clear", self._close)
             )
             with self._words.add_slot("prepend"):
                 ui.icon("search").props("size=sm")
@@ -73,7 +73,9 @@ class _Find:
             for note in shown.notes:
                 ui.label(note).classes("text-caption")
             if len(shown.select) > 1:
-                ui.button("Only these in the table", on_click=lambda: self._only(shown.select)).props("flat dense")
+                ui.button("Only these in the table", on_click=lambda: self._only(shown.select)).props(
+                    "flat dense"
+                )
         self._answers.open()
 
     def _choice(self, candidate: Candidate) -> None:
@@ -84,6 +86,9 @@ class _Find:
         with ui.item(on_click=choose).props("clickable"), ui.item_section():
             ui.item_label(candidate.entity)
             ui.item_label(reasons(candidate)).props("caption lines=2")
+
+    def _close(self) -> None:
+        self._answers.close()
 
     def _only(self, names: tuple[str, ...]) -> None:
         self._view.want(text="", class_="", room="", bearer="", things=frozenset(names))

@@ -1,4 +1,4 @@
-"""An explanation, drawn: the sentence, and below it the steps, each indented below what rests on it."""
+"""An explanation, drawn: the steps, each indented below what rests on it, and the sentence."""
 
 from __future__ import annotations
 
@@ -15,9 +15,7 @@ _INDENT_PX: Final = 14
 
 
 def proof(explanation: Explanation, words: Words, *, sentence: bool = True) -> None:
-    """Draw it where it is called."""
-    if sentence:
-        ui.label(explanation.text).classes("semmap-sentence")
+    """Draw it where it is called; the `sentence` that says it all comes last."""
     told = lines(explanation, words)
     with ui.element("ul").classes("semmap-proof").props('aria-label="Steps"'):
         for line in told[:_MOST_LINES]:
@@ -32,3 +30,5 @@ def proof(explanation: Explanation, words: Words, *, sentence: bool = True) -> N
                     how.tooltip(f"by the rule {line.rule} of OWL 2 RL")
     if len(told) > _MOST_LINES:
         ui.label(f"and {len(told) - _MOST_LINES} more steps").classes("semmap-quiet")
+    if sentence:
+        ui.label(explanation.text).classes("semmap-sentence text-caption")

@@ -38,14 +38,29 @@ class States:
         self._drawn = found
         self._fields.clear()
         self._all.set_visibility(bool(found))
-        may = page.may("set") and page.moment.is_now
-        with self._fields:
-            for state in found:
-                if not may:
+        if not (page.may("set") and page.moment.is_now):
+            with self._fields:
+                for state in found:
                     if state.spoken:
                         ui.label(f"{state.label}: {state.spoken}")
-                    continue
+            return
+        usual = [state for state in found if state.now is not None or state.kind in ("switch", "number")]
+        with self._fields:
+            for state in usual:
                 _field(state, _sender(page, (entity.name,), state))
+            if others := [state for state in found if state not in usual]:
+                self._draw_others(entity, others)
+
+    def _draw_others(self, entity: Entity, others: list[State]) -> None:
+        """What nobody has said yet and may be said: drawn when somebody wants to."""
+
+        def draw() -> None:
+            button.delete()
+            with self._fields:
+                for state in others:
+                    _field(state, _sender(self._page, (entity.name,), state))
+
+        button = ui.button(f"Say something else of it ({len(others)})", on_click=draw).props("flat dense")
 
 
 def states_in_common(page: Page, entities: tuple[Entity, ...]) -> None:
