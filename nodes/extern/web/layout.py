@@ -14,7 +14,6 @@ from nodes.extern.web.panels.add import add
 from nodes.extern.web.panels.classes import classes
 from nodes.extern.web.panels.consistency import consistency
 from nodes.extern.web.panels.detail import detail
-from nodes.extern.web.panels.edit import edit
 from nodes.extern.web.panels.entities import entities
 from nodes.extern.web.panels.files import files
 from nodes.extern.web.panels.find import find
@@ -37,7 +36,7 @@ _CSS: Final = (_HERE / "page.css").read_text()
 _SCRIPT: Final = (_HERE / "page.js").read_text()
 
 LEFT: Final[Panels] = {"Entities": (entities,), "Classes": (classes,), "Places": (places,)}
-RIGHT: Final[Panels] = {"Details": (detail, edit), "Add": (add,)}
+RIGHT: Final[Panels] = {"Details": (detail,), "Add": (add,)}
 CENTRE: Final[Panels] = {
     "Scene": (),
     "Graph": (graph,),

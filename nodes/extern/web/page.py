@@ -259,7 +259,7 @@ class Page:
         try:
             return await self.live.ask(command, timeout_s)
         except errors.SemmapError as error:
-            if self.refuse is not None and isinstance(error, errors.Refused):
+            if self.refuse is not None and not isinstance(error, errors.NoAnswer):
                 with self.client:
                     self.refuse(command, error)
             else:
