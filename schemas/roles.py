@@ -45,7 +45,19 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
         *("status", "history", "last-seen", "sparql", "watch", "renew", "picture"),
     ),
     _OBSERVERS: ("add", "update", "set", "unset", "remove"),
-    _OPERATORS: ("clear", "load", "undo", "submit", "approve", "move", "pause", "step", "reset"),
+    _OPERATORS: (
+        "clear",
+        "load",
+        "undo",
+        "submit",
+        "approve",
+        "move",
+        "open",
+        "close",
+        "pause",
+        "step",
+        "reset",
+    ),
     _ADMINS: ("backup", "compact"),
 }
 COMMANDS: Final[dict[str, Roles]] = {verb: roles for roles, verbs in _VERBS.items() for verb in verbs}
@@ -89,6 +101,7 @@ GRANTS: Final[tuple[Grant, ...]] = (
     Grant("ask", f"{keys.BRIDGE}/*", _NODES),
     Grant("ask", f"{keys.SIM}/snapshot", ANYBODY),
     Grant("ask", f"{keys.SIM}/surfaces", ANYBODY),
+    Grant("ask", f"{keys.SIM}/world", ANYBODY),
     Grant("ask", f"{keys.SIM}/*", _NODES),
     Grant("ask", f"{keys.CMD}/*", _NODES),
 )

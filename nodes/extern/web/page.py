@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable, Coroutine, Iterable, Mapping
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping
 from typing import Any, Final, Literal, Protocol, TypeVar
 
 from msgspec import Struct
@@ -17,6 +17,7 @@ from nodes.extern.web.live import Happening, Live
 from schemas import errors
 from schemas.commands import Command, List
 from schemas.entities import Entity, Pose
+from schemas.relations import ViewPoint
 
 log = logging.getLogger(__name__)
 
@@ -55,6 +56,9 @@ class Moment(Struct, frozen=True):
 
 NOW: Final = Moment()
 
+Place = tuple[float, float, float, float]
+"""x, y, z [m] and yaw [rad], map frame."""
+
 
 class Past(Struct, frozen=True, kw_only=True):
     """The map as it was after a commit."""
@@ -75,15 +79,27 @@ class Page:
         self.selected: tuple[str, ...] = ()
         self.moment = NOW
         self.state: State = live
+        self.dark = False
+        self.narrow = False
+        self.is_seen = False
+        """The browser has said how it looks."""
         self.refuse: Callable[[Command[Any], errors.SemmapError], None] | None = None
         """Shows why a change was refused; set by the layout."""
         self.watch: Callable[[str, bool], object] | None = None
         """Watches a query, with what follows or without; set by the panel of standing queries."""
+        self.draw_scene: Callable[[], None] | None = None
+        """Draws the scene with its switches where it is called; set by the scene."""
+        self.pick: Callable[[], Awaitable[Place | None]] | None = None
+        """Lets a person point at a place; set by the scene."""
+        self.look: Callable[[], ViewPoint | None] | None = None
+        """Whence the scene is seen; set by the scene."""
         self._on_select: list[Callable[[], None]] = []
         self._on_moment: list[Callable[[], None]] = []
         self._on_change: list[Callable[[], None]] = []
         self._on_connection: list[Callable[[], None]] = []
         self._on_poses: list[Callable[[tuple[str, ...]], None]] = []
+        self._on_look: list[Callable[[], None]] = []
+        self._on_key: dict[str, Callable[[], object]] = {}
         self._asked_for = 0
         self._stop = live.listen(self._on_happening)
         client.on_delete(self.close)
@@ -91,9 +107,16 @@ class Page:
     def close(self) -> None:
         """The tab is gone."""
         self._stop()
-        for functions in (self._on_select, self._on_moment, self._on_change, self._on_connection):
+        for functions in (
+            self._on_select,
+            self._on_moment,
+            self._on_change,
+            self._on_connection,
+            self._on_look,
+        ):
             functions.clear()
         self._on_poses.clear()
+        self._on_key.clear()
 
     # What is selected
 
@@ -110,6 +133,17 @@ class Page:
     def on_select(self, function: Callable[[], None]) -> None:
         """Call it when something else is selected."""
         self._on_select.append(function)
+
+    # Where a person points, and whence he looks
+
+    async def pick_place(self) -> Place | None:
+        """The place that a person clicks at in the scene next; None for none, as when there is no scene."""
+        return None if self.pick is None else await self.pick()
+
+    @property
+    def viewpoint(self) -> ViewPoint | None:
+        """Whence the scene is seen, for commands that tell left from right; None without a scene."""
+        return None if self.look is None else self.look()
 
     # The moment
 
@@ -159,6 +193,26 @@ class Page:
         """Call it when the knowledge base has gone or come back."""
         self._on_connection.append(function)
 
+    # The browser
+
+    def looks(self, *, dark: bool, narrow: bool) -> None:
+        """The browser says whether it shows the page dark, and whether it is as narrow as a phone."""
+        self.dark, self.narrow, self.is_seen = dark, narrow, True
+        self._tell(self._on_look)
+
+    def on_look(self, function: Callable[[], None]) -> None:
+        """Call it when `dark` or `narrow` has changed, and when they are known first."""
+        self._on_look.append(function)
+
+    def on_key(self, key: str, function: Callable[[], object]) -> None:
+        """Call it when this key is pressed outside of what is written in; one function a key."""
+        self._on_key[key] = function
+
+    def press(self, key: str) -> None:
+        """A key was pressed."""
+        if (function := self._on_key.get(key)) is not None:
+            self._tell([function])
+
     def _on_happening(self, happening: Happening) -> None:
         if happening.kind == "connection":
             self._tell(self._on_connection)
@@ -180,7 +234,7 @@ class Page:
             self.select(name for name in self.selected if name in self.state.entities)
         self._tell(self._on_change)
 
-    def _tell(self, functions: list[Callable[..., None]], *arguments: Any) -> None:
+    def _tell(self, functions: Iterable[Callable[..., object]], *arguments: Any) -> None:
         """One panel that fails does not keep the others from being told."""
         for function in tuple(functions):
             try:
@@ -207,7 +261,7 @@ class Page:
         try:
             return await self.live.ask(command, timeout_s)
         except errors.SemmapError as error:
-            if self.refuse is not None and isinstance(error, errors.Refused):
+            if self.refuse is not None and not isinstance(error, errors.NoAnswer):
                 with self.client:
                     self.refuse(command, error)
             else:
