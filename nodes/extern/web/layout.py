@@ -16,6 +16,7 @@ from nodes.extern.web.panels.entities import entities
 from nodes.extern.web.panels.files import files
 from nodes.extern.web.panels.find import find
 from nodes.extern.web.panels.graph import graph
+from nodes.extern.web.panels.history import history
 from nodes.extern.web.panels.log import log
 from nodes.extern.web.panels.places import places
 from nodes.extern.web.panels.plan import plan
@@ -31,6 +32,7 @@ Panel = Callable[[Page], None]
 
 LEFT: dict[str, Panel] = {"Entities": entities, "Classes": classes, "Places": places}
 CENTRE: dict[str, tuple[Panel, ...]] = {
+    "History": (history,),
     "Graph": (graph,),
     "Plan": (plan,),
     "SPARQL": (sparql, standing),
