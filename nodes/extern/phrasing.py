@@ -6,12 +6,10 @@ import math
 import time
 from collections.abc import Mapping
 
-from schemas import agents, wording
+from schemas import agents
 from schemas.commits import Commit
 from schemas.entities import Entity, Pose, Provenance
 from schemas.replies import LoggedCommit
-
-_FEW = 6
 
 
 def pose_cells(pose: Pose | None) -> tuple[str, str, str, str]:
@@ -46,20 +44,6 @@ def author(p: Provenance | Commit | LoggedCommit) -> str:
 def moment(stamp_ns: int) -> str:
     """A time, local, as `--as-of` takes it."""
     return time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(stamp_ns // 1_000_000_000))
-
-
-def what_changed(commit: LoggedCommit) -> str:
-    """What was and what is, of a few entities; of the others their number."""
-    about: dict[str, list[str]] = {}
-    for change in commit.changes:
-        about.setdefault(change.name, []).append(change.text)
-    said = [f"{name}: {'; '.join(texts)}" for name, texts in list(about.items())[:_FEW]]
-    touched = len({*commit.changed, *commit.removed})
-    if touched > len(said):
-        said.append(f"{touched - len(said)} more" if said else wording.entities(touched))
-    if commit.tbox:
-        said.append("another TBox")
-    return ", ".join(said) or f"+{commit.inserted} -{commit.retracted} triples"
 
 
 def plain(value: float, digits: int) -> str:

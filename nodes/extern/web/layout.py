@@ -25,7 +25,6 @@ from nodes.extern.web.panels.sparql import sparql
 from nodes.extern.web.panels.standing import standing
 from nodes.extern.web.panels.status import status
 from nodes.extern.web.panels.timeline import timeline
-from nodes.extern.web.proxy import PATH
 from schemas import wording
 
 Panel = Callable[[Page], None]
@@ -74,9 +73,8 @@ def _state(page: Page) -> None:
 
 def scene(page: Page) -> None:
     """The frame in which viser draws."""
-    ui.element("iframe").props(f'src="{PATH}/{page.id}/" title="Scene"').classes("w-full").style(
-        "border: 0; height: calc(100vh - 180px)"
-    )
+    if page.draw_scene is not None:
+        page.draw_scene()
 
 
 def _tabs(page: Page, panels: dict[str, tuple[Panel, ...]]) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable, Coroutine, Iterable, Mapping
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping
 from typing import Any, Final, Literal, TypeVar
 
 from nicegui import Client, background_tasks, ui
@@ -18,6 +18,7 @@ from nodes.extern.web.moments import NOW, Moment, Past, State
 from nodes.extern.web.tape import tape_of
 from schemas import errors
 from schemas.commands import Command
+from schemas.relations import ViewPoint
 
 log = logging.getLogger(__name__)
 
@@ -27,6 +28,10 @@ Compared = Literal["before", "now", ""]
 Tone = Literal["info", "positive", "warning", "negative"]
 
 _SHOWN_MS: Final = {"info": 4000, "positive": 3000, "warning": 8000, "negative": 10_000}
+
+
+Place = tuple[float, float, float, float]
+"""x, y, z [m] and yaw [rad], map frame."""
 
 
 class Page:
@@ -45,6 +50,12 @@ class Page:
         """How the moment shown differs from what it is compared with, by name; now there are none."""
         self.refuse: Callable[[Command[Any], errors.SemmapError], None] | None = None
         """Shows why a change was refused; set by the layout."""
+        self.draw_scene: Callable[[], None] | None = None
+        """Draws the scene with its switches where it is called; set by the scene."""
+        self.pick: Callable[[], Awaitable[Place | None]] | None = None
+        """Lets a person point at a place; set by the scene."""
+        self.look: Callable[[], ViewPoint | None] | None = None
+        """Whence the scene is seen; set by the scene."""
         self._on_select: list[Callable[[], None]] = []
         self._on_moment: list[Callable[[], None]] = []
         self._on_change: list[Callable[[], None]] = []
@@ -78,6 +89,17 @@ class Page:
     def on_select(self, function: Callable[[], None]) -> None:
         """Call it when something else is selected."""
         self._on_select.append(function)
+
+    # Where a person points, and whence he looks
+
+    async def pick_place(self) -> Place | None:
+        """The place that a person clicks at in the scene next; None for none, as when there is no scene."""
+        return None if self.pick is None else await self.pick()
+
+    @property
+    def viewpoint(self) -> ViewPoint | None:
+        """Whence the scene is seen, for commands that tell left from right; None without a scene."""
+        return None if self.look is None else self.look()
 
     # The moment
 

@@ -20,6 +20,17 @@ PATH: Final = "/scene"
 _LARGEST: Final = 64 << 20
 _GONE: Final = 1001
 _TRY_AGAIN: Final = 1013
+_OWN: Final = """<style>
+[data-dock-root] > :not(:first-child), .mantine-Notifications-root { display: none !important; }
+</style><script>
+addEventListener("keydown", (event) => {
+  if (event.target.closest && event.target.closest("input, textarea, select")) return;
+  const { key, code, shiftKey, ctrlKey, altKey, metaKey } = event;
+  const told = { key, code, shiftKey, ctrlKey, altKey, metaKey, bubbles: true };
+  parent.document.body.dispatchEvent(new KeyboardEvent("keydown", told));
+});
+</script>"""
+"""The scene has no panel of its own, and the page hears the keys that are pressed in it."""
 
 
 def router(at: Path) -> APIRouter:
@@ -45,7 +56,8 @@ async def _client(request: Request) -> Response:
 
 @cache
 def _packed() -> bytes:
-    return gzip.compress((Path(viser.__file__).parent / "client/build/index.html").read_bytes(), 6)
+    page = (Path(viser.__file__).parent / "client/build/index.html").read_bytes()
+    return gzip.compress(page.replace(b"</title>", b"</title>" + _OWN.encode(), 1), 6)
 
 
 async def _relay(websocket: WebSocket, at: Path) -> None:

@@ -6,8 +6,9 @@ from collections.abc import Iterable
 
 from rich.table import Table
 
+from nodes.extern.cli.output.lines import touched
 from nodes.extern.cli.output.tables import card, table
-from nodes.extern.phrasing import author, moment, pose_text, provenance_text, what_changed
+from nodes.extern.phrasing import author, moment, pose_text, provenance_text
 from schemas.replies import LoggedCommit, Sighting
 
 
@@ -23,7 +24,7 @@ def history_table(commits: Iterable[LoggedCommit]) -> Table:
             author(c),
             c.reason,
             "" if c.confidence is None else f"{c.confidence:.2f}",
-            what_changed(c),
+            touched(c),
         )
         for note in c.notes:
             rows.add("", "", "", "", "", f"note: {note}")

@@ -6,7 +6,8 @@ from typing import Any, Final
 
 from nicegui import ui
 
-from nodes.extern.phrasing import author, moment, what_changed
+from nodes.extern.cli.output.lines import touched
+from nodes.extern.phrasing import author, moment
 from nodes.extern.web.page import Page
 from schemas.replies import LoggedCommit
 
@@ -92,5 +93,5 @@ def _cells(row: LoggedCommit, *, is_shown: bool) -> dict[str, Any]:
         "time": moment(row.stamp_ns).replace("T", " "),
         "by": author(row),
         "why": row.reason,
-        "what": ("▶ " if is_shown else "") + what_changed(row),
+        "what": ("▶ " if is_shown else "") + touched(row),
     }

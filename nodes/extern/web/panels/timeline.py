@@ -7,7 +7,8 @@ from typing import Any, Final
 
 from nicegui import ui
 
-from nodes.extern.phrasing import author, moment, what_changed
+from nodes.extern.cli.output.lines import touched
+from nodes.extern.phrasing import author, moment
 from nodes.extern.web.differences import Difference, Mark, counted
 from nodes.extern.web.page import Page
 from nodes.runtime import rhythm
@@ -190,7 +191,7 @@ class _Timeline:
         row = self._page.tape.row(shown)
         if row is None:
             return f"The past: commit {shown} of {last}"
-        why = row.reason or what_changed(row)
+        why = row.reason or touched(row)
         return f"The past: commit {shown} of {last} · {moment(row.stamp_ns)} · {author(row)}: {why}"
 
     def _draw_differences(self) -> None:

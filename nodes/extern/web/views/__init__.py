@@ -1,1 +1,1 @@
-"""What the panels of knowledge show, as plain data: pure functions of the map and of replies."""
+"""What the panels of the page show, as plain data: rows, texts, trees and positions."""
