@@ -112,6 +112,7 @@ class Tape:
                 self.begins_there = len(older) < _ROWS
                 self.rows[:0] = older
                 self._tell()
+                await self._read_newest()
         except errors.SemmapError as error:
             log.info("the history cannot be read just now: %s", error)
 

@@ -24,8 +24,8 @@ _FEW: Final = 12
 COLOURS: Final[dict[Mark, str]] = {
     "added": "positive",
     "removed": "negative",
-    "moved": "primary",
-    "changed": "secondary",
+    "moved": "deep-purple",
+    "changed": "teal",
 }
 """In which colour of the page's palette a difference is marked."""
 
@@ -171,7 +171,7 @@ class _Timeline:
         page, shown = self._page, self._shown
         last = page.live.commit
         is_past = not page.moment.is_now
-        self._slider.props(f"min={page.tape.first} max={max(last, page.tape.first)}")
+        self._slider.props["min"], self._slider.props["max"] = page.tape.first, max(last, page.tape.first)
         if self._wanted is None:
             self._slider.set_value(shown)
         self._play.props(f"icon={'pause' if self._is_playing else 'play_arrow'}")
