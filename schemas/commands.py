@@ -541,6 +541,27 @@ class Move(Command[Moved], frozen=True, tag="move"):
     leave: tuple[Word, ...] = ()
 
 
+class Open(Command[Moved], frozen=True, tag="open"):
+    """Open a thing as a hand would: its joints move `to` this share of their way; the map follows at rest.
+
+    With a `joint`, only that one of several. Refused for what has no joints; NoAnswer without a simulator.
+    `wait` delays the reply until it stands and the map has followed. What is in the way stops it.
+    """
+
+    name: Word
+    to: Probability = 1.0
+    joint: Word | None = None
+    wait: bool = False
+
+
+class Close(Command[Moved], frozen=True, tag="close"):
+    """Close a thing as a hand would; as for `open`."""
+
+    name: Word
+    joint: Word | None = None
+    wait: bool = False
+
+
 class Pause(Command[Done], frozen=True, tag="pause"):
     """Pause simulated time, or with `off` resume it."""
 

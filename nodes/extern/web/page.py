@@ -48,6 +48,10 @@ class Page:
         self.compared: Compared = "before"
         self.differences: Mapping[str, Difference] = {}
         """How the moment shown differs from what it is compared with, by name; now there are none."""
+        self.dark = False
+        self.narrow = False
+        self.is_seen = False
+        """The browser has said how it looks."""
         self.refuse: Callable[[Command[Any], errors.SemmapError], None] | None = None
         """Shows why a change was refused; set by the layout."""
         self.draw_scene: Callable[[], None] | None = None
@@ -61,6 +65,8 @@ class Page:
         self._on_change: list[Callable[[], None]] = []
         self._on_connection: list[Callable[[], None]] = []
         self._on_poses: list[Callable[[tuple[str, ...]], None]] = []
+        self._on_look: list[Callable[[], None]] = []
+        self._on_key: dict[str, Callable[[], object]] = {}
         self._asked_for = 0
         self.tape = tape_of(live)
         """The past of the map, for all tabs."""
@@ -70,9 +76,16 @@ class Page:
     def close(self) -> None:
         """The tab is gone."""
         self._stop()
-        for functions in (self._on_select, self._on_moment, self._on_change, self._on_connection):
+        for functions in (
+            self._on_select,
+            self._on_moment,
+            self._on_change,
+            self._on_connection,
+            self._on_look,
+        ):
             functions.clear()
         self._on_poses.clear()
+        self._on_key.clear()
 
     # What is selected
 
@@ -165,6 +178,26 @@ class Page:
         """Call it when the knowledge base has gone or come back."""
         self._on_connection.append(function)
 
+    # The browser
+
+    def looks(self, *, dark: bool, narrow: bool) -> None:
+        """The browser says whether it shows the page dark, and whether it is as narrow as a phone."""
+        self.dark, self.narrow, self.is_seen = dark, narrow, True
+        self._tell(self._on_look)
+
+    def on_look(self, function: Callable[[], None]) -> None:
+        """Call it when `dark` or `narrow` has changed, and when they are known first."""
+        self._on_look.append(function)
+
+    def on_key(self, key: str, function: Callable[[], object]) -> None:
+        """Call it when this key is pressed outside of what is written in; one function a key."""
+        self._on_key[key] = function
+
+    def press(self, key: str) -> None:
+        """A key was pressed."""
+        if (function := self._on_key.get(key)) is not None:
+            self._tell([function])
+
     def _on_happening(self, happening: Happening) -> None:
         if happening.kind == "connection":
             self._tell(self._on_connection)
@@ -189,7 +222,7 @@ class Page:
             self.select(name for name in self.selected if name in self.state.entities)
         self._tell(self._on_change)
 
-    def _tell(self, functions: list[Callable[..., None]], *arguments: Any) -> None:
+    def _tell(self, functions: Iterable[Callable[..., object]], *arguments: Any) -> None:
         """One panel that fails does not keep the others from being told."""
         for function in tuple(functions):
             try:
@@ -216,7 +249,7 @@ class Page:
         try:
             return await self.live.ask(command, timeout_s)
         except errors.SemmapError as error:
-            if self.refuse is not None and isinstance(error, errors.Refused):
+            if self.refuse is not None and not isinstance(error, errors.NoAnswer):
                 with self.client:
                     self.refuse(command, error)
             else:

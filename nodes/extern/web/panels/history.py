@@ -1,97 +1,47 @@
-"""The history: a table of commits around the moment shown, of all or of the selected things."""
+"""What became of one thing, the newest first: each commit can be looked at, and undone."""
 
 from __future__ import annotations
 
-from typing import Any, Final
+from collections.abc import Iterable
 
 from nicegui import ui
 
-from nodes.extern.cli.output.lines import touched
-from nodes.extern.phrasing import author, moment
 from nodes.extern.web.page import Page
+from nodes.extern.web.views.past import Event, events
+from schemas.commands import Undo
+from schemas.errors import shortened
 from schemas.replies import LoggedCommit
 
-ROWS: Final = 200
-"""That many are in the table at once."""
-_WRAPPED: Final = "white-space: normal"
-_COLUMNS: Final[list[dict[Any, Any]]] = [
-    {"name": "seq", "label": "Commit", "field": "seq", "align": "right", "sortable": True},
-    {"name": "time", "label": "Time", "field": "time", "align": "left"},
-    {"name": "by", "label": "By", "field": "by", "align": "left"},
-    {"name": "why", "label": "Why", "field": "why", "align": "left", "style": _WRAPPED},
-    {"name": "what", "label": "What", "field": "what", "align": "left", "style": _WRAPPED},
-]
 
-
-def history(page: Page) -> None:
+def history(page: Page, name: str, commits: Iterable[LoggedCommit], last_seen: str) -> None:
     """Draw it where it is called."""
-    _History(page)
+    places = [entity for entity in page.state.entities.values() if entity.place and entity.name != name]
+    if last_seen:
+        ui.label(f"{last_seen[:1].upper()}{last_seen[1:]}").classes("semmap-sentence")
+    with ui.element("ol").classes("semmap-history").props('aria-label="History"'):
+        for event in events(name, commits, places):
+            with ui.element("li"):
+                _event(page, event)
 
 
-class _History:
-    """Of one tab."""
-
-    def __init__(self, page: Page) -> None:
-        self._page = page
-        self._end: int | None = None
-        """The last commit of the table; None follows the moment shown."""
-        with ui.row().classes("items-center gap-4"):
-            self._only = ui.checkbox("Only commits of what is selected", on_change=lambda: self._turn(None))
-            self._older = ui.button("Older", on_click=lambda: self._page_on(-1)).props("flat dense")
-            self._newer = ui.button("Newer", on_click=lambda: self._page_on(1)).props("flat dense")
-            self._told = ui.label().classes("text-caption").props('role="status"')
-        self._table = ui.table(columns=_COLUMNS, rows=[], row_key="seq").classes("w-full")
-        self._table.props('dense flat virtual-scroll aria-label="Commits" table-style="max-height: 60vh"')
-        self._table.on("rowClick", self._on_click)
-        page.on_moment(lambda: self._turn(None))
-        page.on_change(self._show)
-        page.on_select(lambda: self._turn(None) if self._only.value else None)
-        page.client.on_delete(page.tape.listen(self._show_told))
-        self._show()
-
-    def _show_told(self) -> None:
-        with self._page.client:
-            self._show()
-
-    def _turn(self, end: int | None) -> None:
-        self._end = end
-        self._show()
-
-    def _page_on(self, by: int) -> None:
-        shown = self._table.rows
-        if not shown:
-            return
-        seqs = [row["seq"] for row in shown]
-        self._turn(min(seqs) - 1 if by < 0 else max(seqs) + ROWS)
-
-    def _on_click(self, event: Any) -> None:
-        seq = int(event.args[1]["seq"])
-        self._page.go_to(None if seq >= self._page.live.commit else seq)
-
-    def _show(self) -> None:
-        page, known = self._page, self._page.tape.rows
-        names = {*page.selected} if self._only.value else None
-        chosen = known if names is None else of_names(known, names)
-        end = self._end if self._end is not None else page.state.commit + ROWS // 4
-        upto = [row for row in chosen if row.seq <= end] or chosen[:ROWS]
-        rows = upto[-ROWS:]
-        self._table.rows = [_cells(row, is_shown=row.seq == page.state.commit) for row in reversed(rows)]
-        self._older.set_enabled(bool(rows) and rows[0] is not chosen[0])
-        self._newer.set_enabled(bool(rows) and rows[-1] is not chosen[-1])
-        of = "" if names is None else f" of {', '.join(sorted(names)) or 'nothing: select something first'}"
-        self._told.text = f"{len(chosen)} commits{of}" if len(chosen) != 1 else f"1 commit{of}"
+def _event(page: Page, event: Event) -> None:
+    for text in event.texts:
+        ui.label(shortened(text, 1000))
+    with ui.row().classes("w-full items-center gap-1 no-wrap"):
+        sure = f", sure to {event.sure}" if event.sure else ""
+        what = f"commit {event.commit} · {event.when.replace('T', ' ')} · {event.by}{sure}"
+        ui.label(shortened(f"{what} · {event.why}", 300)).classes("text-caption grow").style("min-width: 0")
+        _button("visibility", f"Show the map after commit {event.commit}", lambda: page.go_to(event.commit))
+        if page.may("undo") and page.moment.is_now:
+            _button("undo", f"Undo commit {event.commit}", lambda: _undo(page, event.commit))
 
 
-def of_names(rows: list[LoggedCommit], names: set[str]) -> list[LoggedCommit]:
-    """The commits that touched any of these entities."""
-    return [row for row in rows if not names.isdisjoint(row.changed) or not names.isdisjoint(row.removed)]
+def _button(icon: str, label: str, on_click: object) -> None:
+    button = ui.button(icon=icon, on_click=on_click).props("flat round dense size=sm")  # type: ignore[arg-type]
+    button.props["aria-label"] = label
+    button.tooltip(label)
 
 
-def _cells(row: LoggedCommit, *, is_shown: bool) -> dict[str, Any]:
-    return {
-        "seq": row.seq,
-        "time": moment(row.stamp_ns).replace("T", " "),
-        "by": author(row),
-        "why": row.reason,
-        "what": ("▶ " if is_shown else "") + touched(row),
-    }
+async def _undo(page: Page, commit: int) -> None:
+    if (done := await page.change(Undo(commit=commit))) is not None:
+        page.tell(done.text, "positive")

@@ -16,7 +16,7 @@ from schemas import errors
 
 _SPEEDS: Final = {0.1: "0.1 ×", 1.0: "1 ×", 10.0: "10 ×", 100.0: "100 ×", 1000.0: "1000 ×"}
 _COMPARED: Final = {"before": "the commit before", "now": "now", "": "nothing"}
-_SMALL: Final = "dense dark options-dense borderless"
+_SMALL: Final = "dense options-dense borderless"
 _AT_MOST: Final[dict[str, Any]] = {"throttle": 0.1, "leading_events": True, "trailing_events": True}
 _DRAWN_S: Final = 0.15
 """No moment is shown for less while the past is played."""
@@ -42,14 +42,14 @@ class _Timeline:
         self._page = page
         self._is_playing = False
         self._wanted: int | None = None
-        with ui.column().classes("w-full gap-0 q-px-sm rounded-borders") as self._bar:
+        with ui.column().classes("semmap-bar") as self._bar:
             self._bar.props('role="group" aria-label="Time"')
             with ui.row().classes("w-full items-center no-wrap gap-2"):
                 self._back = self._button("skip_previous", "One commit back", lambda: self._step(-1))
                 self._play = self._button("play_arrow", "Play", self._toggle)
                 self._on = self._button("skip_next", "One commit on", lambda: self._step(1))
                 self._slider = ui.slider(min=1, max=1, value=1).classes("col")
-                self._slider.props('label color=white label-text-color=black aria-label="Commit"')
+                self._slider.props('label aria-label="Commit"')
                 self._slider.on("update:model-value", self._on_slider, **_AT_MOST)
                 self._when = ui.input(placeholder="commit or time").classes("w-36 gt-sm")
                 self._when.props(f'{_SMALL} aria-label="Go to a commit or a time, such as 12:30"')
@@ -60,7 +60,7 @@ class _Timeline:
                 compared.props(_SMALL).classes("w-40 gt-sm")
                 compared.on_value_change(lambda event: page.compare(event.value))
                 self._now = ui.button("Now", on_click=lambda: self._go(None))
-                self._now.props("dense unelevated color=white text-color=black no-caps")
+                self._now.props("dense unelevated color=warning text-color=black padding='2px 10px'")
                 self._now.tooltip("Back to now (Home)")
             with ui.row().classes("w-full items-center gap-x-2 gap-y-0"):
                 self._caption = ui.label().props('role="status"').classes("ellipsis")
@@ -75,7 +75,7 @@ class _Timeline:
 
     def _button(self, icon: str, label: str, act: Any) -> ui.button:
         button = ui.button(icon=icon, on_click=act).tooltip(label)
-        return button.props(f'flat round dense color=white aria-label="{label}"')
+        return button.props(f'flat round dense color=secondary aria-label="{label}"')
 
     def _leave(self) -> None:
         self._is_playing = False
@@ -176,7 +176,7 @@ class _Timeline:
             self._slider.set_value(shown)
         self._play.props(f"icon={'pause' if self._is_playing else 'play_arrow'}")
         self._now.set_visibility(is_past)
-        self._bar.classes(add="bg-brown-8" if is_past else "", remove="" if is_past else "bg-brown-8")
+        self._bar.classes(add="is-past" if is_past else "", remove="" if is_past else "is-past")
         self._on.set_enabled(is_past)
         self._back.set_enabled(shown > page.tape.first)
         self._caption.text = self._said(shown, last, is_past=is_past)
