@@ -56,5 +56,5 @@ class Door:
 
     def _settled(self, settled: Settled) -> Talk[Changed]:
         """The map takes over where bodies came to rest: one, or those that a hand carried together."""
-        with self.hands.that_moved(*settled.poses) as hand:
+        with self.hands.that_moved(*settled.names) as hand:
             return (yield from changing.follow(self.map, settled, hand))

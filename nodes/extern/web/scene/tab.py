@@ -9,11 +9,12 @@ from typing import Any, Final, Literal
 
 from viser import ClientHandle
 
+from nodes.extern.web.differences import Mark
 from nodes.extern.web.page import Page, Place
 from nodes.extern.web.scene.assets import Assets
 from nodes.extern.web.scene.bodies import MODIFIERS, Bodies, Pixel
 from nodes.extern.web.scene.camera import FOV_RAD, View, first_view, uncrowded
-from nodes.extern.web.scene.differences import differences
+from nodes.extern.web.scene.differences import drawn
 from nodes.extern.web.scene.dragging import Gizmo, Phase, put_down
 from nodes.extern.web.scene.marks import Labels, Lines, Rgb, Written, dashed, joined, line
 from nodes.extern.web.scene.picking import Solid, edges_of, first_hit
@@ -43,7 +44,12 @@ _ON: Final[frozenset[Switch]] = frozenset(("names", "walls", "relations"))
 _SELECTED: Final[Rgb] = (255, 120, 0)
 _BOX: Final[Rgb] = (120, 130, 150)
 _RELATION: Final[Rgb] = (0, 120, 200)
-_CHANGED: Final[dict[str, Rgb]] = {"came": (0, 150, 70), "went": (215, 40, 40), "moved": (130, 60, 200)}
+_CHANGED: Final[dict[Mark, Rgb]] = {
+    "added": (0, 150, 70),
+    "removed": (215, 40, 40),
+    "moved": (130, 60, 200),
+    "changed": (0, 140, 150),
+}
 _SKY: Final[Rgb] = (255, 255, 255)
 _GROUND: Final[Rgb] = (190, 180, 170)
 _LABELS_S: Final = 0.25
@@ -251,25 +257,20 @@ class TabScene:
 
     def _draw_differences(self) -> None:
         pieces, labels = [], {}
-        if not self.page.moment.is_now:
-            for found in differences(self.page.state.entities, self.page.live.entities):
-                rgb = _CHANGED[found.kind]
-                size_m = self._size_of(found.name)
-                at = found.then or found.now
-                assert at is not None
-                pieces.append((edges_of(at, size_m), rgb))
-                if found.then is not None and found.now is not None:
-                    pieces.append((edges_of(found.now, size_m), rgb))
-                    pieces.append((dashed(_middle(found.then, size_m), _middle(found.now, size_m)), rgb))
-                labels[found.name] = (found.text, _top(at, size_m))
+        for found in drawn(self.page.differences):
+            rgb, size_m = _CHANGED[found.mark], self._known_size_of(found.name) or found.size_m
+            at = found.then or found.now
+            assert at is not None
+            pieces.append((edges_of(at, size_m), rgb))
+            if found.then is not None and found.now is not None:
+                pieces.append((edges_of(found.now, size_m), rgb))
+                pieces.append((dashed(_middle(found.then, size_m), _middle(found.now, size_m)), rgb))
+            labels[found.name] = (found.text, _top(found.now or at, size_m))
         self._differences.show(pieces)
         self._difference_labels.show(dict(list(labels.items())[:40]))
 
-    def _size_of(self, name: str) -> Size:
-        if name in self._things:
-            return self._things[name].size_m
-        entity = self.page.live.entities.get(name) or self.page.state.entities.get(name)
-        return (entity.size_m if entity is not None else None) or (0.2, 0.2, 0.2)
+    def _known_size_of(self, name: str) -> Size | None:
+        return self._things[name].size_m if name in self._things else None
 
     # Labels
 
