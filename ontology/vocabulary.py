@@ -188,6 +188,7 @@ SUPPORTING: Final = dm("supporting")
 IS_LOCATED_IN: Final = dm("isLocatedIn")
 
 CONFLICTING_OBSERVATION: Final = dm("conflictingObservation")
+TRACKED_FROM: Final = dm("trackedFrom")
 """Annotation of an entity: what perception sees against what the map says of it."""
 
 SPATIAL: Final = dm("spatial")

@@ -7,7 +7,8 @@ come from the scene, the body is ordered there; otherwise a body that rests else
 follows.
 
 If only perception updates the map (`perceived`), nothing is to be done: an entity without a body is a belief,
-a body without an entity has not been seen yet, and a pose that differs will be seen.
+a body without an entity has not been seen yet, and a pose that differs will be seen. Only what is tracked
+from the simulator is followed all the same. What is tracked from a stream never follows its body.
 """
 
 from __future__ import annotations
@@ -47,7 +48,9 @@ def reconcile(
     not tried again before the entity changes.
     """
     if truth == "perceived":
-        return Actions()
+        tracked = (e for e in entities.values() if e.tracked == "sim" and e.name in bodies)
+        moved = (bodies[e.name] for e in tracked if _moved(e, bodies[e.name], thresholds))
+        return Actions(follow=tuple(Placement(name=body.name, pose=body.pose) for body in moved))
     failed = failed or {}
     delete, spawn, place, follow, adopt, missing = [], [], [], [], [], []
     coming = {latest(e) for e in entities.values() if not (e.place or e.pose is None or e.name in bodies)}
@@ -113,7 +116,7 @@ def _ordered_since(entity: Entity, body: Body) -> bool:
 
 
 def _moved(entity: Entity, body: Body, thresholds: Thresholds) -> bool:
-    if not body.resting:
+    if not body.resting or entity.tracked == "stream":
         return False
     if entity.pose is None:
         return True

@@ -1,11 +1,11 @@
-"""Bodies that came to rest elsewhere, as a change of the map that takes its turn among the others."""
+"""Where things have come to be, as a change of the map that takes its turn among the others."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from schemas.entities import Entity, Pose
+from schemas.entities import Entity, Pose, Source
 
 
 class Settled(NamedTuple):
@@ -18,10 +18,20 @@ class Settled(NamedTuple):
 
     An entity whose pose is from another one by now stays where it is."""
 
+    source: Source = "scene"
+    reason: str = ""
+    """Why the map takes them over; without one they came to rest, or a hand put them there."""
+
     @classmethod
-    def of(cls, entities: Mapping[str, Entity], poses: Mapping[str, Pose]) -> Settled:
-        """The bodies of these entities rest at `poses`."""
-        return cls(poses, {name: posed_by(entities[name]) for name in poses})
+    def of(
+        cls,
+        entities: Mapping[str, Entity],
+        poses: Mapping[str, Pose],
+        source: Source = "scene",
+        reason: str = "",
+    ) -> Settled:
+        """These entities are at `poses`."""
+        return cls(poses, {name: posed_by(entities[name]) for name in poses}, source, reason)
 
     def still(self, entities: Mapping[str, Entity]) -> dict[str, Pose]:
         """The poses of the entities that nobody has moved or removed meanwhile."""

@@ -16,7 +16,7 @@ from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Star
-from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated
+from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
 from schemas.explanations import Term, Triple
 
 _NAME = re.compile(NAME_PATTERN)
@@ -78,6 +78,7 @@ def read_entity(
         preferred=preferred,
         alternatives=_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
         conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
+        tracked=_tracked(iri, said.get(v.TRACKED_FROM, ())),
         properties=classes.stated.stated(said),
     )
 
@@ -103,6 +104,7 @@ def entity_of(
     preferred: Iterable[str],
     alternatives: Iterable[str],
     conflict: str = "",
+    tracked: Tracked = "",
     properties: dict[str, Stated] | None = None,
 ) -> Entity:
     """The entity of a kind whose star says this, all of it by `provenance`.
@@ -120,6 +122,7 @@ def entity_of(
         preferred_reference=min(preferred, default=None),
         alternative_references=tuple(alternatives),
         conflict=conflict,
+        tracked=tracked,
         properties=properties or {},
         place=kind.place,
         fixed=kind.fixed,
@@ -323,6 +326,20 @@ def _numbers(iri: Term, predicates: Sequence[Term], said: Objects) -> tuple[floa
             )
         found.append(value)
     return tuple(found) if len(found) == len(predicates) else None
+
+
+def _tracked(iri: Term, terms: Sequence[Term]) -> Tracked:
+    """Raises BadRequest for what is no source of live poses."""
+    if not terms:
+        return ""
+    source = _said(min(terms))
+    if source == "sim":
+        return "sim"
+    if source == "stream":
+        return "stream"
+    raise errors.BadRequest(
+        f"{v.local_name(iri)}: trackedFrom is '{source}'; live poses come from sim or stream"
+    )
 
 
 def _said(term: Term) -> str:

@@ -207,3 +207,17 @@ def test_what_one_commit_brings_and_puts_elsewhere_is_set_down_together():
     assert [p.name for p in look([cup, other], [body("chair1", at(3))]).place] == ["chair1"]
     furniture = look([cup, table], [body("table1", at(3), of_entity=False)])
     assert [p.name for p in furniture.place] == ["table1"]
+
+
+def test_what_is_tracked_from_a_stream_does_not_follow_its_body():
+    robot = structs.replace(entity("chair1", at(0.0)), tracked="stream")
+    for truth in ("map", "scene", "perceived"):
+        assert look([robot], [body("chair1", at(2.0))], truth).follow == ()
+
+
+def test_what_is_tracked_from_the_simulator_is_followed_where_it_rests_whatever_the_truth_is():
+    robot = structs.replace(entity("chair1", at(0.0)), tracked="sim")
+    for truth in ("map", "scene", "perceived"):
+        assert [p.name for p in look([robot], [body("chair1", at(2.0))], truth).follow] == ["chair1"]
+        assert look([robot], [body("chair1", at(2.0), resting=False)], truth).follow == ()
+    assert look([entity("chair1", at(0.0))], [body("chair1", at(2.0))], "perceived") == Actions()
