@@ -89,6 +89,9 @@ GRANTS: Final[tuple[Grant, ...]] = (
     Grant("ask", f"{keys.BRIDGE}/recall", ANYBODY),
     Grant("ask", f"{keys.BRIDGE}/copy", ANYBODY),
     Grant("ask", f"{keys.BRIDGE}/*", _NODES),
+    Grant("ask", f"{keys.SIM}/snapshot", ANYBODY),
+    Grant("ask", f"{keys.SIM}/surfaces", ANYBODY),
+    Grant("ask", f"{keys.SIM}/world", ANYBODY),
     Grant("ask", f"{keys.SIM}/*", _NODES),
     Grant("ask", f"{keys.CMD}/*", _NODES),
 )

@@ -132,6 +132,15 @@ class SurfaceQuery(Call[Surfaces], frozen=True, kw_only=True, forbid_unknown_fie
     names: tuple[str, ...]
 
 
+class WorldQuery(Call[Surface], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What the world itself looks like: the walls and whatever else of its file is no body, in the map frame.
+
+    Planes are left out, for they have no end.
+    """
+
+    VERB: ClassVar[str] = "world"
+
+
 class Picture(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A PNG file."""
 

@@ -103,10 +103,11 @@ def follow_cameras(
     plane: Literal["rgb", "depth"],
     receive: Callable[[CameraFrame, Callable[[], bytes]], None],
     refuse: Callable[[str], None],
-) -> None:
+) -> Callable[[], None]:
     """Each plane of each camera goes to `receive(frame, read)`, where `read()` gives its pixels.
 
     On a thread of Zenoh's, so they should only be kept. `refuse(reason)` is told of what is no frame.
+    What is returned ends it.
     """
 
     def on_sample(sample: zenoh.Sample) -> None:
@@ -116,7 +117,12 @@ def follow_cameras(
         except errors.BadRequest as error:
             refuse(f"{sample.key_expr}: {error.text}")
 
-    session.declare_subscriber(keys.camera_key("*", plane), on_sample)
+    subscriber = session.declare_subscriber(keys.camera_key("*", plane), on_sample)
+
+    def stop() -> None:
+        subscriber.undeclare()  # type: ignore[no-untyped-call]
+
+    return stop
 
 
 def includes(key_exprs: Iterable[str], key_expr: str) -> bool:

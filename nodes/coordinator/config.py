@@ -9,7 +9,7 @@ from typing import Literal
 
 from nodes.bus import Network
 
-Truth = Literal["map", "scene", "perceived"]
+Truth = Literal["map", "scene", "perceived", "replayed"]
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,8 @@ class LiveRules:
 class CoordinatorConfig:
     """`truth` says who owns existence: in `map` the scene follows the map, in `scene` the other way.
 
-    In `perceived` the simulator stands for the world itself: only perception updates the map.
+    In `perceived` the simulator stands for the world itself: only perception updates the map. In
+    `replayed` the map is the past, which the scene follows and never changes.
     """
 
     truth: Truth = "map"

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import logging
 import time
+from collections.abc import Collection
 from concurrent.futures import Future
 
+from nodes.drawing.scene_state import SceneState
+from nodes.drawing.surfaces import Kind
 from nodes.recorder.config import RecorderConfig
 from nodes.recorder.drawing.graph import graph_of
 from nodes.recorder.drawing.stage import Stage
-from nodes.recorder.drawing.surfaces import Kind
 from nodes.recorder.growth import LOOK_S, Growth
 from nodes.recorder.perception_recorder import PerceptionRecorder
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
 from nodes.recorder.retention import KEEP_ALL, Retention, recordings
-from nodes.recorder.state.map_relations import Relations, missed
-from nodes.recorder.state.scene_state import SceneState
+from nodes.recorder.state.map_relations import Relations, missed, subjects
 from nodes.runtime.following import Begun, Follower
 from nodes.runtime.loop import Node, open_node
 from nodes.runtime.map_replica import MapReplica
@@ -86,9 +87,9 @@ class Recorder:
             self._show_commit(commit)
 
     def _show_commit(self, commit: Commit) -> None:
-        touched = {entity.name for entity in commit.changed} | {gone.name for gone in commit.removed}
-        self._stage.show(sorted(touched), self._map.entities, self._scene.bodies, simulated=self._scene.known)
-        self._shown()
+        touched = sorted(commit.names)
+        self._stage.show(touched, self._map.entities, self._scene.bodies, simulated=self._scene.known)
+        self._shown(touched or subjects(commit.places))
 
     def _on_map(self, begun: Begun) -> None:
         first = begun.before < 0
@@ -241,8 +242,9 @@ class Recorder:
     def _show_all(self) -> None:
         self._stage.show_all(self._map.entities, self._scene.bodies, simulated=self._scene.known)
 
-    def _shown(self) -> None:
-        self._stage.show_graph(graph_of(self._map.entities, self._relations.between(self._map.entities)))
+    def _shown(self, touched: Collection[str] = ()) -> None:
+        relations = self._relations.between(self._map.entities)
+        self._stage.show_graph(graph_of(self._map.entities, relations, touched))
         if not self._arranged and self._map.entities:
             self._arranged = True
             self._recording.arrange(self._stage.poses)

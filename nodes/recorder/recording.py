@@ -13,11 +13,12 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from nodes.drawing.figures import Figure
+from nodes.drawing.neighbourhood import Neighbourhood
 from nodes.recorder import commit_text
 from nodes.recorder.drawing.blueprint import bounds_of, layout
-from nodes.recorder.drawing.figures import Figure
 from nodes.recorder.drawing.geometry import shape_of
-from nodes.recorder.drawing.graph import Graph, nodes_and_edges
+from nodes.recorder.drawing.graph import nodes_and_edges
 from schemas import errors
 from schemas.commits import Commit, PlaceChanges
 from schemas.entities import Pose
@@ -77,8 +78,8 @@ class Recording:
         """Draw what perception saw."""
         self._log(path, *archetypes)
 
-    def graph(self, graph: Graph) -> None:
-        """Draw the knowledge graph."""
+    def graph(self, graph: Neighbourhood) -> None:
+        """Draw a part of the knowledge graph."""
         self._log("graph", *nodes_and_edges(graph))
 
     def commit(self, commit: Commit) -> None:

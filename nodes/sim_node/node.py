@@ -33,8 +33,10 @@ from schemas.scenes import (
     SceneQuery,
     Spawn,
     Spawned,
+    Surface,
     SurfaceQuery,
     Surfaces,
+    WorldQuery,
 )
 
 Reply = TypeVar("Reply")
@@ -62,7 +64,7 @@ class Simulator:
         self._node = node
         models = Models(config.models, config.data)
         self._world = open_world(config.world, models, node.tick, self._classes(config))
-        self._paused = False
+        self._paused = config.still
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
         self._studio = Studio(config.cameras, bus.watched(node.session, keys.SEGMENTS))
@@ -79,6 +81,7 @@ class Simulator:
                 Reset.answered_by(self._reset),
                 PictureQuery.answered_by(self._picture),
                 SurfaceQuery.answered_by(self._surfaces),
+                WorldQuery.answered_by(self._surface_of_the_world),
             ),
         )
         self._window = Window(self._world) if config.window else None
@@ -158,6 +161,9 @@ class Simulator:
 
     def _surfaces(self, query: SurfaceQuery) -> Surfaces:
         return self._world.surfaces(query.names)
+
+    def _surface_of_the_world(self, _: WorldQuery) -> Surface:
+        return self._world.surface()
 
     def _still(self) -> Still:
         return Still(*self._world.snapshot())

@@ -14,12 +14,24 @@ from nodes.sim_node import orders
 from nodes.sim_node.bodies import Floats, Ints, pose_of
 from nodes.sim_node.models.facets import surface_of
 from nodes.sim_node.models.library import build as library_model
+from nodes.sim_node.models.world_surface import world_surface
 from nodes.sim_node.orders import ModelSource
 from nodes.sim_node.physics import base_scene, build
 from nodes.sim_node.physics.engine import Engine
 from nodes.sim_node.placement.settling import Settling
 from nodes.sim_node.vision.view import bulk, overview
-from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Placement, Poses, Scene, Spawned, Surfaces
+from schemas.scenes import (
+    BodiesMoved,
+    Body,
+    BodyOrder,
+    Deleted,
+    Placement,
+    Poses,
+    Scene,
+    Spawned,
+    Surface,
+    Surfaces,
+)
 
 
 class World:
@@ -168,6 +180,10 @@ class World:
         """What bodies that were made from a model look like."""
         shapes = {name: self._engine.shape(name) for name in names}
         return Surfaces(surfaces={name: surface_of(shape) for name, shape in shapes.items() if shape})
+
+    def surface(self) -> Surface:
+        """What the world itself looks like, apart from bodies."""
+        return world_surface(self.model, self.data, self.body_names())
 
     def snapshot(self) -> tuple[mujoco.MjModel, mujoco.MjData, list[str]]:
         """Copies of the model and its state, and `body_names`; the model is shared until it changes."""

@@ -53,6 +53,9 @@ def seed(settings: Settings) -> None:
         write_own(None if settings.models is None else Path(settings.models), _own_shapes(settings))
     if "kb_node" not in settings.nodes:
         return
+    if (replay := settings.replay) is not None:
+        print(f"a replay of {replay.of}, from commit {replay.since} to {replay.until}; it cannot be changed")
+        return
     if not settings.fresh and (told := existing_map(Path(settings.data))) is not None:
         print(told)
         return
@@ -81,11 +84,20 @@ def _own_shapes(settings: Settings) -> Path:
 
 
 def _kb_node(settings: Settings) -> None:
-    from nodes.kb_node.config import KbConfig
+    from nodes.kb_node.config import KbConfig, Replay
     from nodes.kb_node.node import run
 
     add_own(_own_shapes(settings))
-    run(KbConfig(data=Path(settings.data), network=settings.network("kb_node")))
+    replay = settings.replay
+    run(
+        KbConfig(
+            data=Path(settings.data),
+            network=settings.network("kb_node"),
+            replay=None
+            if replay is None
+            else Replay(replay.until, replay.speed, replay.longest_s, settings.nodes),
+        )
+    )
 
 
 def _coordinator(settings: Settings) -> None:
@@ -111,7 +123,8 @@ def _sim_node(settings: Settings) -> None:
     network = settings.network("sim_node")
     patience_s = FOREVER_S if settings.only else RESTART_S  # another host may not be up yet
     data = Path(settings.data)
-    run(SimConfig(Path(settings.world), models, settings.window, cameras, network, data, patience_s))
+    still = settings.replay is not None
+    run(SimConfig(Path(settings.world), models, settings.window, cameras, network, data, patience_s, still))
 
 
 def _perception_node(settings: Settings) -> None:

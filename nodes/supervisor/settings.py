@@ -29,6 +29,19 @@ def default_data() -> Path:
     return platformdirs.user_data_path("semmap")
 
 
+class Replay(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Which commits of another map are replayed, and how fast."""
+
+    of: str
+    """The data folder of that map."""
+    since: int
+    """The commit after which the replay begins."""
+    until: int
+    speed: float
+    longest_s: float
+    """No wait between two commits is longer."""
+
+
 class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """All settings of a system. Paths are absolute."""
 
@@ -42,7 +55,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     abox: str | None
     """None is an empty map."""
     world: str
-    truth: Literal["map", "scene", "perceived"] = "map"
+    truth: Literal["map", "scene", "perceived", "replayed"] = "map"
     threshold_m: Annotated[float, Meta(gt=0.0)] = 0.05
     angle_threshold_deg: Annotated[float, Meta(gt=0.0, le=180.0)] = 5.0
     stale_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] = 2.0
@@ -82,6 +95,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     Of a single router that robots share it is `*`.
     """
+    replay: Replay | None = None
+    """The map replays the past, and nobody changes it; then `truth` is `replayed`."""
     zenoh_config: str | None = None
     """A Zenoh configuration file of one's own, for every process of the system."""
 

@@ -22,7 +22,7 @@ from nodes.identity import SUPERVISOR, Identity
 from nodes.supervisor import presence, registry
 from nodes.supervisor.control import LONGEST_STOP_S, Supervisor
 from nodes.supervisor.notices import Notices
-from nodes.supervisor.settings import Settings
+from nodes.supervisor.settings import Replay, Settings
 from nodes.supervisor.watchdog import Watchdog
 from schemas import errors, keys
 from schemas.calls import reply_type
@@ -124,6 +124,7 @@ class _Foreground:
         self._waits_from_s = time.monotonic() + _WAITS_S
         self._waits: set[tuple[str, str]] = set()
         """What was said of a node that waits."""
+        self._is_replayed = False
 
     def run(self) -> None:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -156,12 +157,20 @@ class _Foreground:
         if health.state == "starting":  # a large map takes its time, and tells so
             self._deadline_s = time.monotonic() + _START_TIMEOUT_S
             self._tell_of_waiting(health)
+        if health.node == "kb_node" and self._settings.replay is not None:
+            self._tell_of_replay(self._settings.replay, health)
         if health.state == "ready" and self._pids.get(health.node) != health.pid:
             again = " again" if health.node in self._pids else ""
             self._pids[health.node] = health.pid
             self._say(f"{health.node:<{_COLUMN}} ready{again}  pid {health.pid:<7} {health.detail}")
             for note in health.notes:
                 self._say(f"{'TBox':<{_COLUMN}} {note}")
+
+    def _tell_of_replay(self, replay: Replay, health: Health) -> None:
+        """Say once that all of it has been replayed."""
+        if health.commit == replay.until and not self._is_replayed:
+            self._is_replayed = True
+            self._say(f"{'map':<{_COLUMN}} is as it was after commit {replay.until}, and stays so")
 
     def _tell_of_waiting(self, health: Health) -> None:
         """In a part of a system, say once for what a node waits: it may be on a host that is not up yet."""

@@ -160,10 +160,24 @@ def test_the_graph_has_what_is_computed_of_places(world, tmp_path):
     with recorder(world, path):
         world.publish(commit(2, places=PlaceChanges(came=(on,))))
         world.await_commit(2)
-    every = column(path, "/graph", "GraphEdges:edges", whole=True)
-    assert [["cup1", "chair1"] in [[e["first"], e["second"]] for e in edges] for edges in every] == [
-        False,
-        True,
+    every = column(path, "/graph", "GraphNodes:node_ids", whole=True)
+    assert ["cup1 isOn chair1" in nodes for nodes in every] == [False, True]
+
+
+def test_the_graph_shows_the_neighbourhood_of_what_a_commit_touched(world, tmp_path):
+    path = tmp_path / "a.rrd"
+    world.snapshot = Snapshot(
+        seq=1,
+        entities=(entity("room1", "Kitchen", place=True), *(entity(f"cup{i}", "Cup") for i in range(30))),
+    )
+    room = relation("cup7", "isLocatedIn", "room1")
+    with recorder(world, path):
+        world.publish(commit(2, entity("cup7", "Cup", at=pose(7.0)), places=PlaceChanges(came=(room,))))
+        world.await_commit(2)
+    every = column(path, "/graph", "GraphNodes:node_ids", whole=True)
+    assert list(map(set, every)) == [
+        {"room1", "more:elsewhere"},
+        {"cup7", "class:Cup", "room1", "cup7 is a class:Cup", "cup7 isLocatedIn room1"},
     ]
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from nodes.recorder.drawing.figures import Figure
+from nodes.drawing.figures import Figure
 from nodes.recorder.recorded_commits import read_commits
 from nodes.recorder.recording import free_to_serve, open_recording
 from nodes.recorder.replay import replay

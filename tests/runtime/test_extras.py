@@ -26,6 +26,7 @@ NOT_ASKED_FOR = {"glfw", "open3d", "rapidfuzz", "typing_extensions"}
 AREAS = {
     "nodes/bus": (),
     "nodes/coordinator": ("kb",),
+    "nodes/drawing": ("record",),  # or web, with less
     "nodes/extern": tuple(extras.MODULES),  # which asks for them first
     "nodes/identity": ("keys",),
     "nodes/kb_node": ("kb",),
@@ -87,7 +88,7 @@ def test_all_is_every_extra():
 
 def test_every_node_has_an_extra():
     assert set(extras.OF_NODE) == {*NODES, ROUTER}
-    assert set(extras.OF_NODE.values()) == set(extras.MODULES) - {"keys", "mcp"}
+    assert set(extras.OF_NODE.values()) == set(extras.MODULES) - {"keys", "mcp", "movie", "web"}
 
 
 def test_with_everything_nothing_is_missing():
@@ -130,6 +131,7 @@ def test_without_the_knowledge_base_there_is_no_way_around(without):
         (["repair"], "pyoxigraph", "kb"),
         (["down"], "supervisor", "kb"),
         (["mcp"], "uvicorn", "mcp"),
+        (["web"], "nicegui", "web"),
     ],
 )
 def test_a_verb_without_its_extra_exits_with_2(without, capsys, monkeypatch, tmp_path, words, module, extra):

@@ -25,8 +25,10 @@ from schemas.scenes import (
     SceneQuery,
     Spawn,
     Spawned,
+    Surface,
     SurfaceQuery,
     Surfaces,
+    WorldQuery,
 )
 from tests.conftest import free_endpoint, handling
 from tests.sim_node.orders import hand, order, pose
@@ -57,6 +59,7 @@ REPLIES = {
     "reset": Done,
     "picture": Picture,
     "surfaces": Surfaces,
+    "world": Surface,
 }
 
 
@@ -209,6 +212,12 @@ def test_who_draws_may_ask_what_bodies_look_like(client):
     assert set(told) == {"cup1"}
     points = np.frombuffer(told["cup1"].points, "<f4").reshape(-1, 3)
     assert np.ptp(points[:, 2]) == pytest.approx(0.1, abs=0.03)
+
+
+def test_who_draws_may_ask_what_the_world_looks_like(client):
+    ask(client, "spawn", Spawn(bodies=(order("cup1", "cup", pose(1, 0)),)))
+    told = ask(client, "world", WorldQuery())
+    assert told.points == b""  # a bare floor has no end, and the cup is a body
 
 
 def test_nonsense_is_refused_and_the_node_lives_on(client):

@@ -43,6 +43,7 @@ class LiveFeed:
         self._change = change
         self._poses = LivePoses(config.live, config.thresholds)
         self._under_way: set[str] = set()
+        self._may_follow = config.truth != "replayed"
         self._published: dict[str, tuple[Pose, int]] = {}
         self._published_s = 0.0
         self._stream = bus.Newest(node.session, keys.LIVE_POSE)
@@ -89,7 +90,7 @@ class LiveFeed:
         self._read()
         now_s = time.monotonic()
         for due in [*self._poses.due(self._map.tracked, now_s)]:
-            if due.name not in self._under_way:
+            if due.name not in self._under_way and self._may_follow:
                 self._commit(due)
         self._publish(now_s)
 

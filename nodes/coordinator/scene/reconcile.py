@@ -8,7 +8,8 @@ follows.
 
 If only perception updates the map (`perceived`), nothing is to be done: an entity without a body is a belief,
 a body without an entity has not been seen yet, and a pose that differs will be seen. Only what is tracked
-from the simulator is followed all the same. What is tracked from a stream never follows its body.
+from the simulator is followed all the same. What is tracked from a stream never follows its body. If the map
+is `replayed`, every pose of it is an order, also those that came from the scene, and the map follows nothing.
 """
 
 from __future__ import annotations
@@ -69,10 +70,10 @@ def reconcile(
                 spawn.append(order(entity, entity.pose))
                 if body is not None:
                     delete.append(name)
-        elif _ordered_since(entity, body):
+        elif _ordered_since(entity, body) or (truth == "replayed" and _posed_since(entity, body)):
             assert entity.pose is not None
             place.append(Placement(name=name, pose=entity.pose, commit=entity.pose_provenance.commit))
-        elif _moved(entity, body, thresholds):
+        elif truth != "replayed" and _moved(entity, body, thresholds):
             follow.append(Placement(name=name, pose=body.pose))
     for name, body in bodies.items():
         if name not in entities:
@@ -111,8 +112,11 @@ def _comes_with(entity: Entity, body: Body, coming: Set[int]) -> bool:
 
 
 def _ordered_since(entity: Entity, body: Body) -> bool:
-    posed = entity.pose_provenance
-    return entity.pose is not None and posed.source != "scene" and posed.commit > body.commit
+    return entity.pose_provenance.source != "scene" and _posed_since(entity, body)
+
+
+def _posed_since(entity: Entity, body: Body) -> bool:
+    return entity.pose is not None and entity.pose_provenance.commit > body.commit
 
 
 def _moved(entity: Entity, body: Body, thresholds: Thresholds) -> bool:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from nodes.recorder.drawing.figures import Figure
-from nodes.recorder.drawing.palette import GREY, colour_of
+from nodes.drawing.figures import Figure
+from nodes.drawing.palette import GREY, colour_of
 from schemas.scenes import Surface
 
 _GHOST_ALPHA = 90

@@ -1,49 +1,57 @@
-"""The knowledge graph: entities, their classes, and the relations between entities."""
+"""The knowledge graph in Rerun's terms: the neighbourhood of what the last commit touched."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Collection, Mapping
+from typing import Final
 
 import rerun as rr
 
-from nodes.recorder.drawing.palette import colour_of
-from nodes.recorder.state.map_relations import Relation
+from nodes.drawing.neighbourhood import Knot, Link, Neighbourhood, around, by_place
+from nodes.drawing.palette import GREY, colour_of
 from schemas.entities import Entity
 
-LIMIT = 400
-"""Entities that are drawn; a force layout of more is neither legible nor quick."""
+MANY: Final = 12
+"""A commit that touches more entities is shown by places, with the number of things in each."""
 
-_ENTITY_RADIUS, _CLASS_RADIUS = 5.0, 9.0
-
-
-class Graph(NamedTuple):
-    """`classes`: each entity's class by its name. `edges`: pairs of names that are related."""
-
-    classes: dict[str, str]
-    edges: tuple[tuple[str, str], ...]
+Relation = tuple[str, str]
+_RADII: Final = {"centre": 9.0, "entity": 5.0, "place": 6.0, "class": 4.0, "more": 3.0}
+_RELATION_RADIUS: Final = 1.0
 
 
-def graph_of(entities: Mapping[str, Entity], relations: Mapping[str, tuple[Relation, ...]]) -> Graph:
-    """The graph of a map, of its first `LIMIT` entities if it has more."""
-    classes = {name: entity.class_ for name, entity in sorted(entities.items())[:LIMIT]}
-    pairs = {(name, other) for name in classes for _, other in relations.get(name, ()) if other in classes}
-    return Graph(classes, tuple(sorted(pairs)))
+def graph_of(
+    entities: Mapping[str, Entity],
+    relations: Mapping[str, tuple[Relation, ...]],
+    touched: Collection[str] = (),
+) -> Neighbourhood:
+    """The neighbourhood of what was touched; by places where that is nothing, or very many."""
+    here = [name for name in sorted(touched) if name in entities]
+    return around(here, entities, relations) if 0 < len(here) <= MANY else by_place(entities, relations)
 
 
-def nodes_and_edges(graph: Graph) -> tuple[rr.GraphNodes, rr.GraphEdges]:
-    """The graph in Rerun's terms: an entity has the colour of its class and an edge to it."""
-    names, classes = list(graph.classes), sorted(set(graph.classes.values()))
+def nodes_and_edges(graph: Neighbourhood) -> tuple[rr.GraphNodes, rr.GraphEdges]:
+    """The graph in Rerun's terms. An edge has no label there, so that what it says is a small node on it."""
+    said = [link for link in graph.links if link.label]
     nodes = rr.GraphNodes(
-        [*names, *map(_class_id, classes)],
-        labels=[*names, *classes],
-        colors=[colour_of(class_) for class_ in (*graph.classes.values(), *classes)],
-        radii=[_ENTITY_RADIUS] * len(names) + [_CLASS_RADIUS] * len(classes),
+        [*(knot.id for knot in graph.knots), *map(_relation_id, said)],
+        labels=[*(knot.label for knot in graph.knots), *(link.label for link in said)],
+        colors=[*map(_colour, graph.knots), *(GREY for _ in said)],
+        radii=[*(_RADII[knot.kind] for knot in graph.knots), *(_RELATION_RADIUS for _ in said)],
     )
-    kinds = [(name, _class_id(class_)) for name, class_ in graph.classes.items()]
-    return nodes, rr.GraphEdges([*kinds, *graph.edges], graph_type="directed")
+    edges = [pair for link in graph.links for pair in _pairs(link)]
+    return nodes, rr.GraphEdges(edges, graph_type="directed")
 
 
-def _class_id(class_: str) -> str:
-    """No name of an entity holds a colon."""
-    return f"class:{class_}"
+def _pairs(link: Link) -> tuple[tuple[str, str], ...]:
+    if not link.label:
+        return ((link.source, link.target),)
+    return ((link.source, _relation_id(link)), (_relation_id(link), link.target))
+
+
+def _relation_id(link: Link) -> str:
+    """No name of an entity holds a space."""
+    return f"{link.source} {link.label} {link.target}"
+
+
+def _colour(knot: Knot) -> tuple[int, int, int]:
+    return colour_of(knot.class_) if knot.class_ else GREY

@@ -8,7 +8,7 @@ import numpy as np
 import rerun as rr
 from PIL import Image
 
-from nodes.recorder.drawing.palette import GREY, colour_of
+from nodes.drawing.palette import GREY, colour_of
 from schemas.entities import Pose
 from schemas.perception import Observation, Observations, SegmentedCloud
 from schemas.scenes import CameraFrame

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from nodes.recorder.drawing.figures import Figure, figure_of, pose_of, still
-from nodes.recorder.drawing.graph import Graph
-from nodes.recorder.drawing.surfaces import SurfaceCache
+from nodes.drawing.figures import Figure, figure_of, pose_of, still
+from nodes.drawing.neighbourhood import Neighbourhood
+from nodes.drawing.surfaces import SurfaceCache
 from nodes.recorder.recording import Recording
 from schemas.entities import Entity, Pose
 from schemas.scenes import Body
@@ -21,7 +21,7 @@ class Stage:
         self._recording = recording
         self.surfaces = SurfaceCache()
         self._drawn: dict[str, Drawn] = {}
-        self._graph = Graph({}, ())
+        self._graph = Neighbourhood()
 
     def show(
         self,
@@ -50,7 +50,7 @@ class Stage:
         if name in self._drawn:
             self._set(name, (self._drawn[name][0], pose))
 
-    def show_graph(self, graph: Graph) -> None:
+    def show_graph(self, graph: Neighbourhood) -> None:
         """Draw the knowledge graph, if it is another."""
         if graph != self._graph:
             self._graph = graph

@@ -1,1 +1,1 @@
-"""The recorder's state: relations and the scene."""
+"""The recorder's state: the relations."""

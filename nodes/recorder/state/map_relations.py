@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from ontology import vocabulary as v
-from schemas.commits import Commit, Star
+from schemas.commits import Commit, PlaceChanges, Star
 from schemas.entities import Entity
 from schemas.explanations import Term, Triple
 
@@ -30,6 +30,13 @@ def is_relation(triple: Triple) -> bool:
 def missed(seq: int, snapshot_seq: int, heard: Iterable[Commit]) -> list[int]:
     """The commits after `seq`, up to a snapshot's, that were not heard."""
     return sorted(set(range(seq + 1, snapshot_seq + 1)) - {commit.seq for commit in heard})
+
+
+def subjects(places: PlaceChanges | None) -> list[str]:
+    """The names of what came to be somewhere else, or is there no longer."""
+    if places is None:
+        return []
+    return sorted({v.entity_name(subject) for subject, _, _ in (*places.came, *places.went)})
 
 
 class Relations:

@@ -1,25 +1,41 @@
-from nodes.recorder.drawing import graph
-from nodes.recorder.drawing.graph import Graph, graph_of, nodes_and_edges
+from nodes.drawing.neighbourhood import Knot, Link, Neighbourhood
+from nodes.recorder.drawing.graph import MANY, graph_of, nodes_and_edges
 from tests.recorder.messages import entity
 
-ENTITIES = {"cup1": entity("cup1", "Cup"), "table1": entity("table1", "Table")}
+ENTITIES = {
+    "cup1": entity("cup1", "Cup"),
+    "table1": entity("table1", "Table"),
+    "room1": entity("room1", "Kitchen", place=True),
+    **{f"book{i}": entity(f"book{i}", "Book") for i in range(MANY + 1)},
+}
+RELATIONS = {"cup1": (("isOn", "table1"), ("isLocatedIn", "room1"))}
 
 
-def test_relations_become_edges_once():
-    found = graph_of(ENTITIES, {"cup1": (("isAbove", "table1"), ("isOn", "table1")), "table1": ()})
-    assert found == Graph({"cup1": "Cup", "table1": "Table"}, (("cup1", "table1"),))
+def names(graph):
+    return {knot.id for knot in graph.knots}
 
 
-def test_a_large_map_is_drawn_in_part(monkeypatch):
-    monkeypatch.setattr(graph, "LIMIT", 1)
-    found = graph_of(ENTITIES, {"cup1": (("isOn", "table1"),)})
-    assert found == Graph({"cup1": "Cup"}, ())
+def test_what_a_commit_touched_is_shown_with_what_is_next_to_it():
+    assert names(graph_of(ENTITIES, RELATIONS, ["cup1"])) == {"cup1", "class:Cup", "table1", "room1"}
 
 
-def test_every_entity_has_an_edge_to_its_class():
-    nodes, edges = nodes_and_edges(Graph({"cup1": "Cup", "cup2": "Cup"}, (("cup1", "cup2"),)))
+def test_without_a_commit_and_for_a_large_one_the_whole_is_shown_by_places():
+    for touched in ((), ["gone1"], [name for name in ENTITIES if name.startswith("book")]):
+        graph = graph_of(ENTITIES, RELATIONS, touched)
+        assert [knot.label for knot in graph.knots] == ["room1 (1)", f"{MANY + 2} elsewhere"]
+
+
+def test_what_an_edge_says_is_a_small_node_on_it():
+    knots = (Knot("cup1", "cup1", "centre", "Cup"), Knot("table1", "table1", "entity", "Table"))
+    more = Knot("more:cup1:in", "3 more", "more", "")
+    graph = Neighbourhood((*knots, more), (Link("cup1", "table1", "isOn"), Link("more:cup1:in", "cup1", "")))
+    nodes, edges = nodes_and_edges(graph)
     assert nodes.node_ids is not None
+    assert nodes.labels is not None
     assert edges.edges is not None
-    assert nodes.node_ids.as_arrow_array().to_pylist() == ["cup1", "cup2", "class:Cup"]
+    assert nodes.node_ids.as_arrow_array().to_pylist() == [
+        "cup1", "table1", "more:cup1:in", "cup1 isOn table1"
+    ]  # fmt: skip
+    assert nodes.labels.as_arrow_array().to_pylist() == ["cup1", "table1", "3 more", "isOn"]
     pairs = [(edge["first"], edge["second"]) for edge in edges.edges.as_arrow_array().to_pylist()]
-    assert pairs == [("cup1", "class:Cup"), ("cup2", "class:Cup"), ("cup1", "cup2")]
+    assert pairs == [("cup1", "cup1 isOn table1"), ("cup1 isOn table1", "table1"), ("more:cup1:in", "cup1")]

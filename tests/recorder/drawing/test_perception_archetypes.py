@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from nodes.drawing.palette import colour_of
 from nodes.recorder.drawing import perception_archetypes as archetypes
-from nodes.recorder.drawing.palette import colour_of
 from nodes.recorder.recording import open_recording
 from schemas.entities import Pose
 from schemas.perception import Observation, Observations, SegmentedCloud

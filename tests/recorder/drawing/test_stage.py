@@ -1,7 +1,7 @@
 import pytest
 from msgspec import structs
 
-from nodes.recorder.drawing.graph import Graph
+from nodes.drawing.neighbourhood import Knot, Neighbourhood
 from nodes.recorder.drawing.stage import Stage
 from tests.recorder.messages import body, entity, pose
 
@@ -78,6 +78,6 @@ def test_moves_are_told_when_they_are_moves(stage, told):
 
 
 def test_a_graph_is_drawn_when_it_changes(stage, told):
-    stage.show_graph(Graph({"cup1": "Cup"}, ()))
-    stage.show_graph(Graph({"cup1": "Cup"}, ()))
+    stage.show_graph(Neighbourhood((Knot("cup1", "cup1", "centre", "Cup"),)))
+    stage.show_graph(Neighbourhood((Knot("cup1", "cup1", "centre", "Cup"),)))
     assert [verb for verb, _ in told.take()] == ["graph"]

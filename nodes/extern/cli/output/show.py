@@ -10,14 +10,15 @@ from rich.table import Table
 from rich.text import Text
 from rich.tree import Tree
 
-from nodes.extern.cli.output.tables import (
+from nodes.extern.cli.output.tables import card, printable, table
+from nodes.extern.phrasing import (
     author,
-    card,
+    english,
+    labelled,
     pose_cells,
     pose_text,
-    printable,
     provenance_text,
-    table,
+    size_text,
 )
 from schemas import wording
 from schemas.changes import value_in_words
@@ -48,7 +49,7 @@ def entity_table(entities: Iterable[Entity]) -> Table:
         column.justify = "right"
     for e in entities:
         pose = e.pose if e.live is None else e.live.pose
-        rows.add(e.name, e.class_, *pose_cells(pose), _size(e), e.preferred_reference or "", _body(e))
+        rows.add(e.name, e.class_, *pose_cells(pose), size_text(e), e.preferred_reference or "", _body(e))
     return rows
 
 
@@ -74,7 +75,7 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "types": ", ".join(e.types),
         "pose": pose_text(e.pose),
         **({"live": _live(e)} if e.tracked else {}),
-        "size": (_size(e) or "unknown") + own_size,
+        "size": (size_text(e) or "unknown") + own_size,
         **({"where": where} if (where := _where(e)) else {}),
         **({"but": "; ".join(doubts)} if (doubts := (*(r.text for r in e.denied), *e.withheld)) else {}),
         "reference": e.preferred_reference or "none",
@@ -106,9 +107,9 @@ def _stated(e: Entity, properties: Mapping[str, PropertyInfo]) -> dict[str, str]
     for name, stated in e.properties.items():
         known = properties.get(name)
         values = stated if isinstance(stated, tuple) else (stated,)
-        label = _english(known.labels) if known else ""
-        rows[_labelled(name, label)] = ", ".join(
-            _labelled(value_in_words(value), _label(known, value)) for value in values
+        label = english(known.labels) if known else ""
+        rows[labelled(name, label)] = ", ".join(
+            labelled(value_in_words(value), _label(known, value)) for value in values
         )
     return rows
 
@@ -117,21 +118,13 @@ def _label(known: PropertyInfo | None, value: Value) -> str:
     return known.values.get(str(value), "") if known is not None else ""
 
 
-def _labelled(name: str, label: str) -> str:
-    return f"{name} ({label})" if label and label != name else name
-
-
-def _english(labels: Mapping[str, str]) -> str:
-    return labels.get("en") or labels.get("") or next(iter(labels.values()), "")
-
-
 def property_table(properties: Iterable[PropertyInfo]) -> Table:
     """One row a property."""
     rows = table("property", "label", "of", "takes", "values", fold=("label", "of", "takes"))
     for p in properties:
         takes = ", ".join(p.range) or ("a value" if p.kind == "data" else "an individual")
         often = "one" if p.functional else "any number"
-        rows.add(p.name, _english(p.labels), ", ".join(p.domain), takes, often)
+        rows.add(p.name, english(p.labels), ", ".join(p.domain), takes, often)
     return rows
 
 
@@ -203,11 +196,6 @@ def commit_line(commit: Commit) -> str:
     shown = " ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
     line = f"{stamp}  commit {commit.seq}  {author(commit)}: {commit.reason}  [{counts}]  {shown}"
     return printable(line).plain
-
-
-def _size(e: Entity) -> str:
-    extents = e.size_m or ()
-    return " x ".join(f"{extent:.3g}" if extent < 100 else f"{extent:.0f}" for extent in extents)
 
 
 def _where(e: Described) -> str:

@@ -1,4 +1,4 @@
-"""The verbs about the scene: `move`, `pause`, `step`, `reset`, `picture`, `replay`."""
+"""The verbs about the scene: `move`, `pause`, `step`, `reset`, `picture`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.output.printable import say
 from nodes.extern.files import write_atomically
-from nodes.runtime import extras
 from schemas import errors
 
 if TYPE_CHECKING:
@@ -76,13 +75,3 @@ def picture(
         raise errors.BadRequest(f"pictures are written as PNG; name the file {file.stem or 'scene'}.png")
     write_atomically(file, client.picture(camera, place=place, labels=labels, width=width, height=height))
     print(f"wrote {file}")
-
-
-@click.command()
-@click.argument("file", type=click.Path(path_type=Path))
-def replay(file: Path) -> None:
-    """Open a recording in the Rerun viewer."""
-    extras.require("semmap replay", "record")
-    from nodes.recorder.replay import replay as open_viewer
-
-    open_viewer(file)

@@ -1,4 +1,4 @@
-from nodes.recorder.state.scene_state import SceneState
+from nodes.drawing.scene_state import SceneState
 from tests.recorder.messages import body, pose, poses, scene
 
 

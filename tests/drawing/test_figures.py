@@ -1,6 +1,6 @@
 import math
 
-from nodes.recorder.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of, still
+from nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of, still
 from schemas.entities import orientation_from_yaw
 from tests.recorder.messages import body, entity, pose
 

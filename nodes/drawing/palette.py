@@ -1,4 +1,4 @@
-"""A colour for each class: the same in every recording, bright enough for a dark background."""
+"""A colour for each class: the same in every recording and on the page, and bright enough on dark ground."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-from nodes.recorder.drawing.surfaces import SurfaceCache
+from nodes.drawing.surfaces import SurfaceCache
 from tests.recorder.messages import body, surface
 
 SURFACE = surface()

@@ -1,0 +1,1 @@
+"""What there is to draw, whoever draws it: figures, colours, surfaces, and the scene as it stands."""

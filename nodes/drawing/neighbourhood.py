@@ -1,0 +1,207 @@
+"""Readable parts of the knowledge graph: what is next to some things, and all of it by places or classes.
+
+All of a graph of a home is a hairball, so none of it is ever drawn whole.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Final, Literal, NamedTuple
+
+from schemas.entities import Entity
+
+Relations = Mapping[str, Iterable[tuple[str, str]]]
+"""By the name of an entity: a property and the name of the entity that it leads to."""
+Kind = Literal["centre", "entity", "place", "class", "more"]
+
+LOCATED_IN: Final = "isLocatedIn"
+_CENTRES: Final = 12
+"""Entities whose neighbourhood is drawn at once; of more, the whole is drawn by places."""
+_FEW: Final = 14
+"""Neighbours of one entity in one direction; the others are counted."""
+_MOST: Final = 60
+
+
+class Knot(NamedTuple):
+    """A node of the drawn graph. The `id` of an entity is its name; other ids hold a colon, as no name does.
+
+    `hidden` is how many entities it stands for, beside or instead of itself.
+    """
+
+    id: str
+    label: str
+    kind: Kind
+    class_: str
+    hidden: int = 0
+
+
+class Link(NamedTuple):
+    """What leads from one node to another; `label` has the properties, with commas."""
+
+    source: str
+    target: str
+    label: str
+
+
+class Neighbourhood(NamedTuple):
+    """A graph small enough to read."""
+
+    knots: tuple[Knot, ...] = ()
+    links: tuple[Link, ...] = ()
+
+
+def around(
+    centres: Iterable[str],
+    entities: Mapping[str, Entity],
+    relations: Relations,
+    *,
+    unfolded: Iterable[str] = (),
+    few: int = _FEW,
+) -> Neighbourhood:
+    """These entities with their classes, and what they lead to and what leads to them.
+
+    `unfolded` entities are shown with their own neighbours, too, if they are shown at all. Where one has more
+    than `few` of a kind, the others are one node that says how many.
+    """
+    shown = [name for name in dict.fromkeys(centres) if name in entities][:_CENTRES]
+    drawing = _Drawing(entities)
+    for name in shown:
+        drawing.centre(name)
+    incoming = _incoming(entities, relations)
+    wider = dict.fromkeys(unfolded)
+    for name in (*shown, *(name for name in wider if name not in shown)):
+        if not drawing.has(name):
+            continue
+        limit = few if name not in wider else 4 * few
+        drawing.neighbours(name, _grouped(relations.get(name, ()), entities), limit, outgoing=True)
+        drawing.neighbours(name, incoming.get(name, {}), limit, outgoing=False)
+    return drawing.drawn
+
+
+def by_place(entities: Mapping[str, Entity], relations: Relations) -> Neighbourhood:
+    """The places, with how many things are in each, and how they are connected.
+
+    Where there are no places, the classes with their numbers.
+    """
+    places = {name: entity for name, entity in entities.items() if entity.place}
+    if not places:
+        return by_class(entities)
+    number: Counter[str] = Counter()
+    elsewhere = 0
+    for name, entity in entities.items():
+        if entity.place:
+            continue
+        around_it = [other for p, other in relations.get(name, ()) if p == LOCATED_IN and other in places]
+        if around_it:
+            number[min(around_it, key=lambda place: (_floor_m2(places[place]), place))] += 1
+        else:
+            elsewhere += 1
+    shown = sorted(places, key=lambda name: (-number[name], name))[:_MOST]
+    knots = [_place_knot(places[name], number[name]) for name in shown]
+    if elsewhere:
+        knots.append(Knot("more:elsewhere", f"{elsewhere} elsewhere", "more", "", elsewhere))
+    pairs: dict[tuple[str, str], set[str]] = {}
+    for name in shown:
+        for said, other in relations.get(name, ()):
+            if other in places and other != name and other in shown:
+                pairs.setdefault((name, other), set()).add(said)
+    return Neighbourhood(tuple(knots), _links(pairs))
+
+
+def by_class(entities: Mapping[str, Entity], unfolded: Iterable[str] = ()) -> Neighbourhood:
+    """The classes of the map with the number of their entities; those of `unfolded` classes one by one."""
+    number = Counter(entity.class_ for entity in entities.values())
+    shown = [class_ for class_, _ in sorted(number.items(), key=lambda item: (-item[1], item[0]))[:_MOST]]
+    knots = [Knot(_class_id(c), f"{c} ({number[c]})", "class", c, number[c]) for c in shown]
+    links = []
+    for class_ in dict.fromkeys(unfolded):
+        members = sorted(name for name, entity in entities.items() if entity.class_ == class_)
+        if class_ not in shown:
+            continue
+        for name in members[:_MOST]:
+            knots.append(Knot(name, name, "entity", class_))
+            links.append(Link(name, _class_id(class_), "is a"))
+        if len(members) > _MOST:
+            more = _more(_class_id(class_), len(members) - _MOST)
+            knots.append(more)
+            links.append(Link(more.id, _class_id(class_), ""))
+    return Neighbourhood(tuple(knots), tuple(links))
+
+
+def _place_knot(place: Entity, number: int) -> Knot:
+    label = place.preferred_reference or place.name
+    return Knot(place.name, f"{label} ({number})" if number else label, "place", place.class_, number)
+
+
+class _Drawing:
+    """A neighbourhood as it is put together, each node and link once."""
+
+    def __init__(self, entities: Mapping[str, Entity]) -> None:
+        self._entities = entities
+        self._knots: dict[str, Knot] = {}
+        self._pairs: dict[tuple[str, str], set[str]] = {}
+
+    @property
+    def drawn(self) -> Neighbourhood:
+        return Neighbourhood(tuple(self._knots.values()), _links(self._pairs))
+
+    def has(self, name: str) -> bool:
+        return name in self._knots
+
+    def centre(self, name: str) -> None:
+        class_ = self._entities[name].class_
+        self._knots[name] = Knot(name, name, "centre", class_)
+        self._knots.setdefault(_class_id(class_), Knot(_class_id(class_), class_, "class", class_))
+        self._pairs.setdefault((name, _class_id(class_)), set()).add("is a")
+
+    def neighbours(
+        self, name: str, others: Mapping[str, Sequence[str]], limit: int, *, outgoing: bool
+    ) -> None:
+        ordered = sorted(others, key=lambda other: (other not in self._knots, other))
+        fits = len(ordered) <= limit
+        for other in ordered if fits else ordered[: limit - 1]:
+            self._knots.setdefault(other, self._entity(other))
+            pair = (name, other) if outgoing else (other, name)
+            self._pairs.setdefault(pair, set()).update(others[other])
+        if not fits:
+            more = _more(f"{name}:{'out' if outgoing else 'in'}", len(ordered) - limit + 1)
+            self._knots[more.id] = more
+            self._pairs[(name, more.id) if outgoing else (more.id, name)] = set()
+
+    def _entity(self, name: str) -> Knot:
+        entity = self._entities[name]
+        return Knot(name, name, "place" if entity.place else "entity", entity.class_)
+
+
+def _incoming(entities: Mapping[str, Entity], relations: Relations) -> dict[str, dict[str, list[str]]]:
+    found: dict[str, dict[str, list[str]]] = {}
+    for name in entities:
+        for said, other in relations.get(name, ()):
+            if other in entities and other != name:
+                found.setdefault(other, {}).setdefault(name, []).append(said)
+    return found
+
+
+def _grouped(related: Iterable[tuple[str, str]], entities: Mapping[str, Entity]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for said, other in related:
+        if other in entities:
+            found.setdefault(other, []).append(said)
+    return found
+
+
+def _links(pairs: Mapping[tuple[str, str], Iterable[str]]) -> tuple[Link, ...]:
+    return tuple(Link(source, target, ", ".join(sorted(said))) for (source, target), said in pairs.items())
+
+
+def _more(of: str, number: int) -> Knot:
+    return Knot(f"more:{of}", f"{number} more", "more", "", number)
+
+
+def _class_id(class_: str) -> str:
+    return f"class:{class_}"
+
+
+def _floor_m2(place: Entity) -> float:
+    return place.size_m[0] * place.size_m[1] if place.size_m is not None else float("inf")

@@ -1,0 +1,1 @@
+"""Plans to print: rooms, furniture as it stands, and names, as SVG at a scale."""

@@ -1,0 +1,168 @@
+"""What a plan shows, in the map frame [m]: rooms, parts of rooms, and the footprints of things."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+from nodes.kb_node.relations.geometry.polygons import Point, Polygon, area, clipped, hull
+from schemas.entities import Entity, Pose, Quaternion, Size
+
+Kind = Literal["furniture", "small", "person", "door", "window", "overhead"]
+"""`small`: what stands on something. `overhead`: what hangs above where people walk."""
+
+OVERHEAD_M: Final = 2.0
+"""What begins higher than this above the floor is drawn dashed."""
+_ON_SOMETHING_M: Final = 0.25
+_SMALL_M2: Final = 0.12
+_MOSTLY: Final = 0.6
+"""The share of its floor by which one place counts as part of another, or as made up of others."""
+
+
+@dataclass(frozen=True)
+class Area:
+    """A room or a part of one; `outline` counterclockwise."""
+
+    name: str
+    label: str
+    outline: tuple[Point, ...]
+
+    @property
+    def floor_m2(self) -> float:
+        """The area of its floor [m^2]."""
+        return area(self.outline)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A thing as it stands; `outline` is its footprint, counterclockwise."""
+
+    name: str
+    kind: Kind
+    outline: tuple[Point, ...]
+    top_m: float
+    is_open: bool = False
+
+
+@dataclass(frozen=True)
+class Floor:
+    """All that one plan shows. `pieces` are in the order of their tops: what is above is drawn later."""
+
+    rooms: tuple[Area, ...]
+    zones: tuple[Area, ...]
+    pieces: tuple[Piece, ...]
+    unplaced: int = 0
+    """Things without a position or a size, which no plan can show."""
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """The least and greatest x, then y, of all but what is in walls; a square metre for an empty plan."""
+        inside = [piece for piece in self.pieces if piece.kind not in ("door", "window")]
+        shapes: list[Area | Piece] = [*self.rooms, *self.zones, *inside]
+        points = [point for shape in shapes for point in shape.outline]
+        if not points:
+            return (0.0, 1.0, 0.0, 1.0)
+        xs, ys = zip(*points, strict=True)
+        return (min(xs), max(xs), min(ys), max(ys))
+
+
+def floor_of(
+    entities: Iterable[Entity],
+    poses: Mapping[str, Pose] | None = None,
+    outlines: Mapping[str, Polygon] | None = None,
+) -> Floor:
+    """The plan of these entities: where `poses` says, or else where the map does.
+
+    `outlines` are the polygons of places that are no boxes (map frame [m], counterclockwise).
+    """
+    poses, outlines = poses or {}, outlines or {}
+    places: list[Area] = []
+    pieces: list[Piece] = []
+    unplaced = 0
+    for entity in sorted(entities, key=lambda e: e.name):
+        pose = poses.get(entity.name, entity.pose)
+        if entity.place and entity.name in outlines:
+            outline = tuple(outlines[entity.name])
+        elif pose is not None and entity.size_m is not None:
+            outline = footprint(pose, entity.size_m)
+        else:
+            unplaced += 1
+            continue
+        if entity.place:
+            places.append(Area(entity.name, entity.preferred_reference or entity.name, outline))
+        elif pose is not None and entity.size_m is not None:
+            top_m = pose.position_m[2] + entity.size_m[2]
+            is_open = entity.properties.get("isOpen") is True
+            pieces.append(Piece(entity.name, _kind(entity, pose, outline), outline, top_m, is_open))
+    rooms, zones = _rooms_and_zones(places)
+    return Floor(rooms, zones, tuple(sorted(pieces, key=lambda p: (p.top_m, p.name))), unplaced)
+
+
+def footprint(pose: Pose, size: Size) -> tuple[Point, ...]:
+    """The outline of a box on the floor, however it is turned; counterclockwise, map frame [m]."""
+    half_x, half_y, height = size[0] / 2.0, size[1] / 2.0, size[2]
+    heights = (0.0,) if _is_upright(pose.orientation_wxyz) else (0.0, height)
+    x0, y0, _ = pose.position_m
+    (xx, xy, xz), (yx, yy, yz) = _floor_axes(pose.orientation_wxyz)
+    corners = [(x, y, z) for x in (-half_x, half_x) for y in (-half_y, half_y) for z in heights]
+    return tuple(
+        hull([(x0 + xx * x + xy * y + xz * z, y0 + yx * x + yy * y + yz * z) for x, y, z in corners])
+    )
+
+
+def _is_upright(wxyz: Quaternion) -> bool:
+    return math.hypot(wxyz[1], wxyz[2]) < 1e-3
+
+
+def _floor_axes(wxyz: Quaternion) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """The first two rows of the rotation matrix."""
+    w, x, y, z = wxyz
+    return (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+    )
+
+
+def _kind(entity: Entity, pose: Pose, outline: Polygon) -> Kind:
+    if "Door" in entity.types:
+        return "door"
+    if "Window" in entity.types:
+        return "window"
+    if "Person" in entity.types:
+        return "person"
+    bottom_m = pose.position_m[2]
+    if bottom_m > OVERHEAD_M:
+        return "overhead"
+    return "small" if bottom_m > _ON_SOMETHING_M or area(outline) < _SMALL_M2 else "furniture"
+
+
+def _rooms_and_zones(places: Sequence[Area]) -> tuple[tuple[Area, ...], tuple[Area, ...]]:
+    """Rooms, and parts of rooms. What is made up of other places, as a flat is of its rooms, is neither."""
+    ordered = sorted((p for p in places if p.floor_m2 > 0.0), key=lambda p: -p.floor_m2)
+    rooms: list[Area] = []
+    zones: list[Area] = []
+    for i, place in enumerate(ordered):
+        if any(_shared_m2(place, room) > _MOSTLY * place.floor_m2 for room in rooms):
+            zones.append(place)
+        elif _is_made_up(place, ordered[i + 1 :]):
+            continue
+        else:
+            rooms.append(place)
+    return tuple(rooms), tuple(zones)
+
+
+def _is_made_up(place: Area, smaller: Sequence[Area]) -> bool:
+    """Several smaller places that hardly overlap take up most of its floor."""
+    parts: list[Area] = []
+    for other in smaller:
+        apart = all(_shared_m2(other, part) < 0.1 * other.floor_m2 for part in parts)
+        if apart and _shared_m2(other, place) > _MOSTLY * other.floor_m2:
+            parts.append(other)
+    return len(parts) > 1 and sum(part.floor_m2 for part in parts) > _MOSTLY * place.floor_m2
+
+
+def _shared_m2(a: Area, b: Area) -> float:
+    """The floor that two places share, by their convex hulls [m^2]."""
+    return area(clipped(hull(a.outline), hull(b.outline)))

@@ -1,0 +1,12 @@
+"""Add."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+
+
+def add(page: Page) -> None:
+    """Draw it where it is called."""
+    ui.label("Add").classes("text-caption")

@@ -1,0 +1,12 @@
+"""Classes."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+
+
+def classes(page: Page) -> None:
+    """Draw it where it is called."""
+    ui.label("Classes").classes("text-caption")

@@ -1,0 +1,12 @@
+"""Consistency."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+
+
+def consistency(page: Page) -> None:
+    """Draw it where it is called."""
+    ui.label("Consistency").classes("text-caption")

@@ -1,0 +1,12 @@
+"""Edit."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+
+
+def edit(page: Page) -> None:
+    """Draw it where it is called."""
+    ui.label("Edit").classes("text-caption")

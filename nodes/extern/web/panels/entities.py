@@ -1,0 +1,12 @@
+"""Entities."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+
+
+def entities(page: Page) -> None:
+    """Draw it where it is called."""
+    ui.label("Entities").classes("text-caption")

@@ -1,0 +1,12 @@
+"""Files."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+
+
+def files(page: Page) -> None:
+    """Draw it where it is called."""
+    ui.label("Files").classes("text-caption")

@@ -1,0 +1,12 @@
+"""Log."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+
+
+def log(page: Page) -> None:
+    """Draw it where it is called."""
+    ui.label("Log").classes("text-caption")

@@ -1,0 +1,12 @@
+"""Places."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+
+
+def places(page: Page) -> None:
+    """Draw it where it is called."""
+    ui.label("Places").classes("text-caption")

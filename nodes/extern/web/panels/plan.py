@@ -1,0 +1,12 @@
+"""Plan."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+
+
+def plan(page: Page) -> None:
+    """Draw it where it is called."""
+    ui.label("Plan").classes("text-caption")

@@ -1,0 +1,12 @@
+"""Status."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+
+
+def status(page: Page) -> None:
+    """Draw it where it is called."""
+    ui.label("Status").classes("text-caption")

@@ -1,0 +1,12 @@
+"""Timeline."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+
+
+def timeline(page: Page) -> None:
+    """Draw it where it is called."""
+    ui.label("Timeline").classes("text-caption")

@@ -1,0 +1,84 @@
+"""What the world itself looks like: walls and whatever else of its file is no body, as triangles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.sim_node.models.facets import facets
+from nodes.sim_node.models.parts import Mesh, Part, Shape
+from nodes.sim_node.physics.build import FELT_GROUP
+from schemas.scenes import Surface
+
+_SHAPES = {
+    mujoco.mjtGeom.mjGEOM_BOX: Shape.BOX,
+    mujoco.mjtGeom.mjGEOM_SPHERE: Shape.ELLIPSOID,
+    mujoco.mjtGeom.mjGEOM_ELLIPSOID: Shape.ELLIPSOID,
+    mujoco.mjtGeom.mjGEOM_CYLINDER: Shape.CYLINDER,
+    mujoco.mjtGeom.mjGEOM_CAPSULE: Shape.CAPSULE,
+    mujoco.mjtGeom.mjGEOM_MESH: Shape.MESH,
+}
+
+
+def world_surface(model: mujoco.MjModel, data: mujoco.MjData, names: Sequence[str]) -> Surface:
+    """The surface, in the map frame, of the geoms that belong to no body, by `names` (ngeom,): those of "".
+
+    What has no end (planes) or no triangles of its own (height fields) is left out, and so is what cannot be
+    seen.
+    """
+    points, normals, colours, triangles, count = [], [], [], [], 0
+    for geom, name in enumerate(names):
+        if name or (part := _part(model, geom)) is None:
+            continue
+        piece, turn = facets(part), data.geom_xmat[geom].reshape(3, 3)
+        points.append(piece.points @ turn.T + data.geom_xpos[geom])
+        normals.append(piece.normals @ turn.T)
+        colours.append(np.tile(part.colour, (len(piece.points), 1)))
+        triangles.append(piece.triangles + count)
+        count += len(piece.points)
+    return Surface(
+        points=_rows(points).astype("<f4").tobytes(),
+        normals=_rows(normals).astype("<f4").tobytes(),
+        colours=np.round(255.0 * _rows(colours)).astype("u1").tobytes(),
+        triangles=_rows(triangles).astype("<u4").tobytes(),
+    )
+
+
+def _rows(pieces: Sequence[NDArray[Any]]) -> NDArray[Any]:
+    return np.concatenate(pieces) if pieces else np.empty((0, 3))
+
+
+def _part(model: mujoco.MjModel, geom: int) -> Part | None:
+    """A geom in its own frame; None for one that is not drawn."""
+    shape = _SHAPES.get(mujoco.mjtGeom(model.geom_type[geom]))
+    red, green, blue, alpha = _rgba(model, geom)
+    if shape is None or alpha == 0.0 or model.geom_group[geom] >= FELT_GROUP:
+        return None
+    a, b, c = (float(value) for value in model.geom_size[geom])
+    match mujoco.mjtGeom(model.geom_type[geom]):
+        case mujoco.mjtGeom.mjGEOM_SPHERE:
+            a, b, c = a, a, a
+        case mujoco.mjtGeom.mjGEOM_CYLINDER | mujoco.mjtGeom.mjGEOM_CAPSULE:
+            a, b, c = a, a, b
+    mesh = _mesh(model, int(model.geom_dataid[geom])) if shape is Shape.MESH else None
+    return Part(shape, (a, b, c), (0.0, 0.0, 0.0), (red, green, blue), mesh=mesh)
+
+
+def _rgba(model: mujoco.MjModel, geom: int) -> tuple[float, float, float, float]:
+    material = int(model.geom_matid[geom])
+    red, green, blue, alpha = model.mat_rgba[material] if material >= 0 else model.geom_rgba[geom]
+    return float(red), float(green), float(blue), float(alpha)
+
+
+def _mesh(model: mujoco.MjModel, mesh: int) -> Mesh:
+    first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+    start, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
+    return Mesh(
+        key=str(mesh),
+        vertices=model.mesh_vert[first : first + count].astype(float),
+        faces=model.mesh_face[start : start + faces],
+    )

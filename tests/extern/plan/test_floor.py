@@ -1,0 +1,88 @@
+import math
+
+import pytest
+from msgspec import structs
+
+from nodes.extern.plan.floor import floor_of, footprint
+from schemas.entities import Pose, orientation_from_yaw
+from tests.extern.plan.things import place, thing
+
+
+def corners(outline):
+    return sorted((round(x, 6), round(y, 6)) for x, y in outline)
+
+
+def test_a_footprint_is_turned_as_the_thing_stands():
+    pose = Pose(position_m=(1.0, 1.0, 0.0), orientation_wxyz=orientation_from_yaw(math.pi / 2))
+    assert corners(footprint(pose, (2.0, 1.0, 3.0))) == [(0.5, 0.0), (0.5, 2.0), (1.5, 0.0), (1.5, 2.0)]
+
+
+def test_a_footprint_of_what_lies_on_its_side_is_as_long_as_it_is_high():
+    quarter = math.sqrt(0.5)
+    lying = Pose(position_m=(0.0, 0.0, 0.5), orientation_wxyz=(quarter, 0.0, quarter, 0.0))
+    assert corners(footprint(lying, (1.0, 0.5, 3.0))) == [
+        (0.0, -0.25),
+        (0.0, 0.25),
+        (3.0, -0.25),
+        (3.0, 0.25),
+    ]
+
+
+def test_a_flat_of_rooms_is_no_room_and_a_corner_is_part_of_one():
+    flat = place("flat", (5.0, 2.0), (10.0, 4.0))
+    rooms = (place("west", (2.4, 2.0), (4.8, 4.0)), place("east", (7.6, 2.0), (4.8, 4.0)))
+    corner = place("corner", (1.0, 1.0), (1.5, 1.5))
+    floor = floor_of((flat, *rooms, corner))
+    assert {room.name for room in floor.rooms} == {"west", "east"}
+    assert [zone.name for zone in floor.zones] == ["corner"]
+
+
+def test_a_room_with_one_corner_stays_a_room():
+    floor = floor_of((place("room", (0, 0), (4.0, 4.0)), place("corner", (0, 0), (3.5, 3.5))))
+    assert [room.name for room in floor.rooms] == ["room"]
+
+
+def test_a_place_may_have_a_polygon_of_its_own():
+    triangle = ((0.0, 0.0), (4.0, 0.0), (0.0, 4.0))
+    floor = floor_of([place("hall", (0, 0), (1.0, 1.0))], outlines={"hall": triangle})
+    assert floor.rooms[0].outline == triangle
+    assert floor.rooms[0].floor_m2 == pytest.approx(8.0)
+
+
+def test_bodies_count_before_the_map():
+    moved = Pose(position_m=(7.0, 0.0, 0.0))
+    floor = floor_of([thing("table1")], {"table1": moved})
+    assert corners(floor.pieces[0].outline)[0] == (6.5, -1.0)
+
+
+@pytest.mark.parametrize(
+    ("entity", "kind"),
+    [
+        (thing("table1"), "furniture"),
+        (thing("door1", types=("Door",), size=(0.06, 0.9, 2.0)), "door"),
+        (thing("window1", types=("Window",), size=(0.06, 0.9, 1.0)), "window"),
+        (thing("ann", types=("Person",)), "person"),
+        (thing("lamp1", at=(0, 0, 2.4)), "overhead"),
+        (thing("cup1", at=(0, 0, 0.74), size=(0.08, 0.08, 0.1)), "small"),
+    ],
+)
+def test_kinds(entity, kind):
+    assert floor_of([entity]).pieces[0].kind == kind
+
+
+def test_what_stands_on_something_is_drawn_after_it():
+    names = [
+        p.name for p in floor_of([thing("cup1", at=(0, 0, 0.74), size=(0.1,) * 3), thing("table1")]).pieces
+    ]
+    assert names == ["table1", "cup1"]
+
+
+def test_what_has_no_position_or_size_is_counted():
+    nowhere = structs.replace(thing("ghost"), pose=None)
+    unknown = structs.replace(thing("blob"), size_m=None)
+    floor = floor_of([nowhere, unknown])
+    assert (floor.pieces, floor.unplaced) == ((), 2)
+
+
+def test_the_bounds_of_nothing_are_a_square_metre():
+    assert floor_of([]).bounds == (0.0, 1.0, 0.0, 1.0)
