@@ -390,10 +390,14 @@ class Find(Command[Found], frozen=True, tag="find"):
 
 
 class Export(Command[Document], frozen=True, tag="export"):
-    """Export the map as a document, checked first; with `inferred` including inferred facts."""
+    """Export the map as a document, checked first; with `inferred` including inferred facts.
+
+    With `as_of` the map as it was then, as it was asserted.
+    """
 
     format: RdfFormat = "rdfxml"
     inferred: bool = False
+    as_of: When | None = None
 
 
 class Classes(Command[tuple[ClassInfo, ...]], frozen=True, tag="classes"):
@@ -557,6 +561,27 @@ class Move(Command[Moved], frozen=True, tag="move"):
     yaw: Angle | None = None
     carry: bool = False
     leave: tuple[Word, ...] = ()
+
+
+class Open(Command[Moved], frozen=True, tag="open"):
+    """Open a thing as a hand would: its joints move `to` this share of their way; the map follows at rest.
+
+    With a `joint`, only that one of several. Refused for what has no joints; NoAnswer without a simulator.
+    `wait` delays the reply until it stands and the map has followed. What is in the way stops it.
+    """
+
+    name: Word
+    to: Probability = 1.0
+    joint: Word | None = None
+    wait: bool = False
+
+
+class Close(Command[Moved], frozen=True, tag="close"):
+    """Close a thing as a hand would; as for `open`."""
+
+    name: Word
+    joint: Word | None = None
+    wait: bool = False
 
 
 class Pause(Command[Done], frozen=True, tag="pause"):

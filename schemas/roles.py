@@ -45,7 +45,20 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
         *("status", "history", "last-seen", "sparql", "watch", "renew", "picture"),
     ),
     _OBSERVERS: ("add", "update", "set", "unset", "remove"),
-    _OPERATORS: ("clear", "load", "undo", "track", "submit", "approve", "move", "pause", "step", "reset"),
+    _OPERATORS: (
+        "clear",
+        "load",
+        "undo",
+        "track",
+        "submit",
+        "approve",
+        "move",
+        "open",
+        "close",
+        "pause",
+        "step",
+        "reset",
+    ),
     _ADMINS: ("backup", "compact"),
 }
 COMMANDS: Final[dict[str, Roles]] = {verb: roles for roles, verbs in _VERBS.items() for verb in verbs}

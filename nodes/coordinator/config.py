@@ -18,6 +18,8 @@ class Thresholds:
 
     distance_m: float = 0.05
     angle_rad: float = math.radians(5.0)
+    share: float = 0.02
+    """Of the way of a door or drawer: how far open it must be more or less."""
 
 
 @dataclass(frozen=True)

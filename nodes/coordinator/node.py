@@ -20,6 +20,7 @@ from nodes.coordinator.early_commands import EarlyCommands
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
 from nodes.coordinator.live.feed import LiveFeed
+from nodes.coordinator.scene.opening import Opening
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
 from nodes.coordinator.turns import Change, Results, Turns
@@ -64,6 +65,7 @@ class Coordinator:
         self._live = LiveFeed(node, config, door.map, self._keeping.scene, self._turns.change)
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge, self._live)
         running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
+        self._opening = Opening(door, self._keeping, self._ask_sim)
         relay = self._bridge.relay
         of_the_map = calls.by_verb(
             c.Add.answered_by(self._with_body),
@@ -78,6 +80,8 @@ class Coordinator:
             c.List.answered_by(answers.list),
             c.Get.answered_by(answers.get),
             c.Move.answered_by(running.move),
+            c.Open.answered_by(self._opening.move),
+            c.Close.answered_by(self._opening.move),
             c.Pause.answered_by(running.pause),
             c.StepOnce.answered_by(running.step),
             c.Reset.answered_by(running.reset),
@@ -212,6 +216,7 @@ class Coordinator:
         return future
 
     def _answer_waiting(self) -> None:
+        self._opening.answer_waiting()
         if not self._waiting:
             return
         still = []

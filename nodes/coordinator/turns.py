@@ -120,7 +120,7 @@ class Turns:
 def _entity(change: Change) -> str | None:
     """The one that it is about; None when it depends on others, or is to go alone."""
     if isinstance(change, Settled):
-        return next(iter(change.poses)) if len(change.poses) == 1 else None
+        return change.names[0] if len(change.names) == 1 else None
     if change.dry_run:
         return None
     if isinstance(change, Add):

@@ -292,6 +292,8 @@ class Verbs:
 
     # To run
     move = Verb(commands.Move)
+    open = Verb(commands.Open)
+    close = Verb(commands.Close)
     pause = Verb(commands.Pause)
     step = Verb(commands.StepOnce)
     reset = Verb(commands.Reset)

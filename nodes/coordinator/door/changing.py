@@ -9,12 +9,12 @@ from nodes.coordinator.door.committing import changed, commit, new_id, once, tak
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.plausibility import doubts, require_carrying, require_same_nature
 from nodes.coordinator.scene.hands import Hand
-from nodes.coordinator.scene.settled import Settled
+from nodes.coordinator.scene.settled import Settled, doing
 from ontology import vocabulary as v
 from ontology.name_index import Ambiguous, Named, NameIndex
 from schemas import changes, errors, wording
 from schemas.commands import Add, Clear, Command, Infer, Properties, Remove, Set, Track, Unset, Update
-from schemas.commits import Edit, Effects, Transaction
+from schemas.commits import Effects, Transaction
 from schemas.entities import ClassInfo, Entity, Pose, Value
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
@@ -181,22 +181,24 @@ def clear(view: KnownMap, command: Clear) -> Talk[Changed]:
 
 def follow(view: KnownMap, settled: Settled, hand: Hand) -> Talk[Changed]:
     """The map takes over where bodies came to rest, in one commit: those that nobody has moved meanwhile."""
-    poses = settled.still(view.entities)
-    if not poses:
+    edits = settled.edits(view.entities)
+    if not edits:
         return changed(None, UNCHANGED)
+    reason = settled.reason or (hand.reason if hand.verb or settled.poses else _of_joints(settled))
     moved = Transaction(
         id=new_id(),
         source=settled.source,
         agent=hand.agent,
         verb=hand.verb,
-        reason=hand.reason,
-        edit=tuple(
-            Edit(name=name, at=pose.position_m, orientation=pose.orientation_wxyz)
-            for name, pose in poses.items()
-        ),
+        reason=reason,
+        edit=tuple(edits),
     )
     made = yield from commit(view, moved)
-    return changed(made, hand.reason, names=tuple(poses))
+    return changed(made, reason, names=tuple(edit.name for edit in edits))
+
+
+def _of_joints(settled: Settled) -> str:
+    return "; ".join(f"{name} {doing(joints)} in the scene" for name, joints in settled.joints.items())
 
 
 def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:

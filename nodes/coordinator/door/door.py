@@ -59,5 +59,5 @@ class Door:
         """The map takes over where things are: one, or those that a hand carried together."""
         if settled.reason:
             return (yield from changing.follow(self.map, settled, Hand("", "", settled.reason)))
-        with self.hands.that_moved(*settled.poses) as hand:
+        with self.hands.that_moved(*settled.names) as hand:
             return (yield from changing.follow(self.map, settled, hand))

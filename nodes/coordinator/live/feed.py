@@ -105,7 +105,9 @@ class LiveFeed:
             if error is not None and not isinstance(error, errors.NoAnswer):
                 self._node.report(f"{due.name}: the map cannot take over its live pose: {error}")
 
-        made = self._change(Settled.of(self._map.entities, {due.name: due.pose}, source, due.reason))
+        made = self._change(
+            Settled.of(self._map.entities, {due.name: due.pose}, source=source, reason=due.reason)
+        )
         made.add_done_callback(on_done)
         return made
 

@@ -18,6 +18,7 @@ from schemas import errors
 from schemas.commits import Star
 from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
 from schemas.explanations import Term, Triple
+from schemas.joints import OPENING
 
 _NAME = re.compile(NAME_PATTERN)
 _FEW = 16
@@ -124,6 +125,7 @@ def entity_of(
         conflict=conflict,
         tracked=tracked,
         properties=properties or {},
+        joint_provenance=provenance if properties and not properties.keys().isdisjoint(OPENING) else None,
         place=kind.place,
         fixed=kind.fixed,
         model=kind.model,
@@ -151,6 +153,7 @@ def read_again(reasoner: Reasoner, classes: ClassTable, known: Entity) -> Entity
         pose_provenance=known.pose_provenance,
         shape_provenance=known.shape_provenance,
         reference_provenance=known.reference_provenance,
+        joint_provenance=entity.joint_provenance and known.joint_provenance,
     )
 
 
@@ -174,12 +177,16 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
         known.alternative_references,
     )
     said = entity.provenance
+    same_joints = not (entity.joint_provenance or known.joint_provenance) or all(
+        entity.properties.get(name) == known.properties.get(name) for name in OPENING
+    )
     return structs.replace(
         entity,
         provenance=said if concerned else known.provenance,
         pose_provenance=known.pose_provenance if entity.pose == known.pose else said,
         shape_provenance=known.shape_provenance if same_shape else said,
         reference_provenance=known.reference_provenance if same_references else said,
+        joint_provenance=known.joint_provenance if same_joints else said,
     )
 
 

@@ -251,7 +251,9 @@ class Asking:
         return self._aside.submit(lambda: answer(questions.copy_of(copied, names), asked))
 
     def on_export(self, query: Export) -> Future[Document]:
-        """The map as a document; checked first, and written beside the node's own work."""
+        """The map as a document, now or as of then; checked first, and written beside the node's own work."""
+        if query.as_of is not None:
+            return self._aside.submit(map_then.export_then, self._journal, self._past, query)
         return self._aside.submit(answers.export, answers.picture(self._map, query.inferred), query.format)
 
     def on_history(self, query: History) -> Future[tuple[LoggedCommit, ...]]:

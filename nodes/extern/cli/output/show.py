@@ -24,6 +24,7 @@ from schemas import wording
 from schemas.changes import value_in_words
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, PropertyInfo, Value
+from schemas.joints import in_words
 from schemas.relations import Described, Relation
 from schemas.replies import SystemStatus
 
@@ -82,12 +83,18 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "also called": ", ".join(e.alternative_references) or "-",
         **_stated(e, {p.name: p for p in properties}),
         "body": body,
+        **(
+            {"joints": ", ".join(map(in_words, e.body.joints))}
+            if e.body is not None and e.body.joints
+            else {}
+        ),
         **({"perception": e.conflict} if e.conflict else {}),
         "model": "-" if e.place else _model(e),
         "last change": provenance_text(e.provenance),
         "pose set": provenance_text(e.pose_provenance),
         "class and size set": provenance_text(e.shape_provenance),
         "reference set": provenance_text(e.reference_provenance),
+        **({"joints set": provenance_text(e.joint_provenance)} if e.joint_provenance is not None else {}),
     }
     return card(rows)
 
