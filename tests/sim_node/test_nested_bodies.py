@@ -15,7 +15,7 @@ KITCHEN = """<mujoco><compiler angle="radian"/><custom>
 <body name="desk" pos="2 0 .5"><geom type="box" size=".8 .4 .5"/>
   <body pos="0 0 .5">
     <body name="microwave_1" pos="0 0 .2"><geom type="box" size=".3 .2 .2"/>
-      <body name="leaf"><joint name="door" pos=".3 -.22 0" axis="0 0 1" range="-2 0"/>
+      <body name="leaf"><joint name="door" pos=".3 -.22 0" axis="0 0 -1" range="-2 0"/>
         <geom type="box" size=".29 .01 .19" pos="0 -.22 .01" mass="1"/></body>
     </body>
   </body>
@@ -98,13 +98,13 @@ def test_what_is_held_is_put_nowhere_and_the_order_counts_as_tried(kitchen):
     assert bodies(kitchen)["microwave_1"].pose == before
 
 
-def test_five_thousand_nested_bodies_are_read(tmp_path):
+def test_a_thousand_nested_bodies_are_read():
     part = '<body name="part_{}"><geom type="sphere" size=".01"/>'
     chains = "".join(
         "".join(part.format(10 * chain + depth) for depth in range(10)) + 10 * "</body>"
-        for chain in range(500)
+        for chain in range(100)
     )
     floor = '<geom type="plane" size="0 0 .1"/>'
     world = World(mujoco.MjSpec.from_string(f"<mujoco><worldbody>{floor}{chains}</worldbody></mujoco>"))
-    assert len(world) + len(world.left_out) == 5000
-    assert len(world) == 500
+    assert len(world) + len(world.left_out) == 1000
+    assert len(world) == 100

@@ -5,8 +5,7 @@ from __future__ import annotations
 import logging
 import math
 import re
-from collections import deque
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import count
 from pathlib import Path
 from typing import Any, Literal
@@ -151,28 +150,18 @@ def bodies_of(
     """
     model, data = _compiled(spec)
     classes = _declared(spec)
-    records: dict[str, BodyRecord] = {}
     closed = _closed_ends(spec)
-    waiting = deque((body, True, "") for body in spec.worldbody.bodies)
-    while waiting:
-        body, top, above = waiting.popleft()
-        if body.name and (top or _is_body(body.name, classes, is_class)):
-            class_ = classes.get(body.name) or class_from_name(body.name)
-            records[body.name] = _record(model, data, body, class_, above)
-            above = body.name
-        if above:
-            _give_joints(records[above], model, body, closed)
-        waiting += [(part, False, above) for part in body.bodies]
+    records: dict[str, BodyRecord] = {}
+    owner = [""] * model.nbody
+    for number in range(1, model.nbody):  # wholes have lower numbers than their parts
+        name, whole = model.body(number).name, int(model.body_parentid[number])
+        if name and (whole == 0 or _is_body(name, classes, is_class)):
+            class_ = classes.get(name) or class_from_name(name)
+            records[name] = _record(model, data, spec.body(name), class_, owner[whole])
+        owner[number] = name if name in records else owner[whole]
+        if owner[number] and model.body_jntnum[number]:
+            _give_joints(records[owner[number]], model, number, closed)
     return records
-
-
-def _from_the_top(spec: mujoco.MjSpec) -> Iterator[tuple[mujoco.MjsBody, bool]]:
-    """Every body but the world, each after the one that it is part of; and whether it is on the top level."""
-    waiting = deque((body, True) for body in spec.worldbody.bodies)
-    while waiting:
-        body, top = waiting.popleft()
-        yield body, top
-        waiting += [(part, False) for part in body.bodies]
 
 
 def _is_body(name: str, classes: Mapping[str, str], is_class: Callable[[str], bool]) -> bool:
@@ -185,8 +174,11 @@ def _is_body(name: str, classes: Mapping[str, str], is_class: Callable[[str], bo
 
 def ignored(spec: mujoco.MjSpec) -> list[str]:
     """What texts declare in vain, each with the reason, in the order of the texts."""
-    named = {body.name for body in spec.bodies[1:] if body.name}
-    joints = {joint.name for joint in spec.joints}
+    if not any(text.name.startswith((_CLASS_TEXT, _CLOSED_TEXT)) for text in spec.texts):
+        return []
+    model, _ = _compiled(spec)  # to ask a large specification takes longer than to compile it
+    named = {model.body(number).name for number in range(1, model.nbody)}
+    joints = {model.joint(number).name for number in range(model.njnt)}
     told = []
     for name in _declared(spec):
         if name not in named:
@@ -203,13 +195,15 @@ def ignored(spec: mujoco.MjSpec) -> list[str]:
 
 def left_out(spec: mujoco.MjSpec, records: Collection[str]) -> tuple[str, ...]:
     """The named bodies of a world that are none of `records`, but only parts of what is above them."""
-    return tuple(body.name for body, _ in _from_the_top(spec) if body.name and body.name not in records)
+    model, _ = _compiled(spec)
+    names = (model.body(number).name for number in range(1, model.nbody))
+    return tuple(name for name in names if name and name not in records)
 
 
 def names_classes(spec: mujoco.MjSpec) -> bool:
     """Does it depend on the classes' names what is a body here?"""
-    declared = _declared(spec)
-    return any(body.name and not top and body.name not in declared for body, top in _from_the_top(spec))
+    known = {*_declared(spec), *(body.name for body in spec.worldbody.bodies), ""}
+    return any(body.name not in known for body in spec.bodies[1:])
 
 
 def _declared(spec: mujoco.MjSpec) -> dict[str, str]:
@@ -228,11 +222,11 @@ def _closed_ends(spec: mujoco.MjSpec) -> dict[str, str]:
     return {name: end for name, end in _texts(spec, _CLOSED_TEXT).items() if end in _ENDS}
 
 
-def _give_joints(
-    record: BodyRecord, model: mujoco.MjModel, body: mujoco.MjsBody, closed: Mapping[str, str]
-) -> None:
+def _give_joints(record: BodyRecord, model: mujoco.MjModel, body: int, closed: Mapping[str, str]) -> None:
     """Add the joints that move a body to a record."""
-    names = [joint.name for joint in body.joints if joint.type != mujoco.mjtJoint.mjJNT_FREE]
+    first = int(model.body_jntadr[body])
+    joints = range(first, first + int(model.body_jntnum[body]))
+    names = [model.joint(joint).name for joint in joints if int(model.jnt_type[joint]) in _KINDS]
     record.joints += tuple(_joint(model, name, closed.get(name)) for name in names)
     record.joint_names += tuple(names)
 
