@@ -1,4 +1,4 @@
-"""Who is let in: with the token or the cookie, under an address of the page's own, and from no other origin."""
+"""Who is let in: with the token or the cookie, by an address of the page itself, from no other origin."""
 
 from __future__ import annotations
 
