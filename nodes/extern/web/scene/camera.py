@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Final
 
 import numpy as np
@@ -22,7 +22,8 @@ _TILT_RAD: Final = math.radians(52.0)
 _MARGIN: Final = 1.06
 _FARTHEST_M: Final = 200.0
 _LABEL_PX: Final = 17.0
-_LETTER_PX: Final = 7.4
+_LETTER_PX: Final = 7.0
+_NEAREST_M: Final = 0.05
 
 
 class View(Struct, frozen=True):
@@ -86,28 +87,28 @@ def first_view(points: Floats, aspect: float) -> tuple[Vector, Vector]:
 
 
 def uncrowded(
-    view: View, names: Sequence[str], points: Floats, always: Iterable[str] = (), most: int = 40
+    view: View, labels: Mapping[str, tuple[str, Vector]], first: Iterable[str] = (), most: int = 40
 ) -> list[str]:
-    """Those of `names` whose labels, at `points` (N, 3), fit into the picture without covering one another.
+    """The keys of those `labels` (a text and its place [m]) that fit into the picture side by side.
 
-    The nearest come first, `always` before all others; at most so many.
+    The `first` have precedence in their order, then the nearest; at most so many.
     """
-    if not len(points):
+    if not labels:
         return []
-    wanted, chosen = set(always), list[str]()
+    keys, ranks = list(labels), {key: rank for rank, key in enumerate(first)}
+    chosen: list[str] = []
     taken: list[tuple[float, float, float, float]] = []
-    at = view.project(points)
-    order = sorted(range(len(names)), key=lambda row: (names[row] not in wanted, at[row, 2]))
-    for row in order:
+    at = view.project(np.array([place for _, place in labels.values()], dtype=float))
+    for row in sorted(range(len(keys)), key=lambda row: (ranks.get(keys[row], len(ranks)), at[row, 2])):
         x, y, ahead = (float(value) for value in at[row])
-        half, tall = len(names[row]) * _LETTER_PX / 2.0 + 5.0, _LABEL_PX
-        if ahead <= 0.05 or not (0.0 <= x <= view.width and 0.0 <= y <= view.height):
+        if ahead <= _NEAREST_M or not (0.0 <= x <= view.width and 0.0 <= y <= view.height):
             continue
-        box = (x - half, y - tall, x + half, y)
-        if names[row] not in wanted and any(_overlap(box, other) for other in taken):
+        half = len(labels[keys[row]][0]) * _LETTER_PX / 2.0 + 5.0
+        box = (x - half, y - _LABEL_PX, x + half, y)
+        if any(_overlap(box, other) for other in taken):
             continue
         taken.append(box)
-        chosen.append(names[row])
+        chosen.append(keys[row])
         if len(chosen) >= most:
             break
     return chosen
