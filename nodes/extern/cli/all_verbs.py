@@ -12,7 +12,7 @@ import click
 from schemas import errors
 
 _MODULES = {
-    "edit": ("add", "update", "set", "unset", "remove", "clear", "load"),
+    "edit": ("add", "update", "set", "unset", "track", "remove", "clear", "load"),
     "ask": (
         *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
         *("classes", "properties", "status", "sparql", "watch"),

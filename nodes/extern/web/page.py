@@ -54,6 +54,8 @@ class Page:
         """The browser has said how it looks."""
         self.refuse: Callable[[Command[Any], errors.SemmapError], None] | None = None
         """Shows why a change was refused; set by the layout."""
+        self.watch: Callable[[str, bool], object] | None = None
+        """Watches a query, with what follows or without; set by the panel of standing queries."""
         self.draw_scene: Callable[[], None] | None = None
         """Draws the scene with its switches where it is called; set by the scene."""
         self.pick: Callable[[], Awaitable[Place | None]] | None = None
