@@ -106,7 +106,7 @@ def _of_commit(commit: Commit, there: dict[str, Entity], seconds: float) -> Scen
 
 
 def _in_short(was: Entity, now: Entity) -> str:
-    """What became of an entity that was there, as short as a label should be; nothing where it is the same."""
+    """What became of an entity that was there, as short as a label is; nothing where it is the same."""
     found = changes.between(was, now)
     if [change.kind for change in found] != ["pose"]:
         return changes.in_words(found)
