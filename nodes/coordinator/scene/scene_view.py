@@ -83,6 +83,11 @@ class SceneView:
             changed.add(name)
         return changed
 
+    @property
+    def stamp_ns(self) -> int:
+        """When the poses are from."""
+        return self._stamp_ns
+
     def forget(self) -> None:
         """The simulator is gone."""
         self.known = False
