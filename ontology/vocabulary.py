@@ -193,6 +193,7 @@ JOINT_POSITIONS: Final = dm("jointPositions")
 """How far open a thing is and how its joints stand; each says more than the one before."""
 
 CONFLICTING_OBSERVATION: Final = dm("conflictingObservation")
+TRACKED_FROM: Final = dm("trackedFrom")
 """Annotation of an entity: what perception sees against what the map says of it."""
 
 SPATIAL: Final = dm("spatial")

@@ -26,6 +26,7 @@ from schemas.entities import (
     Size,
     Source,
     Text,
+    Tracking,
     Value,
     Vector,
     Word,
@@ -96,7 +97,8 @@ class Add(Command[Changed], frozen=True, tag="add"):
 
     Without `name` one is made from the class; without `at` it goes to the next free place near the default
     pose; with `default` it also gets the class's label as reference. `set` are properties, each written
-    `PROPERTY=VALUE`. `wait` delays the reply until its body stands in the scene.
+    `PROPERTY=VALUE`. With `track` it is tracked from the start (see `Track`). `wait` delays the reply until
+    its body stands in the scene.
 
     Like every command that changes entities, it is refused with PreconditionFailed where one of those that
     are to be `unchanged` is gone, or was changed by a commit after `since`.
@@ -114,6 +116,7 @@ class Add(Command[Changed], frozen=True, tag="add"):
     default: bool = False
     wait: bool = False
     set: tuple[Text, ...] = ()
+    track: Tracking | None = None
     unchanged: tuple[Word, ...] = ()
     since: Since = 0
     dry_run: bool = False
@@ -177,6 +180,21 @@ class Unset(Command[Changed], frozen=True, tag="unset"):
     property: Text
     value: Value | None = None
     if_is: Value | None = None
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
+    dry_run: bool = False
+
+
+class Track(Command[Changed], frozen=True, tag="track"):
+    """Let an entity's pose come live: from whoever publishes it (`stream`), or from the simulator (`sim`).
+
+    Live poses are on `semmap/live/<name>`, the newest wins, and only where the entity stops is its pose
+    committed. With `off` it is not tracked any more, and stays where it was last.
+    """
+
+    name: Word
+    from_: Tracking = field(name="from", default="stream")
+    off: bool = False
     unchanged: tuple[Word, ...] = ()
     since: Since = 0
     dry_run: bool = False

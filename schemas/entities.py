@@ -201,6 +201,27 @@ class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How far open it is just now, 0 to 1: as the joint that is open furthest; None if nothing opens."""
 
 
+Tracking = Literal["sim", "stream"]
+"""Where the live poses of a tracked entity come from: the simulator, or whoever publishes them."""
+
+
+Tracked = Literal["", "sim", "stream"]
+"""The same, or "" for what is not tracked."""
+
+
+class Live(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
+    """Where a tracked entity is just now, as far as was heard: `age_s` seconds ago, measured at `stamp_ns`.
+
+    `stale`: nothing has been heard for longer than `semmap up --stale`; it is taken to be where it was.
+    """
+
+    pose: Pose
+    stamp_ns: int
+    age_s: float
+    source: Tracking
+    stale: bool = False
+
+
 class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
     """One individual of the map that is somewhere: an object, a person, a wall, or a place.
 
@@ -208,6 +229,8 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     `size_m` is its extent along its own axes [m]. In commits and in what is published it is what the map
     states, or None; replies fill in what its body measures, or what its model does. Where there is no model
     either, it is None: the size is not known, and a box stands in for it in the scene.
+    `tracked` says where its live poses come from, or "" for what is not tracked; `pose` is then the last one
+    that was journalled, and `live`, which replies fill in, the newest.
     `pose_provenance` says what last changed its pose, `shape_provenance` its class or size,
     `reference_provenance` what it is called, `joint_provenance` how far open it is and how its joints stand
     (None if that was never stated). `properties` are the data and object properties asserted of it.
@@ -229,6 +252,8 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     fixed: bool = False
     model: str = ""
     body: BodyState | None = None
+    tracked: Tracked = ""
+    live: Live | None = None
     provenance: Provenance
     pose_provenance: Provenance
     shape_provenance: Provenance

@@ -23,6 +23,14 @@ class Thresholds:
 
 
 @dataclass(frozen=True)
+class LiveRules:
+    """When a live pose is stale, and how often it is committed of what moves; 0 is not before it stops."""
+
+    stale_s: float = 2.0
+    journal_every_s: float = 0.0
+
+
+@dataclass(frozen=True)
 class CoordinatorConfig:
     """`truth` says who owns existence: in `map` the scene follows the map, in `scene` the other way.
 
@@ -32,6 +40,7 @@ class CoordinatorConfig:
 
     truth: Truth = "map"
     thresholds: Thresholds = field(default_factory=Thresholds)
+    live: LiveRules = field(default_factory=LiveRules)
     network: Network = field(default_factory=Network)
     keys: Path | None = None
     """The folder of keys of a secure system: then names are proved, and roles hold."""

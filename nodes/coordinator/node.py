@@ -19,6 +19,7 @@ from nodes.coordinator.door import Door
 from nodes.coordinator.early_commands import EarlyCommands
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
+from nodes.coordinator.live.feed import LiveFeed
 from nodes.coordinator.scene.opening import Opening
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
@@ -61,7 +62,8 @@ class Coordinator:
         self._early = EarlyCommands(lambda: node.is_there("kb_node"))
         self._waiting: list[tuple[str, float, Changed, Future[Changed]]] = []
         door = self._door
-        answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
+        self._live = LiveFeed(node, config, door.map, self._keeping.scene, self._turns.change)
+        answers = Answers(config.truth, door, self._keeping, self._health, self._bridge, self._live)
         running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
         self._opening = Opening(door, self._keeping, self._ask_sim)
         relay = self._bridge.relay
@@ -70,6 +72,7 @@ class Coordinator:
             c.Update.answered_by(self._with_body),
             c.Set.answered_by(self._turns.change),
             c.Unset.answered_by(self._turns.change),
+            c.Track.answered_by(self._track),
             c.Remove.answered_by(self._noted),
             c.Clear.answered_by(self._noted),
             c.Load.answered_by(self._load),
@@ -143,6 +146,7 @@ class Coordinator:
 
     def _on_poses(self, poses: Poses) -> None:
         if self._has_map:
+            self._live.on_scene()
             self._keeping.on_poses(poses)
             self._answer_waiting()
 
@@ -181,6 +185,15 @@ class Coordinator:
             return made
         future: Future[Changed] = OwnFuture()
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
+        return future
+
+    def _track(self, command: c.Track) -> Future[Changed]:
+        """What is not tracked any more stays where it was last, by a commit of its own."""
+        settled = self._live.settle(command.name) if command.off and not command.dry_run else None
+        if settled is None:
+            return self._turns.change(command)
+        future: Future[Changed] = OwnFuture()
+        settled.add_done_callback(lambda _: settle(future, lambda: self._turns.change(command)))
         return future
 
     def _load(self, command: c.Load) -> Future[Changed]:

@@ -255,6 +255,7 @@ class Verbs:
     update = Verb(commands.Update)
     set = Verb(_set)
     unset = Verb(commands.Unset)
+    track = Verb(commands.Track)
     remove = Verb(_remove)
     clear = Verb(commands.Clear)
     load = Verb(_load)

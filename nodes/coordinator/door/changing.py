@@ -13,7 +13,7 @@ from nodes.coordinator.scene.settled import Settled, doing
 from ontology import vocabulary as v
 from ontology.name_index import Ambiguous, Named, NameIndex
 from schemas import changes, errors, wording
-from schemas.commands import Add, Clear, Command, Infer, Properties, Remove, Set, Unset, Update
+from schemas.commands import Add, Clear, Command, Infer, Properties, Remove, Set, Track, Unset, Update
 from schemas.commits import Effects, Transaction
 from schemas.entities import ClassInfo, Entity, Pose, Value
 from schemas.replies import Changed
@@ -149,6 +149,20 @@ def _after(made: Effects | None, name: str) -> Entity | None:
 
 
 @once
+def track(view: KnownMap, command: Track) -> Talk[Changed]:
+    """Let an entity's pose come live, or no more. Raises Refused for a place."""
+    entity = view.entity(command.name)
+    if entity.place:
+        raise errors.Refused(f"{entity.name} is a place, which stays where it is; track what moves")
+    made = yield from commit(view, transactions.track(command))
+    if made is None:
+        source = "the simulator" if entity.tracked == "sim" else "a stream of poses"
+        now = f"is tracked from {source} already" if entity.tracked else "is not tracked"
+        return changed(None, f"unchanged: {entity.name} {now}", names=(entity.name,))
+    return changed(made, _said(entity, made), names=(entity.name,))
+
+
+@once
 def remove(view: KnownMap, command: Remove) -> Talk[Changed]:
     """Take entities out: all of them, or, if one is unknown, none."""
     if not command.names:
@@ -170,10 +184,10 @@ def follow(view: KnownMap, settled: Settled, hand: Hand) -> Talk[Changed]:
     edits = settled.edits(view.entities)
     if not edits:
         return changed(None, UNCHANGED)
-    reason = hand.reason if hand.verb or settled.poses else _of_joints(settled)
+    reason = settled.reason or (hand.reason if hand.verb or settled.poses else _of_joints(settled))
     moved = Transaction(
         id=new_id(),
-        source="scene",
+        source=settled.source,
         agent=hand.agent,
         verb=hand.verb,
         reason=reason,

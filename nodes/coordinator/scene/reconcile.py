@@ -7,8 +7,9 @@ come from the scene, the body is ordered there; otherwise a body that rests else
 follows. The same goes for joints, by the commits that concern these.
 
 If only perception updates the map (`perceived`), nothing is to be done: an entity without a body is a belief,
-a body without an entity has not been seen yet, and a pose that differs will be seen. If the map is
-`replayed`, every pose of it is an order, also those that came from the scene, and the map follows nothing.
+a body without an entity has not been seen yet, and a pose that differs will be seen. Only what is tracked
+from the simulator is followed all the same. What is tracked from a stream never follows its body. If the map
+is `replayed`, every pose of it is an order, also those that came from the scene, and the map follows nothing.
 """
 
 from __future__ import annotations
@@ -53,7 +54,9 @@ def reconcile(
     not tried again before the entity changes.
     """
     if truth == "perceived":
-        return Actions()
+        tracked = (e for e in entities.values() if e.tracked == "sim" and e.name in bodies)
+        moved = (bodies[e.name] for e in tracked if _moved(e, bodies[e.name], thresholds))
+        return Actions(follow=tuple(Placement(name=body.name, pose=body.pose) for body in moved))
     failed = failed or {}
     delete, spawn, place, follow, joints, opened, adopt, missing = [], [], [], [], [], [], [], []
     coming = {latest(e) for e in entities.values() if not (e.place or e.pose is None or e.name in bodies)}
@@ -188,7 +191,7 @@ def _posed_since(entity: Entity, body: Body) -> bool:
 
 
 def _moved(entity: Entity, body: Body, thresholds: Thresholds) -> bool:
-    if not body.resting:
+    if not body.resting or entity.tracked == "stream":
         return False
     if entity.pose is None:
         return True

@@ -1,4 +1,4 @@
-"""Bodies that came to rest otherwise, as a change of the map that takes its turn among the others."""
+"""Where things have come to be, as a change of the map that takes its turn among the others."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from schemas.commits import Edit, Statement
-from schemas.entities import Entity, Pose
+from schemas.entities import Entity, Pose, Source
 from schemas.joints import IS_OPEN, JOINT_POSITIONS, OPEN_FROM, OPENNESS, Joint, openness, positions_text
 
 _DIGITS = 3
@@ -25,15 +25,22 @@ class Settled(NamedTuple):
     joints: Mapping[str, tuple[Joint, ...]] = MappingProxyType({})
     """By name, the joints of a body as they stand."""
 
+    source: Source = "scene"
+    reason: str = ""
+    """Why the map takes them over; without one they came to rest, or a hand put them there."""
+
     @classmethod
     def of(
         cls,
         entities: Mapping[str, Entity],
         poses: Mapping[str, Pose],
         joints: Mapping[str, tuple[Joint, ...]] = MappingProxyType({}),
+        source: Source = "scene",
+        reason: str = "",
     ) -> Settled:
-        """The bodies of these entities rest at `poses`, and `joints` stand as they do."""
-        return cls(poses, {name: said_by(entities[name]) for name in {**poses, **joints}}, joints)
+        """These entities are at `poses`, and `joints` stand as they do."""
+        after = {name: said_by(entities[name]) for name in {**poses, **joints}}
+        return cls(poses, after, joints, source, reason)
 
     @property
     def names(self) -> tuple[str, ...]:

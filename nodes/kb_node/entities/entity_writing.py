@@ -83,6 +83,8 @@ class Draft:
         self.insert.update(dict.fromkeys(triples))
         for prop, terms in self._typed(new.set, new.name):
             self._come((iri, prop.iri, term) for term in terms)
+        if new.tracked:
+            self.insert[(iri, v.TRACKED_FROM, v.literal(new.tracked))] = None
         for word in new.affordances:
             self.insert[(iri, v.HAS_AFFORDANCE, v.dm(word))] = None
 
@@ -126,6 +128,10 @@ class Draft:
             self._go((iri, v.CONFLICTING_OBSERVATION, o) for o in known)
             if edit.conflict:
                 self._come([(iri, v.CONFLICTING_OBSERVATION, v.literal(edit.conflict))])
+        if edit.tracked is not None and edit.tracked != entity.tracked:
+            self._go((iri, v.TRACKED_FROM, o) for o in said.get(v.TRACKED_FROM, ()))
+            if edit.tracked:
+                self._come([(iri, v.TRACKED_FROM, v.literal(edit.tracked))])
 
     def _require(self, name: str, said: Objects, only_if: Sequence[Statement]) -> None:
         """Raises PreconditionFailed unless each property has one of these values (none, if none is given)."""
