@@ -20,7 +20,7 @@ MODULES: Mapping[str, tuple[str, ...]] = {
     "record": ("PIL", "numpy", "rerun"),
     "keys": ("cryptography",),
     "mcp": ("anyio", "mcp", "uvicorn"),
-    "web": ("fastapi", "nicegui", "numpy", "uvicorn", "viser", "websockets"),
+    "web": ("fastapi", "nicegui", "numpy", "psutil", "uvicorn", "viser", "websockets"),
     "movie": ("av", "numpy"),
 }
 """What each extra installs, as it is imported."""

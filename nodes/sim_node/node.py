@@ -26,7 +26,9 @@ from schemas.scenes import (
     BodiesMoved,
     Delete,
     Deleted,
+    JointsMoving,
     MoveBodies,
+    MoveJoints,
     Picture,
     PictureQuery,
     Scene,
@@ -75,6 +77,7 @@ class Simulator:
                 Spawn.answered_by(self._spawn),
                 Delete.answered_by(self._delete),
                 MoveBodies.answered_by(self._move),
+                MoveJoints.answered_by(self._move_joints),
                 SceneQuery.answered_by(self._snapshot),
                 Pause.answered_by(self._pause),
                 StepOnce.answered_by(self._step),
@@ -121,6 +124,9 @@ class Simulator:
 
     def _move(self, message: MoveBodies) -> BodiesMoved:
         return self._told(self._world.move(message.placements))
+
+    def _move_joints(self, message: MoveJoints) -> JointsMoving:
+        return self._told(self._world.move_joints(message.orders))
 
     def _snapshot(self, _: SceneQuery) -> Scene:
         return self._world.scene()

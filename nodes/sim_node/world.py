@@ -25,6 +25,8 @@ from schemas.scenes import (
     Body,
     BodyOrder,
     Deleted,
+    JointOrder,
+    JointsMoving,
     Placement,
     Poses,
     Scene,
@@ -112,12 +114,23 @@ class World:
         self._settling.put(moved)
         return BodiesMoved(bodies=self._bodies(moved), failed=failed)
 
+    def move_joints(self, ordered: Sequence[JointOrder]) -> JointsMoving:
+        """Begin to move joints as a hand would; time has to pass until they are there."""
+        targets, failed = orders.joint_targets(ordered, self._engine.records)
+        for order in ordered:
+            if order.name in targets and order.commit is not None:
+                self._engine.records[order.name].joint_commit = order.commit
+        for name, to in targets.items():
+            self._engine.drive(name, to)
+        return JointsMoving(bodies=self._bodies(targets), failed=failed)
+
     def step(self, duration_s: float) -> None:
         """Let `duration_s` of simulated time pass; it costs nothing while everything sleeps."""
         self._settling.step(duration_s)
 
     def reset(self) -> int:
         """Back to the map: each body goes where it was last ordered to be; answers how many there are."""
+        self._engine.set_joints([name for name, record in self._engine.records.items() if record.joints])
         self._settling.put({name: record.ordered for name, record in self._engine.records.items()})
         return len(self)
 
@@ -163,6 +176,8 @@ class World:
             poses=tuple(engine.poses().ravel().tolist()),
             resting=tuple(engine.resting.tolist()),
             commits=tuple(record.commit for record in engine.index.records),
+            joints=tuple(engine.positions().tolist()),
+            joint_commits=tuple(record.joint_commit for record in engine.index.records if record.joints),
         )
 
     def scene(self) -> Scene:
@@ -204,6 +219,13 @@ class World:
 
     def _bodies(self, names: Iterable[str]) -> tuple[Body, ...]:
         engine = self._engine
-        poses, resting = engine.poses(), engine.resting
+        poses, resting, positions = engine.poses(), engine.resting, engine.positions()
         rows = [(engine.records[name], engine.index.row[name]) for name in names]
-        return tuple(record.message(pose_of(poses[row]), resting=bool(resting[row])) for record, row in rows)
+        return tuple(
+            record.message(
+                pose_of(poses[row]),
+                resting=bool(resting[row]),
+                positions=[float(positions[engine.index.joint_row[joint]]) for joint in record.joint_names],
+            )
+            for record, row in rows
+        )

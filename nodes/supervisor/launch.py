@@ -101,13 +101,14 @@ def _kb_node(settings: Settings) -> None:
 
 
 def _coordinator(settings: Settings) -> None:
-    from nodes.coordinator.config import CoordinatorConfig, Thresholds
+    from nodes.coordinator.config import CoordinatorConfig, LiveRules, Thresholds
     from nodes.coordinator.node import run
 
     add_own(_own_shapes(settings))
     thresholds = Thresholds(distance_m=settings.threshold_m, angle_rad=settings.angle_threshold_rad)
+    live = LiveRules(stale_s=settings.stale_s, journal_every_s=settings.journal_every_s)
     keys = None if settings.secure is None else Path(settings.secure)
-    run(CoordinatorConfig(settings.truth, thresholds, settings.network("coordinator"), keys))
+    run(CoordinatorConfig(settings.truth, thresholds, live, settings.network("coordinator"), keys))
 
 
 def _sim_node(settings: Settings) -> None:

@@ -58,6 +58,10 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     truth: Literal["map", "scene", "perceived", "replayed"] = "map"
     threshold_m: Annotated[float, Meta(gt=0.0)] = 0.05
     angle_threshold_deg: Annotated[float, Meta(gt=0.0, le=180.0)] = 5.0
+    stale_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] = 2.0
+    """After how long a live pose that is not followed by another is stale."""
+    journal_every_s: Annotated[float, Meta(ge=0.0, le=86_400.0)] = 0.0
+    """How often the live poses of what moves are committed; 0 is only where it stops."""
     listen: str = DEFAULT_ENDPOINT
     connect: tuple[str, ...] = ()
     only: tuple[str, ...] = ()

@@ -15,7 +15,7 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
-from nodes.coordinator.scene.reconcile import Actions, latest, order, reconcile
+from nodes.coordinator.scene.reconcile import Actions, joint_order, latest, order, reconcile
 from nodes.coordinator.scene.scene_view import SceneView
 from nodes.coordinator.scene.settled import Settled
 from nodes.coordinator.scene.spawn_batches import batches
@@ -23,13 +23,16 @@ from schemas import errors, wording
 from schemas.calls import Call
 from schemas.commands import Add
 from schemas.entities import BodyState, Entity, rounded
+from schemas.joints import openness
 from schemas.replies import Changed
 from schemas.scenes import (
     BodiesMoved,
     Body,
     BodyOrder,
     Delete,
+    JointOrder,
     MoveBodies,
+    MoveJoints,
     Placement,
     Poses,
     SceneQuery,
@@ -89,6 +92,8 @@ class Keeping:
         self._later: set[str] = set()  # what changed while orders were under way
         self._following: set[str] = set()  # bodies that the map is about to follow, or to take in
         self._put_back: dict[str, Placement] = {}  # bodies that the map did not follow
+        self._shut_again: dict[str, JointOrder] = {}  # those whose joints it did not follow
+        self._unsaid: set[str] = set()  # bodies of whose joints the map has no way to speak
 
     def on_poses(self, poses: Poses) -> None:
         """New poses from the simulator."""
@@ -113,10 +118,12 @@ class Keeping:
         actions = self.wanted(names)
         for group in self._to_follow(actions.follow):
             self._follow(group)
+        self._follow_joints(actions.opened)
         for body in actions.adopt:
             self._adopt(body)
         refused, self._put_back = self._put_back, {}
-        steps = self._orders(actions, [*refused.values()])
+        shut, self._shut_again = self._shut_again, {}
+        steps = self._orders(actions, [*refused.values()], [*shut.values()])
         if steps:
             self._start(steps)
 
@@ -143,8 +150,16 @@ class Keeping:
         return (
             self._door.map.is_confirmed
             and not self._busy
-            and not (any(wanted[:4]) or foreign or wanted.missing)
+            and not (any(wanted[:5]) or not self._unsaid.issuperset(wanted.opened))
+            and not (foreign or wanted.missing)
         )
+
+    def is_followed(self, name: str) -> bool:
+        """Whether the map says of an entity what its body does, or never will; nothing of it is under way."""
+        if self._config.truth == "perceived" or name in self._unsaid:
+            return True
+        wanted = self.wanted((name,))
+        return name not in self._following and not (wanted.follow or wanted.opened or wanted.joints)
 
     def place_all(self) -> Future[Any]:
         """Put every body back where the map says it stands; those that could not be made are tried again.
@@ -160,6 +175,11 @@ class Keeping:
             for e in self._door.map.entities.values()
             if e.pose is not None and e.name in self.scene.bodies
         )
+        bodies, entities = self.scene.bodies, self._door.map.entities
+        jointed = [name for name, body in bodies.items() if body.joints and name in entities]
+        orders = tuple(joint_order(entities[name], bodies[name], self._config.thresholds) for name in jointed)
+        if orders:
+            self._ask(MoveJoints(orders=orders))
         return self._ask(MoveBodies(placements=placements))
 
     def body_state(self, entity: Entity) -> BodyState:
@@ -174,8 +194,13 @@ class Keeping:
         if not self.scene.known:
             return BodyState(status="unknown", detail="no simulator is running", model=entity.model)
         if body is not None:
-            detail = GHOSTLY if body.ghost else ""
-            return BodyState(status="ghost" if body.ghost else "present", detail=detail, model=body.model)
+            return BodyState(
+                status="ghost" if body.ghost else "present",
+                detail=GHOSTLY if body.ghost else "",
+                model=body.model,
+                joints=body.joints,
+                openness=openness(body.joints),
+            )
         if entity.name in self._failed and self._failed[entity.name][0] == latest(entity):
             return BodyState(status="failed", detail=self._failed[entity.name][1], model=entity.model)
         if self._config.truth == "scene":
@@ -197,7 +222,7 @@ class Keeping:
         foreign = sorted((name, why) for name, why in self._foreign.items() if name in self.scene.bodies)
         return amiss + seen + [f"{name}: {why}" for name, why in foreign]
 
-    def _orders(self, actions: Actions, refused: list[Placement]) -> list[Step[Any]]:
+    def _orders(self, actions: Actions, refused: list[Placement], shut: list[JointOrder]) -> list[Step[Any]]:
         steps: list[Step[Any]] = []
         if actions.delete:
             steps.append(Step(Delete(names=actions.delete), lambda _: None))
@@ -205,6 +230,9 @@ class Keeping:
         placements = (*actions.place, *refused)
         if placements:
             steps.append(Step(MoveBodies(placements=placements), self._placed))
+        joints = (*actions.joints, *shut)
+        if joints:
+            steps.append(Step(MoveJoints(orders=joints), lambda _: None))
         return steps
 
     def _spawning(self, batch: tuple[BodyOrder, ...]) -> Step[Spawned]:
@@ -288,6 +316,25 @@ class Keeping:
                     self._put_back[name] = Placement(name=name, pose=entity.pose, commit=commit)
 
         self._change_about(poses, Settled.of(self._door.map.entities, poses), failed)
+
+    def _follow_joints(self, names: Sequence[str]) -> None:
+        """Let the map take over how joints stand; if the map refuses, they have to go back."""
+        for name in names:
+            if name in self._following or name in self._unsaid or name in self._shut_again:
+                continue
+            body = self.scene.bodies[name]
+            settled = Settled.of(self._door.map.entities, {}, {name: body.joints})
+            self._change_about((name,), settled, partial(self._not_followed, name))
+
+    def _not_followed(self, name: str, error: BaseException) -> None:
+        if isinstance(error, errors.BadRequest):  # a TBox without these properties
+            self._unsaid.add(name)
+            log.warning("the map does not say how %s stands: %s", name, error)
+        elif not isinstance(error, errors.Refused):
+            self._report(f"the map cannot take over how {name} stands yet: {error}")
+        elif (entity := self._door.map.entities.get(name)) is not None:
+            self._report(f"{name} was put back as it stood, because the map rejected how it stands: {error}")
+            self._shut_again[name] = joint_order(entity, self.scene.bodies[name], self._config.thresholds)
 
     def _adopt(self, body: Body) -> None:
         """Let a body of the scene become an entity."""

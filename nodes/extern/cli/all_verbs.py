@@ -12,7 +12,7 @@ import click
 from schemas import errors
 
 _MODULES = {
-    "edit": ("add", "update", "set", "unset", "remove", "clear", "load"),
+    "edit": ("add", "update", "set", "unset", "track", "remove", "clear", "load"),
     "ask": (
         *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
         *("classes", "properties", "status", "sparql", "watch"),
@@ -21,7 +21,7 @@ _MODULES = {
     "past": ("undo", "history", "diff", "when", "last-seen"),
     "run": ("run",),
     "perceive": ("perceive",),
-    "scene": ("move", "pause", "step", "reset", "picture"),
+    "scene": ("move", "open", "close", "pause", "step", "reset", "picture"),
     "replay": ("replay",),
     "lifecycle": ("up", "down", "node", "repair"),
     "keep": ("backup", "restore", "compact"),

@@ -12,6 +12,7 @@ from nodes.extern.web.deleting import delete_selected, undo
 from nodes.extern.web.page import Page
 from nodes.extern.web.panels.add import add
 from nodes.extern.web.panels.classes import classes
+from nodes.extern.web.panels.commits import commits
 from nodes.extern.web.panels.consistency import consistency
 from nodes.extern.web.panels.detail import detail
 from nodes.extern.web.panels.entities import entities
@@ -39,6 +40,7 @@ LEFT: Final[Panels] = {"Entities": (entities,), "Classes": (classes,), "Places":
 RIGHT: Final[Panels] = {"Details": (detail,), "Add": (add,)}
 CENTRE: Final[Panels] = {
     "Scene": (),
+    "History": (commits,),
     "Graph": (graph,),
     "Plan": (plan,),
     "SPARQL": (sparql, standing),

@@ -74,6 +74,21 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     )
     @click.option("--angle-threshold", type=float, default=5.0, show_default=True, metavar="DEG")
     @click.option(
+        "--stale",
+        type=float,
+        default=2.0,
+        show_default=True,
+        metavar="SECONDS",
+        help="A live pose is stale when no other follows for so long.",
+    )
+    @click.option(
+        "--journal-every",
+        type=float,
+        default=0.0,
+        metavar="SECONDS",
+        help="Commit the poses of what is tracked and moves this often. Default: only where it stops.",
+    )
+    @click.option(
         "--listen",
         default=bus.DEFAULT_ENDPOINT,
         show_default=True,
@@ -224,11 +239,11 @@ def node(name: str, settings: Settings) -> None:
 def _settings(
     *, tbox: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], spatial_root: tuple[str, ...],
     abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
-    threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
-    window: bool, models: Path | None, camera_hz: float | None, camera_size: tuple[int, int],
-    camera_noise: bool, perception: bool, when_gone: str, no_sim: bool, no_record: bool,
-    record_keep: str | None, only: str | None, single: bool,
-    secure: Path | None, zenoh_config: Path | None, insecure: bool, namespace: str,
+    threshold: float, angle_threshold: float, stale: float, journal_every: float, listen: str,
+    connect: tuple[str, ...], window: bool, models: Path | None, camera_hz: float | None,
+    camera_size: tuple[int, int], camera_noise: bool, perception: bool, when_gone: str, no_sim: bool,
+    no_record: bool, record_keep: str | None, only: str | None, single: bool, secure: Path | None,
+    zenoh_config: Path | None, insecure: bool, namespace: str,
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
     folder = (data or default_data()).resolve()
@@ -267,6 +282,8 @@ def _settings(
         "truth": truth,
         "threshold_m": threshold,
         "angle_threshold_deg": angle_threshold,
+        "stale_s": stale,
+        "journal_every_s": journal_every,
         "listen": listen if secure is None else bus.over_tls(listen),
         "connect": connect if secure is None else tuple(map(bus.over_tls, connect)),
         "only": nodes,
@@ -337,7 +354,7 @@ def _option_of(field: str) -> str:
     name = field.removesuffix(":")
     if name not in Settings.__struct_fields__:
         return field
-    option = name.removesuffix("_m").removesuffix("_deg").replace("_", "-")
+    option = name.removesuffix("_m").removesuffix("_s").removesuffix("_deg").replace("_", "-")
     return f"--{option}{field[len(name) :]}"
 
 

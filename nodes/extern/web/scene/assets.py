@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from nodes.drawing.surfaces import Kind, SurfaceCache
 from nodes.extern.web.live import Live
-from nodes.extern.web.page import State
+from nodes.extern.web.moments import State
 from nodes.extern.web.scene.meshes import glb
 from nodes.extern.web.scene.picking import corners_of
 from nodes.extern.web.scene.shown import BOX, Key

@@ -87,25 +87,25 @@ def first_view(points: Floats, aspect: float) -> tuple[Vector, Vector]:
 
 
 def uncrowded(
-    view: View, labels: Mapping[str, tuple[str, Vector]], always: Iterable[str] = (), most: int = 40
+    view: View, labels: Mapping[str, tuple[str, Vector]], first: Iterable[str] = (), most: int = 40
 ) -> list[str]:
     """The keys of those `labels` (a text and its place [m]) that fit into the picture side by side.
 
-    `always` come in any case, and before all others; then the nearest; at most so many.
+    The `first` have precedence in their order, then the nearest; at most so many.
     """
     if not labels:
         return []
-    wanted, keys = set(always), list(labels)
+    keys, ranks = list(labels), {key: rank for rank, key in enumerate(first)}
     chosen: list[str] = []
     taken: list[tuple[float, float, float, float]] = []
     at = view.project(np.array([place for _, place in labels.values()], dtype=float))
-    for row in sorted(range(len(keys)), key=lambda row: (keys[row] not in wanted, at[row, 2])):
+    for row in sorted(range(len(keys)), key=lambda row: (ranks.get(keys[row], len(ranks)), at[row, 2])):
         x, y, ahead = (float(value) for value in at[row])
         if ahead <= _NEAREST_M or not (0.0 <= x <= view.width and 0.0 <= y <= view.height):
             continue
         half = len(labels[keys[row]][0]) * _LETTER_PX / 2.0 + 5.0
         box = (x - half, y - _LABEL_PX, x + half, y)
-        if keys[row] not in wanted and any(_overlap(box, other) for other in taken):
+        if any(_overlap(box, other) for other in taken):
             continue
         taken.append(box)
         chosen.append(keys[row])
