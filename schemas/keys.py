@@ -38,6 +38,9 @@ PERCEPTION = f"{ROOT}/perception"
 NODES = ("kb_node", "coordinator", "sim_node", "perception_node", "recorder")
 """The nodes that `semmap up` can start."""
 
+WEB = "web"
+"""The page, which `semmap up --web` starts beside the nodes; it is a client like any other."""
+
 ROUTER = "router"
 """The process that everybody, nodes included, is connected to under `semmap up --secure`."""
 

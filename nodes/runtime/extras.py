@@ -32,8 +32,9 @@ OF_NODE: Mapping[str, str] = {
     "sim_node": "sim",
     "perception_node": "perception",
     "recorder": "record",
+    "web": "web",
 }
-"""What a node needs."""
+"""What a node, and the page beside them, needs."""
 
 _OPTIONS = {"sim": "--no-sim", "record": "--no-record"}
 """How `semmap up` does without one."""

@@ -23,6 +23,7 @@ _MODULES = {
     "perceive": ("perceive",),
     "scene": ("move", "open", "close", "pause", "step", "reset", "picture"),
     "replay": ("replay",),
+    "movie": ("movie",),
     "lifecycle": ("up", "down", "node", "repair"),
     "keep": ("backup", "restore", "compact"),
     "tbox": ("tbox",),
