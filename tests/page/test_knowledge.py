@@ -10,7 +10,6 @@ import pytest
 from semmap.commands import Add
 from tests.conftest import until
 
-
 _PLACES = itertools.cycle(range(12))
 
 
