@@ -103,11 +103,13 @@ def open_tab(chromium):
     """
     contexts, asked, complained = [], [], []
 
-    def open_(web: Web, *, width: int = 1280, height: int = 800, dark: bool = False):
+    def open_(web: Web, *, width: int = 1280, height: int = 800, dark: bool = False, scene: bool = True):
         context = chromium.new_context(
             viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light"
         )
         contexts.append(context)
+        if not scene:  # which software draws slowly, on the thread of everything else
+            context.route("**/scene/**", lambda route: route.fulfill(body="<title>Scene</title>"))
         context.set_default_timeout(PATIENCE_S * 1000)
         tab = context.new_page()
         tab.on("request", lambda request: asked.append(request.url))
