@@ -18,6 +18,16 @@ class Thresholds:
 
     distance_m: float = 0.05
     angle_rad: float = math.radians(5.0)
+    share: float = 0.02
+    """Of the way of a door or drawer: how far open it must be more or less."""
+
+
+@dataclass(frozen=True)
+class LiveRules:
+    """When a live pose is stale, and how often it is committed of what moves; 0 is not before it stops."""
+
+    stale_s: float = 2.0
+    journal_every_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -30,6 +40,7 @@ class CoordinatorConfig:
 
     truth: Truth = "map"
     thresholds: Thresholds = field(default_factory=Thresholds)
+    live: LiveRules = field(default_factory=LiveRules)
     network: Network = field(default_factory=Network)
     keys: Path | None = None
     """The folder of keys of a secure system: then names are proved, and roles hold."""

@@ -81,6 +81,7 @@ class KnowledgeBase:
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):
                 node.serve_one(prefix, handlers[verb])
+        node.follow_newest(keys.LIVE_POSES, self._asking.live.take)
         node.follow(keys.OBSERVATIONS, self._asking.sightings.see)
         node.every(CHECKPOINT_PERIOD_S, self._checkpointing.if_due)
         node.every(CHECKPOINT_PERIOD_S, self._standing_places.drop_expired)

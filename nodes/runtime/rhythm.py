@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import Final
 
@@ -40,3 +40,26 @@ def wait_s(before_ns: int, after_ns: int, *, speed: float = 1.0, longest_s: floa
 def waits_s(stamps_ns: Iterable[int], *, speed: float = 1.0, longest_s: float = LONGEST_S) -> Iterator[float]:
     """The waits between commits with these stamps: one fewer than there are commits."""
     return (wait_s(*pair, speed=speed, longest_s=longest_s) for pair in pairwise(stamps_ns))
+
+
+def ahead(
+    stamps_ns: Sequence[int],
+    at: int,
+    *,
+    speed: float = 1.0,
+    longest_s: float = LONGEST_S,
+    least_s: float = 0.0,
+) -> tuple[int, float]:
+    """Where to be next when one shows the commits one after another, and in how many seconds.
+
+    That is the next commit or, where many come within `least_s` seconds, the last of those: who draws them
+    need not draw faster. `at` and what is returned are places in `stamps_ns`; at the end one stays there.
+    """
+    waited_s, place = 0.0, at
+    while place + 1 < len(stamps_ns):
+        next_s = wait_s(stamps_ns[place], stamps_ns[place + 1], speed=speed, longest_s=longest_s)
+        if place > at and waited_s + next_s > least_s:
+            break
+        waited_s += next_s
+        place += 1
+    return place, max(waited_s, least_s)

@@ -17,7 +17,7 @@ from nodes.sim_node.models.sources import Models
 from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import FROM_ABOVE, View, camera_view, overview
 from nodes.sim_node.window import Window
-from nodes.sim_node.world_file import is_scene, open_world
+from nodes.sim_node.world_file import names_classes, open_world
 from schemas import codec, errors, keys, wording
 from schemas.calls import by_verb
 from schemas.commands import Classes, Pause, Reset, StepOnce
@@ -27,7 +27,9 @@ from schemas.scenes import (
     BodiesMoved,
     Delete,
     Deleted,
+    JointsMoving,
     MoveBodies,
+    MoveJoints,
     Picture,
     PictureQuery,
     Scene,
@@ -76,6 +78,7 @@ class Simulator:
                 Spawn.answered_by(self._spawn),
                 Delete.answered_by(self._delete),
                 MoveBodies.answered_by(self._move),
+                MoveJoints.answered_by(self._move_joints),
                 SceneQuery.answered_by(self._snapshot),
                 Pause.answered_by(self._pause),
                 StepOnce.answered_by(self._step),
@@ -97,7 +100,7 @@ class Simulator:
 
     def _classes(self, config: SimConfig) -> ClassNames:
         """What the TBox says of classes, if the world is a file that names bodies by class."""
-        if not is_scene(config.world):
+        if not names_classes(config.world):
             return ClassNames()
         self._node.describe("waiting for the knowledge base")
         try:
@@ -123,6 +126,9 @@ class Simulator:
 
     def _move(self, message: MoveBodies) -> BodiesMoved:
         return self._told(self._world.move(message.placements))
+
+    def _move_joints(self, message: MoveJoints) -> JointsMoving:
+        return self._told(self._world.move_joints(message.orders))
 
     def _snapshot(self, _: SceneQuery) -> Scene:
         return self._world.scene()

@@ -37,3 +37,21 @@ def test_a_negative_longest_wait_is_refused():
     assert rhythm.require_longest(0.0) == 0.0
     with pytest.raises(errors.BadRequest, match="0 seconds or more, not -1"):
         rhythm.require_longest(-1.0)
+
+
+def test_what_comes_within_the_least_time_is_shown_together():
+    stamps = [0, 1 * S, 1 * S + 1, 2 * S, 4 * S]
+    assert rhythm.ahead(stamps, 0) == (1, 1.0)
+    assert rhythm.ahead(stamps, 1, least_s=0.5) == (2, 0.5)
+    assert rhythm.ahead(stamps, 0, speed=10.0, least_s=0.25) == (3, 0.25)
+    assert rhythm.ahead(stamps, 3, longest_s=1.5) == (4, 1.5)
+    assert rhythm.ahead(stamps, 4) == (4, 0.0)
+
+
+@given(st.lists(st.integers(0, 1 << 50), min_size=1, max_size=30), st.floats(0.01, 1e4), st.floats(0.0, 1.0))
+def test_one_always_comes_to_the_end(stamps, speed, least_s):
+    place = 0
+    for _ in stamps:
+        place, wait_s = rhythm.ahead(sorted(stamps), place, speed=speed, least_s=least_s)
+        assert wait_s >= least_s
+    assert place == len(stamps) - 1

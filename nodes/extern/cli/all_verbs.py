@@ -12,7 +12,7 @@ import click
 from schemas import errors
 
 _MODULES = {
-    "edit": ("add", "update", "set", "unset", "remove", "clear", "load"),
+    "edit": ("add", "update", "set", "unset", "track", "remove", "clear", "load"),
     "ask": (
         *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
         *("classes", "properties", "status", "sparql", "watch"),
@@ -22,8 +22,9 @@ _MODULES = {
     "run": ("run",),
     "perceive": ("perceive",),
     "navigation": ("floorplan", "route"),
-    "scene": ("move", "pause", "step", "reset", "picture"),
+    "scene": ("move", "open", "close", "pause", "step", "reset", "picture"),
     "replay": ("replay",),
+    "movie": ("movie",),
     "lifecycle": ("up", "down", "node", "repair"),
     "keep": ("backup", "restore", "compact"),
     "tbox": ("tbox",),

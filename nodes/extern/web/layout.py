@@ -12,9 +12,9 @@ from nodes.extern.web.deleting import delete_selected, undo
 from nodes.extern.web.page import Page
 from nodes.extern.web.panels.add import add
 from nodes.extern.web.panels.classes import classes
+from nodes.extern.web.panels.commits import commits
 from nodes.extern.web.panels.consistency import consistency
 from nodes.extern.web.panels.detail import detail
-from nodes.extern.web.panels.edit import edit
 from nodes.extern.web.panels.entities import entities
 from nodes.extern.web.panels.files import files
 from nodes.extern.web.panels.find import find
@@ -37,9 +37,10 @@ _CSS: Final = (_HERE / "page.css").read_text()
 _SCRIPT: Final = (_HERE / "page.js").read_text()
 
 LEFT: Final[Panels] = {"Entities": (entities,), "Classes": (classes,), "Places": (places,)}
-RIGHT: Final[Panels] = {"Details": (detail, edit), "Add": (add,)}
+RIGHT: Final[Panels] = {"Details": (detail,), "Add": (add,)}
 CENTRE: Final[Panels] = {
     "Scene": (),
+    "History": (commits,),
     "Graph": (graph,),
     "Plan": (plan,),
     "SPARQL": (sparql, standing),
@@ -251,3 +252,4 @@ class _Tabs:
             with self.containers[name]:
                 for panel in self._panels[name]:
                     panel(self._page)
+        self._page.turned()

@@ -20,6 +20,9 @@ from msgspec import Struct
 from nodes import bus
 from nodes.drawing.scene_state import SceneState
 from nodes.extern.client import Client
+from nodes.extern.sparql_client import StandingQuery
+from nodes.extern.web.loads import loads_of
+from nodes.extern.web.views.rates import Rates
 from nodes.identity import Identity
 from nodes.runtime.following import Begun, Follower
 from nodes.runtime.loop import Node
@@ -82,6 +85,9 @@ class Live:
         """The bodies as they were when bodies last came or went; `poses` says where they are now."""
         self.health: dict[str, Health] = {}
         """The last heartbeat of each node."""
+        self.rates = Rates()
+        """How busy the system has been over the last ten minutes."""
+        self._poses_heard = 0
         self._entities: dict[str, Entity] = {}
         self._poses: dict[str, Pose] = {}
         self.entities: Mapping[str, Entity] = MappingProxyType(self._entities)
@@ -105,6 +111,10 @@ class Live:
         """Begin to follow; to be called on the event loop that owns this from then on."""
         self._loop = asyncio.get_running_loop()
         self._thread.start()
+
+    def ready(self, detail: str) -> None:
+        """Tell whoever has started this process that the page can be opened."""
+        self._node.soon(lambda: self._node.ready(detail))
 
     def stop(self) -> None:
         """Follow no more, and wait for nobody."""
@@ -148,6 +158,15 @@ class Live:
         subscriber = bus.follow(self.session, topic, receive)
         return lambda: subscriber.undeclare()
 
+    async def watch(self, query: str, *, inferred: bool) -> tuple[StandingQuery, Callable[[], None]]:
+        """A standing query, begun, and what ends it, which waits for the system. Raises as `Client.watch`."""
+
+        def begin() -> tuple[StandingQuery, Callable[[], None]]:
+            stack = contextlib.ExitStack()
+            return stack.enter_context(self._client.watch(query, inferred=inferred)), stack.close
+
+        return await self._beside(begin)
+
     async def _beside(self, function: Callable[[], R]) -> R:
         return await asyncio.get_running_loop().run_in_executor(self._threads, function)
 
@@ -182,6 +201,7 @@ class Live:
             if self.scene is not None:
                 self._poses.update((body.name, body.pose) for body in self.scene.bodies)
             yield Happening(kind="scene")
+        self._poses_heard += news.poses_heard
         if news.moved:
             self._poses.update(news.moved)
             yield Happening(kind="poses", names=tuple(news.moved))
@@ -190,7 +210,14 @@ class Live:
             yield Happening(kind="connection")
         if news.health:
             self.health.update(news.health)
+            self._sample()
             yield Happening(kind="health", names=tuple(news.health))
+
+    def _sample(self) -> None:
+        now_s = time.time()
+        if self.rates.is_due(now_s):
+            loads = loads_of(self.health.values())
+            self.rates.take(now_s, self.commit, self._poses_heard, loads)
 
     def _begin(self, begun: _Map) -> Happening:
         is_another = bool(self.map_id) and begun.map_id != self.map_id
@@ -219,6 +246,7 @@ class _News:
         self.commits: list[Commit] = []
         self.scene: _Bodies | None = None
         self.moved: dict[str, Pose] = {}
+        self.poses_heard = 0
         self.health: dict[str, Health] = {}
         self.why_not: str | None = None
         """Why there is no knowledge base; nothing while there is one, None where nothing is known."""
@@ -311,6 +339,7 @@ class _Following:
 
     def _on_poses(self, poses: Poses) -> None:
         self._poses_s = time.monotonic()
+        self._news.poses_heard += 1
         if not self._scene.matches(poses):
             self._fetch_scene()
             return

@@ -8,64 +8,30 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping
-from typing import Any, Final, Literal, Protocol, TypeVar
+from typing import Any, Final, Literal, TypeVar
 
-from msgspec import Struct
 from nicegui import Client, background_tasks, ui
 
+from nodes.extern.web.differences import Difference, differences
 from nodes.extern.web.live import Happening, Live
+from nodes.extern.web.moments import NOW, Moment, Past, State
+from nodes.extern.web.tape import tape_of
 from schemas import errors
-from schemas.commands import Command, List
-from schemas.entities import Entity, Pose
+from schemas.commands import Command
 from schemas.relations import ViewPoint
 
 log = logging.getLogger(__name__)
 
 R = TypeVar("R")
+Compared = Literal["before", "now", ""]
+"""With what a moment of the past is compared: the map before its commit, as it is now, or nothing."""
 Tone = Literal["info", "positive", "warning", "negative"]
 
 _SHOWN_MS: Final = {"info": 4000, "positive": 3000, "warning": 8000, "negative": 10_000}
 
 
-class State(Protocol):
-    """The map at a moment. `Live` is one, as it is now."""
-
-    @property
-    def entities(self) -> Mapping[str, Entity]:
-        """By name."""
-
-    @property
-    def poses(self) -> Mapping[str, Pose]:
-        """Where bodies stand, by name; of the past, where the map said that entities were."""
-
-    @property
-    def commit(self) -> int:
-        """The last commit of it."""
-
-
-class Moment(Struct, frozen=True):
-    """Now, or after a commit of the past."""
-
-    commit: int | None = None
-
-    @property
-    def is_now(self) -> bool:
-        """Does it move on with the map?"""
-        return self.commit is None
-
-
-NOW: Final = Moment()
-
 Place = tuple[float, float, float, float]
 """x, y, z [m] and yaw [rad], map frame."""
-
-
-class Past(Struct, frozen=True, kw_only=True):
-    """The map as it was after a commit."""
-
-    entities: Mapping[str, Entity]
-    poses: Mapping[str, Pose]
-    commit: int
 
 
 class Page:
@@ -79,12 +45,17 @@ class Page:
         self.selected: tuple[str, ...] = ()
         self.moment = NOW
         self.state: State = live
+        self.compared: Compared = "before"
+        self.differences: Mapping[str, Difference] = {}
+        """How the moment shown differs from what it is compared with, by name; now there are none."""
         self.dark = False
         self.narrow = False
         self.is_seen = False
         """The browser has said how it looks."""
         self.refuse: Callable[[Command[Any], errors.SemmapError], None] | None = None
         """Shows why a change was refused; set by the layout."""
+        self.watch: Callable[[str, bool], object] | None = None
+        """Watches a query, with what follows or without; set by the panel of standing queries."""
         self.draw_scene: Callable[[], None] | None = None
         """Draws the scene with its switches where it is called; set by the scene."""
         self.pick: Callable[[], Awaitable[Place | None]] | None = None
@@ -95,10 +66,13 @@ class Page:
         self._on_moment: list[Callable[[], None]] = []
         self._on_change: list[Callable[[], None]] = []
         self._on_connection: list[Callable[[], None]] = []
+        self._on_turn: list[Callable[[], None]] = []
         self._on_poses: list[Callable[[tuple[str, ...]], None]] = []
         self._on_look: list[Callable[[], None]] = []
         self._on_key: dict[str, Callable[[], object]] = {}
         self._asked_for = 0
+        self.tape = tape_of(live)
+        """The past of the map, for all tabs."""
         self._stop = live.listen(self._on_happening)
         client.on_delete(self.close)
 
@@ -110,6 +84,7 @@ class Page:
             self._on_moment,
             self._on_change,
             self._on_connection,
+            self._on_turn,
             self._on_look,
         ):
             functions.clear()
@@ -151,24 +126,40 @@ class Page:
         if commit is None:
             self._show(NOW, self.live)
         else:
-            self.later(self._fetch(commit, self._asked_for))
+            self.later(self.arrive(commit))
 
-    async def _fetch(self, commit: int, number: int) -> None:
-        entities = await self.ask(List(as_of=commit), timeout_s=30.0)
-        if entities is None or number != self._asked_for:  # he has gone elsewhere meanwhile
-            return
-        by_name = {entity.name: entity for entity in entities if isinstance(entity, Entity)}
-        poses = {name: entity.pose for name, entity in by_name.items() if entity.pose is not None}
-        self._show(Moment(commit), Past(entities=by_name, poses=poses, commit=commit))
-
-    def show(self, past: Past) -> None:
-        """Show a past that somebody has at hand, without asking for it."""
+    async def arrive(self, commit: int) -> bool:
+        """Show the map after this commit; whether it is shown now, and nobody went elsewhere meanwhile."""
         self._asked_for += 1
-        self._show(Moment(past.commit), past)
+        number = self._asked_for
+        try:
+            past = await self.tape.past(commit)
+            found = await self._compare(past)
+        except errors.SemmapError as error:
+            self.tell(error.text, "negative")
+            return False
+        if number != self._asked_for:
+            return False
+        self._show(Moment(commit), past, found)
+        return True
 
-    def _show(self, moment: Moment, state: State) -> None:
+    def compare(self, with_what: Compared) -> None:
+        """Mark how a moment of the past differs from the one before, from now, or not at all."""
+        self.compared = with_what
+        if self.moment.commit is not None:
+            self.go_to(self.moment.commit)
+
+    async def _compare(self, past: Past) -> Mapping[str, Difference]:
+        if self.compared == "now":
+            return differences(past.entities, self.live.entities)
+        if self.compared == "before" and past.commit > self.tape.first:
+            before = await self.tape.past(past.commit - 1)
+            return differences(before.entities, past.entities)
+        return {}
+
+    def _show(self, moment: Moment, state: State, found: Mapping[str, Difference] | None = None) -> None:
         was = self.moment
-        self.moment, self.state = moment, state
+        self.moment, self.state, self.differences = moment, state, found or {}
         if moment != was:
             self._tell(self._on_moment)
         self._changed()
@@ -221,6 +212,9 @@ class Page:
                 self.go_to(None)
             elif self.moment.is_now:
                 self._changed()
+        elif happening.kind == "commit" and self.compared == "now" and isinstance(self.state, Past):
+            self.differences = differences(self.state.entities, self.live.entities)
+            self._changed()
         elif self.moment.is_now and happening.kind in ("commit", "scene"):
             self._changed()
         elif self.moment.is_now and happening.kind == "poses":
@@ -241,6 +235,14 @@ class Page:
             except Exception:
                 log.exception("a panel of the page has failed")
 
+    def on_turn(self, function: Callable[[], None]) -> None:
+        """Call it when another panel has come into view."""
+        self._on_turn.append(function)
+
+    def turned(self) -> None:
+        """Tell that another panel has come into view."""
+        self._tell(self._on_turn)
+
     # Asking and changing
 
     async def ask(self, command: Command[R], timeout_s: float = 10.0) -> R | None:
@@ -259,7 +261,7 @@ class Page:
         try:
             return await self.live.ask(command, timeout_s)
         except errors.SemmapError as error:
-            if self.refuse is not None and isinstance(error, errors.Refused):
+            if self.refuse is not None and not isinstance(error, errors.NoAnswer):
                 with self.client:
                     self.refuse(command, error)
             else:

@@ -209,6 +209,20 @@ def test_what_one_commit_brings_and_puts_elsewhere_is_set_down_together():
     assert [p.name for p in furniture.place] == ["table1"]
 
 
+def test_what_is_tracked_from_a_stream_does_not_follow_its_body():
+    robot = structs.replace(entity("chair1", at(0.0)), tracked="stream")
+    for truth in ("map", "scene", "perceived"):
+        assert look([robot], [body("chair1", at(2.0))], truth).follow == ()
+
+
+def test_what_is_tracked_from_the_simulator_is_followed_where_it_rests_whatever_the_truth_is():
+    robot = structs.replace(entity("chair1", at(0.0)), tracked="sim")
+    for truth in ("map", "scene", "perceived"):
+        assert [p.name for p in look([robot], [body("chair1", at(2.0))], truth).follow] == ["chair1"]
+        assert look([robot], [body("chair1", at(2.0), resting=False)], truth).follow == ()
+    assert look([entity("chair1", at(0.0))], [body("chair1", at(2.0))], "perceived") == Actions()
+
+
 @given(st.data())
 def test_a_map_that_is_replayed_orders_every_pose_and_follows_nothing(data):
     here, there = Pose(position_m=(0.0, 0.0, 0.0)), Pose(position_m=(1.0, 0.0, 0.0))

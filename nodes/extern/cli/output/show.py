@@ -24,6 +24,7 @@ from schemas import wording
 from schemas.changes import value_in_words
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, PropertyInfo, Value
+from schemas.joints import in_words
 from schemas.relations import Described, Relation
 from schemas.replies import SystemStatus
 
@@ -48,7 +49,8 @@ def entity_table(entities: Iterable[Entity]) -> Table:
     for column in rows.columns[2:6]:
         column.justify = "right"
     for e in entities:
-        rows.add(e.name, e.class_, *pose_cells(e.pose), size_text(e), e.preferred_reference or "", _body(e))
+        pose = e.pose if e.live is None else e.live.pose
+        rows.add(e.name, e.class_, *pose_cells(pose), size_text(e), e.preferred_reference or "", _body(e))
     return rows
 
 
@@ -73,6 +75,7 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "class": e.class_,
         "types": ", ".join(e.types),
         "pose": pose_text(e.pose),
+        **({"live": _live(e)} if e.tracked else {}),
         "size": (size_text(e) or "unknown") + own_size,
         **({"where": where} if (where := _where(e)) else {}),
         **({"but": "; ".join(doubts)} if (doubts := (*(r.text for r in e.denied), *e.withheld)) else {}),
@@ -80,14 +83,29 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "also called": ", ".join(e.alternative_references) or "-",
         **_stated(e, {p.name: p for p in properties}),
         "body": body,
+        **(
+            {"joints": ", ".join(map(in_words, e.body.joints))}
+            if e.body is not None and e.body.joints
+            else {}
+        ),
         **({"perception": e.conflict} if e.conflict else {}),
         "model": "-" if e.place else _model(e),
         "last change": provenance_text(e.provenance),
         "pose set": provenance_text(e.pose_provenance),
         "class and size set": provenance_text(e.shape_provenance),
         "reference set": provenance_text(e.reference_provenance),
+        **({"joints set": provenance_text(e.joint_provenance)} if e.joint_provenance is not None else {}),
     }
     return card(rows)
+
+
+def _live(e: Entity) -> str:
+    """Where it is just now, how old that is and where it comes from."""
+    source = "the simulator" if e.tracked == "sim" else "a stream of poses"
+    if e.live is None:
+        return f"tracked from {source}, which has told nothing yet"
+    stale = " (stale)" if e.live.stale else ""
+    return f"{pose_text(e.live.pose)}; {wording.duration(e.live.age_s)} ago{stale}, from {source}"
 
 
 def _stated(e: Entity, properties: Mapping[str, PropertyInfo]) -> dict[str, str]:

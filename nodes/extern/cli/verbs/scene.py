@@ -1,4 +1,4 @@
-"""The verbs about the scene: `move`, `pause`, `step`, `reset`, `picture`."""
+"""The verbs about the scene: `move`, `open`, `close`, `pause`, `step`, `reset`, `picture`."""
 
 from __future__ import annotations
 
@@ -31,6 +31,37 @@ def move(client: Client, **fields: Any) -> None:
     The map follows when it comes to rest.
     """
     say(client.move(**given(fields)).text)
+
+
+_WAIT = click.option("--wait", is_flag=True, help="Wait until it stands and the map has followed.")
+_JOINT = click.option("--joint", metavar="JOINT", help="Only this one of its doors or drawers.")
+
+
+@click.command("open")
+@click.argument("name", shell_complete=entity_names)
+@click.option("--to", type=float, default=1.0, help="How far, from 0 to 1.  [default: 1]")
+@_JOINT
+@_WAIT
+@talks
+def open_(client: Client, name: str, to: float, joint: str | None, wait: bool) -> None:
+    """Open a door, lid or drawer by hand.
+
+    The map follows when it comes to rest.
+    """
+    say(client.open(name, to=to, joint=joint, wait=wait).text)
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@_JOINT
+@_WAIT
+@talks
+def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
+    """Close a door, lid or drawer by hand.
+
+    The map follows when it comes to rest.
+    """
+    say(client.close(name, joint=joint, wait=wait).text)
 
 
 @click.command()

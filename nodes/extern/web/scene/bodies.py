@@ -18,8 +18,10 @@ _MANY: Final = 400
 """Of more things, what is far away is drawn coarser, and nothing casts a shadow."""
 
 Handle = BatchedGlbHandle | BatchedMeshHandle
-Clicked = Callable[[str, bool], None]
-"""Called on viser's thread, with the name, and whether it is to be selected beside others."""
+Pixel = tuple[float, float]
+"""Where on the picture, as shares of its width and height."""
+Clicked = Callable[[str, bool, Pixel], None]
+"""Called on viser's thread, with the name, whether it is to be selected beside others, and where."""
 
 
 class Bodies:
@@ -115,7 +117,7 @@ class Bodies:
             batch = self._batches.get(key)
             row = event.instance_index or 0
             if batch is not None and row < len(batch.names):
-                clicked(batch.names[row], event.modifier is not None)
+                clicked(batch.names[row], event.modifier is not None, event.screen_pos)
 
         for modifier in MODIFIERS:
             handle.on_click(modifier=modifier)(on_click)

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Final
 
 import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from schemas.entities import Vector
+from nodes.extern.web.scene.picking import corners_of
+from schemas.entities import Entity, Vector
 from schemas.relations import ViewPoint
 
 Floats = NDArray[np.float64]
@@ -21,8 +22,11 @@ FOV_RAD: Final = math.radians(40.0)
 _TILT_RAD: Final = math.radians(52.0)
 _MARGIN: Final = 1.06
 _FARTHEST_M: Final = 200.0
+_FAR_M: Final = 100.0
+_UNKNOWN_SIZE_M: Final = (0.1, 0.1, 0.1)
 _LABEL_PX: Final = 17.0
-_LETTER_PX: Final = 7.4
+_LETTER_PX: Final = 7.0
+_NEAREST_M: Final = 0.05
 
 
 class View(Struct, frozen=True):
@@ -66,6 +70,19 @@ class View(Struct, frozen=True):
         return (px, py, pz, math.atan2(north, east))
 
 
+def extent(entities: Iterable[Entity]) -> Floats:
+    """(N, 3) [m]: points around what has a place, for a view of all of it; what is far off is left out."""
+    points = [
+        corners_of(entity.pose, entity.size_m or _UNKNOWN_SIZE_M)
+        for entity in entities
+        if entity.pose is not None
+    ]
+    if not points:
+        return np.empty((0, 3))
+    found = np.concatenate(points)
+    return np.asarray(found[np.abs(found - np.median(found, axis=0)).max(axis=1) < _FAR_M])
+
+
 def first_view(points: Floats, aspect: float) -> tuple[Vector, Vector]:
     """Position and target [m] from which all of `points` (N, 3) is seen, from the south and above.
 
@@ -86,28 +103,28 @@ def first_view(points: Floats, aspect: float) -> tuple[Vector, Vector]:
 
 
 def uncrowded(
-    view: View, names: Sequence[str], points: Floats, always: Iterable[str] = (), most: int = 40
+    view: View, labels: Mapping[str, tuple[str, Vector]], first: Iterable[str] = (), most: int = 40
 ) -> list[str]:
-    """Those of `names` whose labels, at `points` (N, 3), fit into the picture without covering one another.
+    """The keys of those `labels` (a text and its place [m]) that fit into the picture side by side.
 
-    The nearest come first, `always` before all others; at most so many.
+    The `first` have precedence in their order, then the nearest; at most so many.
     """
-    if not len(points):
+    if not labels:
         return []
-    wanted, chosen = set(always), list[str]()
+    keys, ranks = list(labels), {key: rank for rank, key in enumerate(first)}
+    chosen: list[str] = []
     taken: list[tuple[float, float, float, float]] = []
-    at = view.project(points)
-    order = sorted(range(len(names)), key=lambda row: (names[row] not in wanted, at[row, 2]))
-    for row in order:
+    at = view.project(np.array([place for _, place in labels.values()], dtype=float))
+    for row in sorted(range(len(keys)), key=lambda row: (ranks.get(keys[row], len(ranks)), at[row, 2])):
         x, y, ahead = (float(value) for value in at[row])
-        half, tall = len(names[row]) * _LETTER_PX / 2.0 + 5.0, _LABEL_PX
-        if ahead <= 0.05 or not (0.0 <= x <= view.width and 0.0 <= y <= view.height):
+        if ahead <= _NEAREST_M or not (0.0 <= x <= view.width and 0.0 <= y <= view.height):
             continue
-        box = (x - half, y - tall, x + half, y)
-        if names[row] not in wanted and any(_overlap(box, other) for other in taken):
+        half = len(labels[keys[row]][0]) * _LETTER_PX / 2.0 + 5.0
+        box = (x - half, y - _LABEL_PX, x + half, y)
+        if any(_overlap(box, other) for other in taken):
             continue
         taken.append(box)
-        chosen.append(names[row])
+        chosen.append(keys[row])
         if len(chosen) >= most:
             break
     return chosen

@@ -20,26 +20,28 @@ _ICONS: Final[dict[Switch, str]] = {
     "cloud": "grain",
     "cameras": "photo_camera",
 }
-_PAST: Final = "outline: 4px solid #e0a030; outline-offset: -4px"
 
 
 def scene(page: Page, tab: TabScene) -> None:
     """Draw it where it is called."""
-    with ui.column().classes("w-full h-full gap-0 relative"):
-        with ui.row().classes("w-full items-center gap-1 q-px-sm q-py-xs").props('role="toolbar"'):
-            for name in SWITCHES:
-                _switch(tab, name)
-            ui.button(icon="home", on_click=tab.look_over).props(
-                'flat dense aria-label="Look at everything"'
-            ).tooltip("Look at everything")
-            past = ui.badge(color="orange-8").props('role="status"')
-        frame = ui.element("iframe").props(f'src="{PATH}/{page.id}/" title="Scene"').classes("w-full grow")
+    frame = ui.element("iframe").props(f'src="{PATH}/{page.id}/" title="The scene in three dimensions"')
+    with ui.element("div").classes("semmap-scene-tools").props('role="toolbar" aria-label="The scene"'):
+        for name in SWITCHES:
+            _switch(tab, name)
+        home = ui.button(icon="home", on_click=tab.look_over).tooltip("Look at everything")
+        home.props('flat dense round color=secondary aria-label="Look at everything"')
+    said = ui.label().classes("semmap-unseen").props('role="status" aria-label="Selected"')
+    past = ui.label().classes("semmap-scene-past").props('role="status"')
 
     def show() -> None:
-        past.text = "" if page.moment.is_now else f"as it was after commit {page.state.commit}"
-        past.set_visibility(not page.moment.is_now)
-        frame.style(replace=f"border: 0; {'' if page.moment.is_now else _PAST}")
+        past.text = f"as it was after commit {page.state.commit:,}"
+        past.visible = not page.moment.is_now
+        frame.classes(**{"remove" if page.moment.is_now else "add": "is-past"})
 
+    def say() -> None:
+        said.text = ", ".join(page.selected[:20])
+
+    page.on_select(say)
     page.on_change(show)
     page.on_moment(show)
     show()
@@ -50,10 +52,8 @@ def _switch(tab: TabScene, name: Switch) -> None:
 
     def show() -> None:
         is_on = name in tab.on
-        colour = "primary" if is_on else "grey-7"
-        button.props(
-            f'flat dense color={colour} aria-label="{name.capitalize()}" aria-pressed={str(is_on).lower()}'
-        )
+        colour = "primary" if is_on else "grey-6"
+        button.props(f'flat dense round color={colour} aria-pressed={str(is_on).lower()} aria-label="{name}"')
 
     def turn() -> None:
         tab.switch(name, on=name not in tab.on)

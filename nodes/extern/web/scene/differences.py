@@ -1,47 +1,55 @@
-"""What is different between the moment shown and now."""
+"""What is drawn of how the moment shown differs from the one that it is compared with."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Final, Literal
+from typing import Final
 
 from msgspec import Struct
 
-from schemas.entities import Entity, Pose, angle_rad, distance_m
+from nodes.extern.web import differences as of_maps
+from nodes.extern.web.differences import Mark
+from schemas.entities import Entity, Pose, Size
 
-_MOVED_M: Final = 0.01
-_TURNED_RAD: Final = 0.03
+_UNKNOWN_M: Final[Size] = (0.2, 0.2, 0.2)
 
 
 class Difference(Struct, frozen=True):
-    """`came`: it is there now, and was not then. `went`: the other way round. `moved`: it was elsewhere."""
+    """An entity where it was and where it is; one of them is None where only the other is to be drawn."""
 
-    kind: Literal["came", "went", "moved"]
+    mark: Mark
     name: str
     then: Pose | None
     now: Pose | None
+    size_m: Size
     text: str
 
 
-def differences(then: Mapping[str, Entity], now: Mapping[str, Entity]) -> list[Difference]:
-    """By name, of what has a position and is no place."""
-    found = []
-    for name in sorted(then.keys() | now.keys()):
-        was, is_ = then.get(name), now.get(name)
-        if any(entity is not None and (entity.place or entity.pose is None) for entity in (was, is_)):
-            continue
-        before, after = (entity.pose if entity is not None else None for entity in (was, is_))
-        if before is None and after is not None:
-            found.append(Difference("came", name, None, after, f"{name} came later"))
-        elif after is None and before is not None:
-            found.append(Difference("went", name, before, None, f"{name} is gone by now"))
-        elif before is not None and after is not None and (text := _moved(before, after)):
-            found.append(Difference("moved", name, before, after, f"{name} has {text} since"))
-    return found
+def drawn(found: Mapping[str, of_maps.Difference]) -> list[Difference]:
+    """Those of what has a position and is no place."""
+    return [
+        Difference(
+            mark=difference.mark,
+            name=name,
+            then=_pose(difference.was),
+            now=None if _pose(difference.was) == _pose(difference.now) else _pose(difference.now),
+            size_m=_size_m(difference),
+            text=f"{name}: {difference.text}",
+        )
+        for name, difference in found.items()
+        if not _is_nowhere(difference)
+    ]
 
 
-def _moved(before: Pose, after: Pose) -> str:
-    distance, angle = distance_m(before, after), angle_rad(before, after)
-    if distance > _MOVED_M:
-        return f"moved {distance:.2f} m"
-    return "turned" if angle > _TURNED_RAD else ""
+def _is_nowhere(difference: of_maps.Difference) -> bool:
+    there = [entity for entity in (difference.was, difference.now) if entity is not None]
+    return any(entity.place for entity in there) or all(entity.pose is None for entity in there)
+
+
+def _pose(entity: Entity | None) -> Pose | None:
+    return None if entity is None else entity.pose
+
+
+def _size_m(difference: of_maps.Difference) -> Size:
+    sizes = (entity.size_m for entity in (difference.now, difference.was) if entity is not None)
+    return next((size_m for size_m in sizes if size_m is not None), _UNKNOWN_M)

@@ -13,6 +13,8 @@ from schemas.entities import Vector
 
 Rgb = tuple[int, int, int]
 Segments = NDArray[np.float32]
+Written = tuple[str, Vector]
+"""A text and where it is written [m], map frame."""
 
 
 class Labels:
@@ -24,7 +26,7 @@ class Labels:
         self._drawn: dict[str, tuple[LabelHandle, str]] = {}
         self._numbers = count()
 
-    def show(self, wanted: Mapping[str, tuple[str, Vector]]) -> None:
+    def show(self, wanted: Mapping[str, Written]) -> None:
         """Have these labels, by key the text and the place [m], and no others."""
         for key in self._drawn.keys() - wanted.keys():
             self._drawn.pop(key)[0].remove()
@@ -71,7 +73,9 @@ class Lines:
                 self._handle.remove()
                 self._handle = None
             return
-        self._handle = self._scene.add_line_segments(self._path, segments, colours, thickness=self._width)
+        self._handle = self._scene.add_line_segments(
+            self._path, segments, colours, thickness=self._width, thickness_units="screen"
+        )
 
 
 def line(a: Vector, b: Vector) -> Segments:

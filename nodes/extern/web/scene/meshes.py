@@ -24,7 +24,7 @@ _VEILS: Final[dict[Look, tuple[tuple[float, float, float], float, float]]] = {
     "ghost": ((0.80, 0.84, 0.95), 0.45, 0.35),
     "believed": ((1.0, 0.80, 0.45), 0.55, 0.45),
     "past": ((0.96, 0.86, 0.66), 0.5, 1.0),
-    "wall": ((0.93, 0.93, 0.94), 0.6, 0.32),
+    "wall": ((0.95, 0.95, 0.96), 0.7, 0.2),
 }
 """For each look a colour (linear RGB), how much of it is mixed in, and the opacity."""
 

@@ -5,27 +5,32 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 import numpy as np
-from viser import BatchedGlbHandle, LabelHandle, SceneApi
+from viser import BatchedGlbHandle, SceneApi
 
 from nodes.drawing.palette import colour_of
+from nodes.extern.web.scene.marks import Written
 from nodes.extern.web.scene.meshes import cube, glb, linear, srgb
 from schemas.entities import Entity
 from schemas.scenes import Surface
 
 _SHEET_M = 0.01
-_PALE = 0.72
+_ROOMS_IN_ROOM = 2
+_LIGHT, _DARK = 1.0, 0.03
+"""The background, as linear light."""
+_PALE = 0.6
 """How much of a room's colour is the background's."""
-_NAME_M = 0.24
 
 
 class Rooms:
     """The places of the map and the walls of the world, in one tab's view."""
 
-    def __init__(self, scene: SceneApi, *, dark: bool) -> None:
+    def __init__(self, scene: SceneApi) -> None:
         self._scene = scene
-        self._paper = 0.02 if dark else 1.0
+        self._paper = _LIGHT
         self._drawn: tuple[tuple[object, ...], ...] = ()
-        self._names: dict[str, LabelHandle] = {}
+        self._places: list[Entity] = []
+        self.names: dict[str, Written] = {}
+        """What the places are called, and where that may be written."""
         self._walls: BatchedGlbHandle | None = None
 
     def show(self, entities: Mapping[str, Entity]) -> None:
@@ -37,9 +42,16 @@ class Rooms:
         drawn = tuple((p.name, p.class_, p.pose, p.size_m, _called(p)) for p in places)
         if drawn == self._drawn:
             return
-        self._drawn = drawn
+        self._drawn, self._places = drawn, places
         self._sheets([place for place in places if place.size_m is not None])
-        self._write(places)
+        self.names = {place.name: _written(place) for place in places if not _is_around(place, places)}
+
+    def darken(self, dark: bool) -> None:
+        """Let the floors go with a dark background, or a light one."""
+        paper = _DARK if dark else _LIGHT
+        if paper != self._paper:
+            self._paper = paper
+            self._sheets([place for place in self._places if place.size_m is not None])
 
     def _sheets(self, places: list[Entity]) -> None:
         if not places:
@@ -64,24 +76,6 @@ class Rooms:
             cast_shadow=False,
         )
 
-    def _write(self, places: Iterable[Entity]) -> None:
-        for handle in self._names.values():
-            handle.remove()
-        self._names.clear()
-        for number, place in enumerate(places):
-            assert place.pose is not None
-            x, y, z = place.pose.position_m
-            depth = place.size_m[1] / 2.0 if place.size_m is not None else 0.0
-            self._names[place.name] = self._scene.add_label(
-                f"/rooms/names/{number}",
-                _called(place),
-                position=(x, y - max(0.0, depth - _NAME_M), z + 0.02),
-                font_size_mode="scene",
-                font_scene_height=_NAME_M,
-                depth_test=True,
-                anchor="bottom-center",
-            )
-
     def walls(self, surface: Surface | None) -> None:
         """Draw the walls, seen through; None for none."""
         if self._walls is not None:
@@ -101,6 +95,24 @@ class Rooms:
 
 def _area(place: Entity) -> float:
     return place.size_m[0] * place.size_m[1] if place.size_m is not None else 0.0
+
+
+def _is_around(place: Entity, places: Iterable[Entity]) -> bool:
+    """Does it have several others in it, so that its name belongs nowhere in particular?"""
+    if place.pose is None or place.size_m is None:
+        return False
+    (x, y, _), (width, depth, _) = place.pose.position_m, place.size_m
+    inner = 0
+    for other in places:
+        if other is not place and other.pose is not None:
+            ox, oy, _ = other.pose.position_m
+            inner += abs(ox - x) <= width / 2.0 and abs(oy - y) <= depth / 2.0
+    return inner > _ROOMS_IN_ROOM
+
+
+def _written(place: Entity) -> Written:
+    assert place.pose is not None
+    return _called(place).upper(), place.pose.position_m
 
 
 def _called(place: Entity) -> str:

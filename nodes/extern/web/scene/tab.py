@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import time
 from collections.abc import Callable, Mapping
 from typing import Any, Final, Literal
 
-import numpy as np
 from viser import ClientHandle
 
+from nodes.extern.web.differences import Mark
 from nodes.extern.web.page import Page, Place
 from nodes.extern.web.scene.assets import Assets
-from nodes.extern.web.scene.bodies import MODIFIERS, Bodies
-from nodes.extern.web.scene.camera import FOV_RAD, View, first_view, uncrowded
-from nodes.extern.web.scene.differences import differences
+from nodes.extern.web.scene.bodies import MODIFIERS, Bodies, Pixel
+from nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, uncrowded
+from nodes.extern.web.scene.differences import drawn
 from nodes.extern.web.scene.dragging import Gizmo, Phase, put_down
-from nodes.extern.web.scene.marks import Labels, Lines, Rgb, dashed, joined, line
+from nodes.extern.web.scene.marks import Labels, Lines, Rgb, Written, dashed, joined, line
 from nodes.extern.web.scene.picking import Solid, edges_of, first_hit
 from nodes.extern.web.scene.relation_lines import relation_lines
 from nodes.extern.web.scene.rooms import Rooms
@@ -45,12 +44,19 @@ _ON: Final[frozenset[Switch]] = frozenset(("names", "walls", "relations"))
 _SELECTED: Final[Rgb] = (255, 120, 0)
 _BOX: Final[Rgb] = (120, 130, 150)
 _RELATION: Final[Rgb] = (0, 120, 200)
-_CHANGED: Final[dict[str, Rgb]] = {"came": (0, 150, 70), "went": (215, 40, 40), "moved": (130, 60, 200)}
+_CHANGED: Final[dict[Mark, Rgb]] = {
+    "added": (0, 150, 70),
+    "removed": (215, 40, 40),
+    "moved": (130, 60, 200),
+    "changed": (0, 140, 150),
+}
 _SKY: Final[Rgb] = (255, 255, 255)
 _GROUND: Final[Rgb] = (190, 180, 170)
 _LABELS_S: Final = 0.25
-_CLICK_S: Final = 0.3
-_NEAR_M: Final = 0.002
+_CLICK_S: Final = 0.15
+_RENDER_S: Final = (0.3, 1.0, 3.0, 8.0)
+_NAMED: Final = 50
+"""Of so many selected things the names are written, whether or not there is room."""
 
 
 class TabScene:
@@ -66,16 +72,19 @@ class TabScene:
         self._known: dict[str, tuple[Entity | None, Body | None, Pose | None, Shown | None]] = {}
         self._bodies_of: tuple[object, dict[str, Body]] = (None, {})
         self._relations: tuple[Relation, ...] = ()
+        self._measures: dict[str, Written] = {}
+        """What is written at the lines of relations."""
         self._asked = 0
         self._dragging = ""
         self._picking: asyncio.Future[Place | None] | None = None
-        self._clicked_s = 0.0
+        self._clicked_at: Pixel = (-1.0, -1.0)
         self._labels_due = False
         self._camera: tuple[Any, ...] | None = None
         """The last camera of this tab, for a frame that has to connect again."""
         page.on_change(self._draw)
         page.on_poses(self._on_poses)
         page.on_select(self._on_select)
+        page.on_look(self._on_look)
         page.pick, page.look = self.pick_place, self.viewpoint
 
     # A frame comes and goes
@@ -83,11 +92,12 @@ class TabScene:
     def attach(self, client: ClientHandle) -> None:
         """Draw everything in a frame that has connected."""
         self._client, scene = client, client.scene
+        scene.configure_default_lights(cast_shadow=False)
         scene.configure_environment_map(None)
         scene.add_light_hemisphere("/sky", sky_color=_SKY, ground_color=_GROUND, intensity=1.6)
         self._bodies = Bodies(scene, self._glb_of, self._hop(self._on_click))
-        self._rooms = Rooms(scene, dark=False)
-        self._labels = Labels(scene, "/names", depth_test=True)
+        self._rooms = Rooms(scene)
+        self._labels = Labels(scene, "/names", depth_test=False)
         self._strong_labels = Labels(scene, "/selected/names", scale=1.15)
         self._line_labels = Labels(scene, "/relations/names", scale=0.95)
         self._outlines = Lines(scene, "/selected/outlines", width=3.5)
@@ -96,9 +106,11 @@ class TabScene:
         self._differences = Lines(scene, "/differences/lines", width=2.5)
         self._difference_labels = Labels(scene, "/differences/names")
         self._dragged = Bodies(scene, self._glb_of, None, "/dragged")
+        self._nudge = scene.add_frame("/nudge", show_axes=False)
         self._gizmo = Gizmo(scene, self._hop(self._on_drag))
         self._seen = Seen(scene, self.page.live)
         self._listen(client)
+        self._on_look()
         self._known.clear()
         self._look_over(client)
         self._rooms.walls(self._assets.walls if "walls" in self.on else None)
@@ -138,7 +150,7 @@ class TabScene:
         on_ray, on_camera = self._hop(self._on_ray), self._hop(self._on_camera)
 
         async def clicked(event: Any) -> None:
-            on_ray(event.ray_origin, event.ray_direction)
+            on_ray(event.ray_origin, event.ray_direction, event.screen_pos)
 
         for modifier in MODIFIERS:
             client.scene.on_click(modifier=modifier)(clicked)  # type: ignore[arg-type]
@@ -162,8 +174,13 @@ class TabScene:
             return
         camera = self._client.camera
         aspect = camera.image_width / max(1, camera.image_height)
-        eye, target = first_view(self._assets.extent(self.page.state), aspect)
+        eye, target = first_view(extent(self.page.state.entities.values()), aspect)
         camera.position, camera.look_at = eye, target
+
+    def _on_look(self) -> None:
+        if self._client is not None:
+            self._client.gui.configure_theme(dark_mode=self.page.dark)
+            self._rooms.darken(self.page.dark)
 
     # Drawing
 
@@ -240,25 +257,20 @@ class TabScene:
 
     def _draw_differences(self) -> None:
         pieces, labels = [], {}
-        if not self.page.moment.is_now:
-            for found in differences(self.page.state.entities, self.page.live.entities):
-                rgb = _CHANGED[found.kind]
-                size_m = self._size_of(found.name)
-                at = found.then or found.now
-                assert at is not None
-                pieces.append((edges_of(at, size_m), rgb))
-                if found.then is not None and found.now is not None:
-                    pieces.append((edges_of(found.now, size_m), rgb))
-                    pieces.append((dashed(_middle(found.then, size_m), _middle(found.now, size_m)), rgb))
-                labels[found.name] = (found.text, _top(at, size_m))
+        for found in drawn(self.page.differences):
+            rgb, size_m = _CHANGED[found.mark], self._known_size_of(found.name) or found.size_m
+            at = found.then or found.now
+            assert at is not None
+            pieces.append((edges_of(at, size_m), rgb))
+            if found.then is not None and found.now is not None:
+                pieces.append((edges_of(found.now, size_m), rgb))
+                pieces.append((dashed(_middle(found.then, size_m), _middle(found.now, size_m)), rgb))
+            labels[found.name] = (found.text, _top(found.now or at, size_m))
         self._differences.show(pieces)
         self._difference_labels.show(dict(list(labels.items())[:40]))
 
-    def _size_of(self, name: str) -> Size:
-        if name in self._things:
-            return self._things[name].size_m
-        entity = self.page.live.entities.get(name) or self.page.state.entities.get(name)
-        return (entity.size_m if entity is not None else None) or (0.2, 0.2, 0.2)
+    def _known_size_of(self, name: str) -> Size | None:
+        return self._things[name].size_m if name in self._things else None
 
     # Labels
 
@@ -277,17 +289,25 @@ class TabScene:
         self._labels_due = False
         if self._client is None:
             return
-        names = [name for name in self._things if name in self.page.state.entities]
-        selected = [name for name in self.page.selected if name in self._things][:50]
-        shown_: Mapping[str, Any] = {}
-        if "names" in self.on and names:
-            tops = np.array([_top(self._things[name].pose, self._things[name].size_m) for name in names])
-            chosen = uncrowded(self._view(self._client), names, tops, selected)
-            shown_ = {name: self._named(name) for name in chosen if name not in selected}
-        self._labels.show(shown_)
-        self._strong_labels.show({name: self._named(name) for name in selected})
+        things = {name: self._named(name) for name in self._things if name in self.page.state.entities}
+        selected = {name: things[name] for name in self.page.selected[:_NAMED] if name in things}
+        rooms, others = self._rooms.names, dict[str, Written]()
+        if "names" in self.on:
+            every = {**selected, **rooms, **self._measures, **things}
+            chosen = uncrowded(self._view(self._client), every, (*selected, *self._measures, *rooms))
+            others = {name: every[name] for name in chosen if name in things and name not in selected}
+            rooms = {name: rooms[name] for name in chosen if name in rooms}
+        self._labels.show(others)
+        self._strong_labels.show({**(rooms if "names" in self.on else {}), **selected})
+        for delay_s in _RENDER_S:
+            self._loop.call_later(delay_s, self._render)
 
-    def _named(self, name: str) -> tuple[str, Vector]:
+    def _render(self) -> None:
+        """Let the browser draw once more: it does so when something has changed, and letters come later."""
+        if self._client is not None:
+            self._nudge.visible = not self._nudge.visible
+
+    def _named(self, name: str) -> Written:
         thing = self._things[name]
         return (f"{name}?" if thing.look == "believed" else name, _top(thing.pose, thing.size_m))
 
@@ -304,8 +324,8 @@ class TabScene:
 
     # Selecting
 
-    def _on_click(self, name: str, beside: bool) -> None:
-        self._clicked_s = time.monotonic()
+    def _on_click(self, name: str, beside: bool, at: Pixel) -> None:
+        self._clicked_at = at
         if self._picking is not None or self._dragging:
             return
         if not beside:
@@ -315,17 +335,19 @@ class TabScene:
         else:
             self.page.select((*self.page.selected, name), by="scene")
 
-    def _on_ray(self, origin: Vector, direction: Vector) -> None:
-        """A click anywhere, after the one on a thing if there is one there."""
+    def _on_ray(self, origin: Vector, direction: Vector, at: Pixel) -> None:
+        """A click anywhere. If something is there, the same click is told of that, too."""
         if self._picking is not None:
             hit = first_hit(origin, direction, self._solids())
             self._end_picking(None if hit is None else (*hit.at, 0.0))
-        elif time.monotonic() - self._clicked_s > _CLICK_S and not self._dragging:
-            self._loop.call_later(_CLICK_S / 2, self._deselect, time.monotonic())
+        elif not self._dragging:
+            self._loop.call_later(_CLICK_S, self._deselect, at)
 
-    def _deselect(self, since_s: float) -> None:
-        if self._clicked_s < since_s:
-            self.page.select((), by="scene")
+    def _deselect(self, at: Pixel) -> None:
+        """Nothing is there where a person has clicked."""
+        if self._clicked_at != at:
+            with self.page.client:
+                self.page.select((), by="scene")
 
     def _on_select(self) -> None:
         if self._client is not None:
@@ -432,9 +454,14 @@ class TabScene:
             middles = {name: _middle(thing.pose, thing.size_m) for name, thing in self._things.items()}
             lines = relation_lines(self.page.selected[0], self._relations, middles)
         self._relation_lines.show([(line(each.a, each.b), _RELATION) for each in lines])
-        self._line_labels.show(
-            {str(number): (each.text, _between(each.a, each.b)) for number, each in enumerate(lines)}
-        )
+        written = {
+            f"{number} of {len(lines)}": (each.text, _between(each.a, each.b))
+            for number, each in enumerate(lines)
+        }
+        chosen = [] if self._client is None else uncrowded(self._view(self._client), written)
+        self._measures = {key: written[key] for key in chosen}
+        self._line_labels.show(self._measures)
+        self._label_soon()
 
     # Switches
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
-from typing import Any, Final, NamedTuple
+from collections.abc import Collection, Mapping
+from typing import Final, NamedTuple
 
 from msgspec import Struct
 
@@ -72,12 +72,15 @@ class Table:
         self._poses = poses or {}
         self._places = {name: entity for name, entity in entities.items() if entity.place}
 
-    def rows(self, wanted: Wanted) -> dict[str, Cells]:
-        """Those that are wanted."""
+    def rows(self, wanted: Wanted, among: Collection[str] | None = None) -> dict[str, Cells]:
+        """Those that are wanted, of all entities or `among` some names; what is not there has none."""
         words = wanted.text.casefold().split()
+        entities = self._entities
+        if among is not None:
+            entities = {name: entities[name] for name in among if name in entities}
         return {
             name: self.row(entity)
-            for name, entity in self._entities.items()
+            for name, entity in entities.items()
             if self._is_wanted(entity, wanted, words)
         }
 
@@ -140,8 +143,3 @@ def counted(shown: int, all_: int) -> str:
         return "the map is empty"
     what = "entity" if all_ == 1 else "entities"
     return f"{all_:,} {what}" if shown == all_ else f"{shown:,} of {all_:,} {what}"
-
-
-def column_values(rows: Iterable[Mapping[str, Any]], column: str) -> list[str]:
-    """What a column has, sorted, each once, without the empty one: the choices of a filter."""
-    return sorted({str(row[column]) for row in rows if row[column]})

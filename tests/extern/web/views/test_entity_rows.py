@@ -1,6 +1,6 @@
 import pytest
 
-from nodes.extern.web.views.entity_rows import Table, Wanted, changes, column_values, counted
+from nodes.extern.web.views.entity_rows import Table, Wanted, changes, counted
 from nodes.extern.web.views.whereabouts import Whereabouts
 from schemas.entities import Pose
 from schemas.scenes import Body
@@ -112,5 +112,6 @@ def test_the_conditions_are_told():
     assert Wanted(class_="Cup", room="kitchen1").words == "class Cup, in kitchen1"
 
 
-def test_a_filter_offers_what_is_there():
-    assert column_values(Table(ENTITIES, known()).rows(Wanted()).values(), "room") == ["kitchen1"]
+def test_some_rows_are_made_without_the_others():
+    rows = Table(ENTITIES, known()).rows(Wanted(class_="Dishware"), {"cup1", "table1", "gone1"})
+    assert list(rows) == ["cup1"]
