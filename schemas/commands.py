@@ -399,7 +399,7 @@ class Find(Command[Found], frozen=True, tag="find"):
 class PlanFloor(Command[Plan], frozen=True, tag="floorplan"):
     """Places, things and walls as outlines seen from above; with `as_of` the map as it was then.
 
-    `semmap.navigation` makes occupancy grids and GeoJSON of it.
+    The command line makes occupancy grids, SVG and GeoJSON of it.
     """
 
     as_of: When | None = None
