@@ -44,6 +44,7 @@ class BodyRecord:
     joints: tuple[Joint, ...] = ()
     joint_names: tuple[str, ...] = ()
     joint_commit: int = 0
+    robot: bool = False
 
     @property
     def static(self) -> bool:
@@ -69,6 +70,7 @@ class BodyRecord:
                 for joint, position in zip(self.joints, positions, strict=True)
             ),
             joint_commit=self.joint_commit,
+            robot=self.robot,
         )
 
 

@@ -366,6 +366,7 @@ class Keeping:
             at=(x, y, z),
             orientation=pose.orientation_wxyz,
             size=body.size_m,
+            track="sim" if body.robot else None,
         )
         self._change_about((name,), add, adopted)
 
