@@ -62,9 +62,11 @@ CAMERA = Topic(f"{SIM}/camera/*/*", bytes, "newest")
 SEGMENTS = Topic(f"{SIM}/camera/*/segments", bytes, "newest")
 OBSERVATIONS = Topic(f"{PERCEPTION}/observations", Observations, "newest")
 CLOUD = Topic(f"{PERCEPTION}/cloud", SegmentedCloud, "newest")
+DETECTIONS = Topic(f"{PERCEPTION}/detections", Observations, "newest")
+"""What a detector of one's own has seen: perception compares it with the map as it does with what it sees."""
 HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 
-TOPICS = (ACK, COMMIT, UNTOLD, ENTITY, QUERY, POSES, CAMERA, OBSERVATIONS, CLOUD, HEALTH)
+TOPICS = (ACK, COMMIT, UNTOLD, ENTITY, QUERY, POSES, CAMERA, OBSERVATIONS, CLOUD, DETECTIONS, HEALTH)
 
 
 def published() -> tuple[str, ...]:

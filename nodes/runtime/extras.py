@@ -22,6 +22,7 @@ MODULES: Mapping[str, tuple[str, ...]] = {
     "mcp": ("anyio", "mcp", "uvicorn"),
     "web": ("nicegui", "numpy", "uvicorn", "viser"),
     "movie": ("av", "numpy"),
+    "ros": ("mcap", "numpy", "rosbags"),
 }
 """What each extra installs, as it is imported."""
 

@@ -28,6 +28,7 @@ _MODULES = {
     "keys": ("keys",),
     "fleet": ("fleet",),
     "mcp": ("mcp",),
+    "ros": ("ros", "mcap"),
     "approve": ("approve",),
     "completion": ("completion",),
 }
