@@ -187,7 +187,13 @@ CONTAINING: Final = dm("containing")
 SUPPORTING: Final = dm("supporting")
 IS_LOCATED_IN: Final = dm("isLocatedIn")
 
+IS_OPEN: Final = dm("isOpen")
+OPENNESS: Final = dm("openness")
+JOINT_POSITIONS: Final = dm("jointPositions")
+"""How far open a thing is and how its joints stand; each says more than the one before."""
+
 CONFLICTING_OBSERVATION: Final = dm("conflictingObservation")
+TRACKED_FROM: Final = dm("trackedFrom")
 """Annotation of an entity: what perception sees against what the map says of it."""
 
 SPATIAL: Final = dm("spatial")

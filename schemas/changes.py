@@ -12,7 +12,16 @@ from schemas.entities import Entity, Pose, Stated, Value, angle_rad, distance_m
 _STILL_M = 5e-4
 _SLIGHT_RAD = 0.0175
 Kind = Literal[
-    "added", "removed", "pose", "size", "class", "reference", "alternatives", "conflict", "property"
+    "added",
+    "removed",
+    "pose",
+    "size",
+    "class",
+    "reference",
+    "alternatives",
+    "conflict",
+    "tracking",
+    "property",
 ]
 
 
@@ -47,6 +56,7 @@ def between(was: Entity | None, now: Entity) -> list[Change]:
         ("reference", was.preferred_reference, now.preferred_reference),
         ("alternatives", was.alternative_references, now.alternative_references),
         ("conflict", was.conflict or None, now.conflict or None),
+        ("tracking", was.tracked or None, now.tracked or None),
     )
     found = [Change(name=name, kind=kind, was=w, now=n) for kind, w, n in compared if w != n]
     if was.properties != now.properties:
@@ -132,6 +142,12 @@ def _conflict(change: Change) -> str:
     return f"conflict: {change.now}" if change.now else "conflict resolved"
 
 
+def _tracking(change: Change) -> str:
+    if change.now is None:
+        return "no longer tracked"
+    return "tracked from the simulator" if change.now == "sim" else "tracked from a stream of poses"
+
+
 def _property(change: Change) -> str:
     if not any(isinstance(value, tuple) for value in (change.was, change.now)):
         was, now = _shown(_values(change.was)), _shown(_values(change.now))
@@ -180,5 +196,6 @@ _WORDS = {
     "reference": _reference,
     "alternatives": _alternatives,
     "conflict": _conflict,
+    "tracking": _tracking,
     "property": _property,
 }

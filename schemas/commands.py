@@ -26,6 +26,7 @@ from schemas.entities import (
     Size,
     Source,
     Text,
+    Tracking,
     Value,
     Vector,
     Word,
@@ -96,7 +97,8 @@ class Add(Command[Changed], frozen=True, tag="add"):
 
     Without `name` one is made from the class; without `at` it goes to the next free place near the default
     pose; with `default` it also gets the class's label as reference. `set` are properties, each written
-    `PROPERTY=VALUE`. `wait` delays the reply until its body stands in the scene.
+    `PROPERTY=VALUE`. With `track` it is tracked from the start (see `Track`). `wait` delays the reply until
+    its body stands in the scene.
 
     Like every command that changes entities, it is refused with PreconditionFailed where one of those that
     are to be `unchanged` is gone, or was changed by a commit after `since`.
@@ -114,6 +116,7 @@ class Add(Command[Changed], frozen=True, tag="add"):
     default: bool = False
     wait: bool = False
     set: tuple[Text, ...] = ()
+    track: Tracking | None = None
     unchanged: tuple[Word, ...] = ()
     since: Since = 0
     dry_run: bool = False
@@ -177,6 +180,21 @@ class Unset(Command[Changed], frozen=True, tag="unset"):
     property: Text
     value: Value | None = None
     if_is: Value | None = None
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
+    dry_run: bool = False
+
+
+class Track(Command[Changed], frozen=True, tag="track"):
+    """Let an entity's pose come live: from whoever publishes it (`stream`), or from the simulator (`sim`).
+
+    Live poses are on `semmap/live/<name>`, the newest wins, and only where the entity stops is its pose
+    committed. With `off` it is not tracked any more, and stays where it was last.
+    """
+
+    name: Word
+    from_: Tracking = field(name="from", default="stream")
+    off: bool = False
     unchanged: tuple[Word, ...] = ()
     since: Since = 0
     dry_run: bool = False
@@ -372,10 +390,14 @@ class Find(Command[Found], frozen=True, tag="find"):
 
 
 class Export(Command[Document], frozen=True, tag="export"):
-    """Export the map as a document, checked first; with `inferred` including inferred facts."""
+    """Export the map as a document, checked first; with `inferred` including inferred facts.
+
+    With `as_of` the map as it was then, as it was asserted.
+    """
 
     format: RdfFormat = "rdfxml"
     inferred: bool = False
+    as_of: When | None = None
 
 
 class Classes(Command[tuple[ClassInfo, ...]], frozen=True, tag="classes"):
@@ -539,6 +561,27 @@ class Move(Command[Moved], frozen=True, tag="move"):
     yaw: Angle | None = None
     carry: bool = False
     leave: tuple[Word, ...] = ()
+
+
+class Open(Command[Moved], frozen=True, tag="open"):
+    """Open a thing as a hand would: its joints move `to` this share of their way; the map follows at rest.
+
+    With a `joint`, only that one of several. Refused for what has no joints; NoAnswer without a simulator.
+    `wait` delays the reply until it stands and the map has followed. What is in the way stops it.
+    """
+
+    name: Word
+    to: Probability = 1.0
+    joint: Word | None = None
+    wait: bool = False
+
+
+class Close(Command[Moved], frozen=True, tag="close"):
+    """Close a thing as a hand would; as for `open`."""
+
+    name: Word
+    joint: Word | None = None
+    wait: bool = False
 
 
 class Pause(Command[Done], frozen=True, tag="pause"):

@@ -21,6 +21,7 @@ from schemas.entities import (
     Size,
     Source,
     Text,
+    Tracked,
     Vector,
 )
 from schemas.explanations import Term, Triple
@@ -46,6 +47,7 @@ class NewEntity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fiel
     affordances: tuple[str, ...] = ()
     """Individuals of the TBox, by their local names."""
     set: tuple[Statement, ...] = ()
+    tracked: Tracked = ""
 
 
 class Edit(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
@@ -55,7 +57,7 @@ class Edit(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=Tr
     before `set`, which replaces the value of a functional property and adds those of another. All of it is
     refused with `PreconditionFailed` unless the properties of `only_if` have one of these values now (no
     value, where none is given). With `carry`, what stands on the entity or is inside it moves with it as one
-    rigid body, except what `leave` names.
+    rigid body, except what `leave` names. An empty `tracked` ends that.
     """
 
     name: str
@@ -72,6 +74,7 @@ class Edit(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=Tr
     set: tuple[Statement, ...] = ()
     carry: bool = False
     leave: tuple[str, ...] = ()
+    tracked: Tracked | None = None
 
     @property
     def places(self) -> bool:

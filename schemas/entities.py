@@ -14,6 +14,8 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct, field
 
+from schemas.joints import Joint
+
 _MARKS = (
     "\u0300-\u036f\u0483-\u0487\u0591-\u05bd\u05bf\u05c1\u05c2\u05c4\u05c5\u05c7\u0610-\u061a\u064b-\u065f\u0670"
     "\u06d6-\u06dc\u06df-\u06e4\u06e7\u06e8\u06ea-\u06ed\u0711\u0730-\u074a\u07a6-\u07b0\u0900-\u0963\u0971-\u0e3a"
@@ -193,6 +195,31 @@ class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The model that the body was made from; for a pending one, the model that it will have."""
     own_size: bool = False
     """The entity's size is that of its model, because the map states none."""
+    joints: tuple[Joint, ...] = ()
+    """The joints that move parts of the body, as they stand just now."""
+    openness: float | None = None
+    """How far open it is just now, 0 to 1: as the joint that is open furthest; None if nothing opens."""
+
+
+Tracking = Literal["sim", "stream"]
+"""Where the live poses of a tracked entity come from: the simulator, or whoever publishes them."""
+
+
+Tracked = Literal["", "sim", "stream"]
+"""The same, or "" for what is not tracked."""
+
+
+class Live(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
+    """Where a tracked entity is just now, as far as was heard: `age_s` seconds ago, measured at `stamp_ns`.
+
+    `stale`: nothing has been heard for longer than `semmap up --stale`; it is taken to be where it was.
+    """
+
+    pose: Pose
+    stamp_ns: int
+    age_s: float
+    source: Tracking
+    stale: bool = False
 
 
 class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
@@ -202,8 +229,11 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     `size_m` is its extent along its own axes [m]. In commits and in what is published it is what the map
     states, or None; replies fill in what its body measures, or what its model does. Where there is no model
     either, it is None: the size is not known, and a box stands in for it in the scene.
+    `tracked` says where its live poses come from, or "" for what is not tracked; `pose` is then the last one
+    that was journalled, and `live`, which replies fill in, the newest.
     `pose_provenance` says what last changed its pose, `shape_provenance` its class or size,
-    `reference_provenance` what it is called. `properties` are the data and object properties asserted of it.
+    `reference_provenance` what it is called, `joint_provenance` how far open it is and how its joints stand
+    (None if that was never stated). `properties` are the data and object properties asserted of it.
     """
 
     name: str
@@ -222,10 +252,13 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     fixed: bool = False
     model: str = ""
     body: BodyState | None = None
+    tracked: Tracked = ""
+    live: Live | None = None
     provenance: Provenance
     pose_provenance: Provenance
     shape_provenance: Provenance
     reference_provenance: Provenance
+    joint_provenance: Provenance | None = None
 
 
 class ClassInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

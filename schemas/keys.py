@@ -12,6 +12,7 @@ from urllib.parse import quote, unquote
 
 from schemas.commits import Commit, Effects
 from schemas.health import Health
+from schemas.live import LivePose, LivePoses
 from schemas.perception import Observations, SegmentedCloud
 from schemas.relations import Described
 from schemas.replies import Ack
@@ -37,6 +38,9 @@ PERCEPTION = f"{ROOT}/perception"
 NODES = ("kb_node", "coordinator", "sim_node", "perception_node", "recorder")
 """The nodes that `semmap up` can start."""
 
+WEB = "web"
+"""The page, which `semmap up --web` starts beside the nodes; it is a client like any other."""
+
 ROUTER = "router"
 """The process that everybody, nodes included, is connected to under `semmap up --secure`."""
 
@@ -60,13 +64,31 @@ QUERY = Topic(f"{ROOT}/jena/query/*", RowsChanged, "lossless")
 POSES = Topic(f"{SIM}/poses", Poses, "newest")
 CAMERA = Topic(f"{SIM}/camera/*/*", bytes, "newest")
 SEGMENTS = Topic(f"{SIM}/camera/*/segments", bytes, "newest")
+LIVE_POSE = Topic(f"{ROOT}/live/*", LivePose, "newest")
+"""Of one tracked entity, by whoever knows where it is."""
+LIVE_POSES = Topic(f"{ROOT}/live", LivePoses, "newest")
+"""Of all tracked entities, by the coordinator."""
 OBSERVATIONS = Topic(f"{PERCEPTION}/observations", Observations, "newest")
 CLOUD = Topic(f"{PERCEPTION}/cloud", SegmentedCloud, "newest")
 DETECTIONS = Topic(f"{PERCEPTION}/detections", Observations, "newest")
 """What a detector of one's own has seen: perception compares it with the map as it does with what it sees."""
 HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 
-TOPICS = (ACK, COMMIT, UNTOLD, ENTITY, QUERY, POSES, CAMERA, OBSERVATIONS, CLOUD, DETECTIONS, HEALTH)
+TOPICS = (
+    ACK,
+    COMMIT,
+    UNTOLD,
+    ENTITY,
+    QUERY,
+    POSES,
+    LIVE_POSE,
+    LIVE_POSES,
+    CAMERA,
+    OBSERVATIONS,
+    CLOUD,
+    DETECTIONS,
+    HEALTH,
+)
 
 
 def published() -> tuple[str, ...]:
@@ -95,6 +117,16 @@ def _chunk(text: str) -> str:
 def query_key(watch: str) -> str:
     """Where the news of a standing query is published."""
     return f"{ROOT}/jena/query/{watch}"
+
+
+def live_pose_key(name: str) -> str:
+    """Where the live poses of one tracked entity are published."""
+    return f"{ROOT}/live/{_chunk(name)}"
+
+
+def of_live_pose(key: str) -> str:
+    """The entity's name in such a key."""
+    return unquote(last_chunk(key))
 
 
 def camera_key(camera: str, plane: Literal["rgb", "depth", "segments"]) -> str:

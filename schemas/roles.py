@@ -45,7 +45,20 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
         *("status", "history", "last-seen", "sparql", "watch", "renew", "picture"),
     ),
     _OBSERVERS: ("add", "update", "set", "unset", "remove"),
-    _OPERATORS: ("clear", "load", "undo", "submit", "approve", "move", "pause", "step", "reset"),
+    _OPERATORS: (
+        "clear",
+        "load",
+        "undo",
+        "track",
+        "submit",
+        "approve",
+        "move",
+        "open",
+        "close",
+        "pause",
+        "step",
+        "reset",
+    ),
     _ADMINS: ("backup", "compact"),
 }
 COMMANDS: Final[dict[str, Roles]] = {verb: roles for roles, verbs in _VERBS.items() for verb in verbs}
@@ -78,6 +91,8 @@ GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.ENTITY),
     *_topic(keys.QUERY),
     *_topic(keys.POSES, publish=frozenset(("robot",))),
+    *_topic(keys.LIVE_POSE, publish=frozenset(("robot",))),
+    *_topic(keys.LIVE_POSES),
     *_topic(keys.HEALTH),
     *_topic(keys.OBSERVATIONS, publish=frozenset(("perception",))),
     *_topic(keys.CLOUD, publish=frozenset(("perception",))),
@@ -88,6 +103,9 @@ GRANTS: Final[tuple[Grant, ...]] = (
     Grant("ask", f"{keys.BRIDGE}/recall", ANYBODY),
     Grant("ask", f"{keys.BRIDGE}/copy", ANYBODY),
     Grant("ask", f"{keys.BRIDGE}/*", _NODES),
+    Grant("ask", f"{keys.SIM}/snapshot", ANYBODY),
+    Grant("ask", f"{keys.SIM}/surfaces", ANYBODY),
+    Grant("ask", f"{keys.SIM}/world", ANYBODY),
     Grant("ask", f"{keys.SIM}/*", _NODES),
     Grant("ask", f"{keys.CMD}/*", _NODES),
 )
@@ -102,6 +120,20 @@ def granted(role: Role, may: Literal["ask", "follow", "publish"]) -> tuple[str, 
 def followed(role: str) -> tuple[str, ...]:
     """The key expressions that somebody may follow; nothing for a role that there is not."""
     return tuple(grant.key for grant in GRANTS if grant.may == "follow" and role in grant.roles)
+
+
+def may_publish(role: str, topic: keys.Topic) -> bool:
+    """Whether somebody of this role may publish on a topic."""
+    return any(g.may == "publish" and g.key == topic.key and role in g.roles for g in GRANTS)
+
+
+def not_publishing(role: str, topic: keys.Topic) -> str:
+    """Why somebody may not publish on a topic, in a sentence."""
+    allowed = [
+        f"'{r}'" for g in GRANTS if g.may == "publish" and g.key == topic.key for r in ROLES if r in g.roles
+    ]
+    others = enumerated([r for r in allowed if r != "'node'"] or ["'node'"])
+    return f"your certificate ({role}) may not publish on {topic.key}; that takes the role {others}"
 
 
 def default_source(role: str) -> Source:

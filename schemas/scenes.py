@@ -7,7 +7,8 @@ from typing import Annotated, ClassVar, Literal
 from msgspec import Meta, Struct, field
 
 from schemas.calls import MANY, Call
-from schemas.entities import Name, Pose, Size, Vector
+from schemas.entities import Name, Pose, Probability, Size, Vector
+from schemas.joints import Joint
 
 PixelCount = Annotated[int, Meta(ge=1, le=1 << 14)]
 """How wide or high a picture may be."""
@@ -18,7 +19,8 @@ class BodyOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     With commit 0 it is for no entity, but of the world's own furniture.
     `model` is a name of the model library or of a file; empty or unknown means a box of `size_m`.
-    `size_m` None means the model's own size.
+    `size_m` None means the model's own size. `properties` are those by which the map states how its joints
+    stand (`schemas.joints.OPENING`); without them they stand as the model has them.
     """
 
     name: Name
@@ -27,6 +29,7 @@ class BodyOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     pose: Pose
     size_m: Size | None = None
     fixed: bool = False
+    properties: dict[str, bool | float | str] = {}
     commit: int
 
 
@@ -35,7 +38,9 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     `commit` is the commit whose pose it was last ordered to take, 0 for what the map never placed.
     `shape_commit` is the commit it was made for. `entity` tells bodies made from the map from the
-    world's own furniture. `size_m` is what it really measures.
+    world's own furniture. `size_m` is what it really measures. `joints` are those that move parts of it, and
+    `joint_commit` is the commit whose positions these were last ordered to take. It rests when these do, too.
+    `part_of` names the body that carries it, as a kitchen does its oven in an MJCF world.
     """
 
     name: str
@@ -49,6 +54,9 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     resting: bool
     commit: int
     shape_commit: int
+    joints: tuple[Joint, ...] = ()
+    joint_commit: int = 0
+    part_of: str = ""
 
 
 class Spawned(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -104,6 +112,36 @@ class MoveBodies(Call[BodiesMoved], frozen=True, kw_only=True, forbid_unknown_fi
 
     VERB: ClassVar[str] = "move"
     placements: tuple[Placement, ...]
+
+
+class JointOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Move a body's joints: all that open something to `openness`, or each that is named to its position.
+
+    Positions are in radians and metres; none at all leave everything as it stands. With a `joint` it is about
+    that one only. With a `commit` it is the map's order, without one it is a hand.
+    """
+
+    name: str
+    joint: str = ""
+    openness: Probability | None = None
+    positions: dict[str, float] | None = None
+    commit: int | None = None
+
+
+class JointsMoving(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The bodies whose joints are on their way, and a reason for each that was not moved."""
+
+    bodies: tuple[Body, ...]
+    failed: dict[str, str]
+
+
+class MoveJoints(Call[JointsMoving], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Begin to move joints, as a hand would: with bounded force, so that what is in the way stops them."""
+
+    LARGEST: ClassVar[int] = MANY
+
+    VERB: ClassVar[str] = "move-joints"
+    orders: tuple[JointOrder, ...]
 
 
 class Surface(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -198,6 +236,8 @@ class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     sim_time_s: float
     world: str
     bodies: tuple[Body, ...]
+    left_out: tuple[str, ...] = ()
+    """The named bodies of the world that are none of these, but only parts of them."""
 
 
 class SceneQuery(Call[Scene], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -207,7 +247,10 @@ class SceneQuery(Call[Scene], frozen=True, kw_only=True, forbid_unknown_fields=T
 
 
 class Poses(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where all bodies are now; `poses` has seven numbers a body: position [m], quaternion wxyz."""
+    """Where all bodies are now; `poses` has seven numbers a body: position [m], quaternion wxyz.
+
+    `joints` has the positions of the joints of all bodies that have any, in their order [rad, m].
+    """
 
     run: str
     version: int
@@ -217,3 +260,6 @@ class Poses(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     poses: tuple[float, ...]
     resting: tuple[bool, ...]
     commits: tuple[int, ...]
+    joints: tuple[float, ...] = ()
+    joint_commits: tuple[int, ...] = ()
+    """One for each body that has joints."""

@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from benchmarks.sim import alone, endurance, system
+from benchmarks.sim import alone, endurance, live, system
 from benchmarks.table import Row, lines
 
 
@@ -50,11 +50,17 @@ def _loads(words: argparse.Namespace) -> list[Row]:
     return rows
 
 
+def _live(words: argparse.Namespace) -> list[Row]:
+    with tempfile.TemporaryDirectory() as folder:
+        return live.measure(Path(folder), seconds=6.0 if words.quick else 15.0)
+
+
 PARTS: dict[str, Callable[[argparse.Namespace], list[Row]]] = {
     "alone": _alone,
     "frames": lambda _: alone.frames(),
     "system": _system,
     "loads": _loads,
+    "live": _live,
     "endurance": lambda words: endurance.endure(words.minutes),
 }
 

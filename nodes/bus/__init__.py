@@ -14,7 +14,7 @@ from nodes.bus.asking import (
 )
 from nodes.bus.lifelines import Lifelines, appear, follow_presence, follow_robots, robots
 from nodes.bus.pieces import MESSAGE, PIECE, PUBLISHED
-from nodes.bus.pubsub import follow, follow_cameras, includes, listen, meets, publisher, watched
+from nodes.bus.pubsub import Newest, follow, follow_cameras, includes, listen, meets, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
 from nodes.bus.session import (
     DEFAULT_ENDPOINT,
@@ -49,6 +49,7 @@ __all__ = [
     "HungUp",
     "Lifelines",
     "Network",
+    "Newest",
     "Patience",
     "Request",
     "Session",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from typing import Any, Literal
 
 import zenoh
@@ -71,15 +72,42 @@ def follow(
     )
 
 
+class Newest:
+    """Publications that come too often to be handled one by one: the newest of each key, when wanted."""
+
+    def __init__(self, session: zenoh.Session, topic: keys.Topic, most: int = 4096) -> None:
+        """Of more than `most` that come before somebody looks, the oldest are dropped."""
+        self._subscriber = session.declare_subscriber(topic.key, zenoh.handlers.RingChannel(most))
+        self._kind = topic.message
+
+    def take(self) -> Iterator[tuple[str, Callable[[], Any]]]:
+        """Key and `read()`, which gives the message, of what has come since this was asked last.
+
+        `read` raises BadRequest for what is no such message.
+        """
+        newest: dict[str, zenoh.Sample] = {}
+        while (sample := self._subscriber.try_recv()) is not None:
+            if sample.kind == zenoh.SampleKind.PUT:
+                newest[str(sample.key_expr)] = sample
+        for key, sample in newest.items():
+            yield key, partial(self._read, sample)
+
+    def _read(self, sample: zenoh.Sample) -> Any:
+        if len(sample.payload) > pieces.MESSAGE:
+            raise errors.BadRequest(f"a message of {len(sample.payload):,} bytes is too large")
+        return codec.decode(sample.payload.to_bytes(), self._kind)
+
+
 def follow_cameras(
     session: zenoh.Session,
     plane: Literal["rgb", "depth"],
     receive: Callable[[CameraFrame, Callable[[], bytes]], None],
     refuse: Callable[[str], None],
-) -> None:
+) -> Callable[[], None]:
     """Each plane of each camera goes to `receive(frame, read)`, where `read()` gives its pixels.
 
     On a thread of Zenoh's, so they should only be kept. `refuse(reason)` is told of what is no frame.
+    What is returned ends it.
     """
 
     def on_sample(sample: zenoh.Sample) -> None:
@@ -89,7 +117,12 @@ def follow_cameras(
         except errors.BadRequest as error:
             refuse(f"{sample.key_expr}: {error.text}")
 
-    session.declare_subscriber(keys.camera_key("*", plane), on_sample)
+    subscriber = session.declare_subscriber(keys.camera_key("*", plane), on_sample)
+
+    def stop() -> None:
+        subscriber.undeclare()  # type: ignore[no-untyped-call]
+
+    return stop
 
 
 def includes(key_exprs: Iterable[str], key_expr: str) -> bool:

@@ -14,6 +14,7 @@ from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
+from nodes.coordinator.live.feed import LiveFeed
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.runtime.futures import then
 from nodes.runtime.version import version
@@ -36,13 +37,20 @@ class Answers:
     """What is true now is known to the door; the past is asked of the knowledge base."""
 
     def __init__(
-        self, truth: Truth, door: Door, keeping: Keeping, health: HealthView, bridge: Bridge
+        self,
+        truth: Truth,
+        door: Door,
+        keeping: Keeping,
+        health: HealthView,
+        bridge: Bridge,
+        live: LiveFeed,
     ) -> None:
         self._truth = truth
         self._door = door
         self._keeping = keeping
         self._health = health
         self._bridge = bridge
+        self._live = live
 
     def list(self, query: c.List) -> Listed | Future[Listed]:
         """The entities of a class, with what has become of their bodies."""
@@ -74,7 +82,7 @@ class Answers:
             bodies=len(self._keeping.scene.bodies),
             in_agreement=self._keeping.in_agreement(),
             nodes=self._health.nodes(),
-            problems=tuple(self._keeping.problems()),
+            problems=(*self._keeping.problems(), *self._live.problems()),
             version=version(),
         )
 
@@ -97,6 +105,9 @@ class Answers:
             return word
 
     def _with_body(self, entity: E) -> E:
+        """With what has become of its body, and where it is just now if it is tracked."""
+        if entity.tracked:
+            entity = structs.replace(entity, live=self._live.of(entity))
         state, body = self._keeping.body_state(entity), self._keeping.scene.bodies.get(entity.name)
         if entity.size_m is not None or state.status == "none":
             return structs.replace(entity, body=state)

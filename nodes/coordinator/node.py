@@ -19,6 +19,8 @@ from nodes.coordinator.door import Door
 from nodes.coordinator.early_commands import EarlyCommands
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
+from nodes.coordinator.live.feed import LiveFeed
+from nodes.coordinator.scene.opening import Opening
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
 from nodes.coordinator.turns import Change, Results, Turns
@@ -60,14 +62,17 @@ class Coordinator:
         self._early = EarlyCommands(lambda: node.is_there("kb_node"))
         self._waiting: list[tuple[str, float, Changed, Future[Changed]]] = []
         door = self._door
-        answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
+        self._live = LiveFeed(node, config, door.map, self._keeping.scene, self._turns.change)
+        answers = Answers(config.truth, door, self._keeping, self._health, self._bridge, self._live)
         running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
+        self._opening = Opening(door, self._keeping, self._ask_sim)
         relay = self._bridge.relay
         of_the_map = calls.by_verb(
             c.Add.answered_by(self._with_body),
             c.Update.answered_by(self._with_body),
             c.Set.answered_by(self._turns.change),
             c.Unset.answered_by(self._turns.change),
+            c.Track.answered_by(self._track),
             c.Remove.answered_by(self._noted),
             c.Clear.answered_by(self._noted),
             c.Load.answered_by(self._load),
@@ -75,6 +80,8 @@ class Coordinator:
             c.List.answered_by(answers.list),
             c.Get.answered_by(answers.get),
             c.Move.answered_by(running.move),
+            c.Open.answered_by(self._opening.move),
+            c.Close.answered_by(self._opening.move),
             c.Pause.answered_by(running.pause),
             c.StepOnce.answered_by(running.step),
             c.Reset.answered_by(running.reset),
@@ -139,6 +146,7 @@ class Coordinator:
 
     def _on_poses(self, poses: Poses) -> None:
         if self._has_map:
+            self._live.on_scene()
             self._keeping.on_poses(poses)
             self._answer_waiting()
 
@@ -179,6 +187,15 @@ class Coordinator:
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
         return future
 
+    def _track(self, command: c.Track) -> Future[Changed]:
+        """What is not tracked any more stays where it was last, by a commit of its own."""
+        settled = self._live.settle(command.name) if command.off and not command.dry_run else None
+        if settled is None:
+            return self._turns.change(command)
+        future: Future[Changed] = OwnFuture()
+        settled.add_done_callback(lambda _: settle(future, lambda: self._turns.change(command)))
+        return future
+
     def _load(self, command: c.Load) -> Future[Changed]:
         made = self._turns.change(command)
         if len(command.content) > _LARGE_FILE:
@@ -199,6 +216,7 @@ class Coordinator:
         return future
 
     def _answer_waiting(self) -> None:
+        self._opening.answer_waiting()
         if not self._waiting:
             return
         still = []

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from schemas import errors
-from schemas.commands import Add, Command, Set, Unset, Update
+from schemas.commands import Add, Command, Set, Track, Unset, Update
 from schemas.commits import Edit, NewEntity, Statement, Transaction
 from schemas.entities import ClassInfo, Pose, Value
 from schemas.scene_files import Described, pose_of
@@ -47,6 +47,7 @@ def add(command: Add, name: str, found: ClassInfo, pose: Pose, ref: str | None) 
         ref=ref,
         alt=command.alt,
         set=tuple(map(_assignment, command.set)),
+        tracked=command.track or "",
     )
     return transaction(command, f"add {found.name} {name}", add=[new])
 
@@ -99,6 +100,13 @@ def unstate(command: Unset) -> Transaction:
     )
     said = "".join(f" {_text(v)}" for v in value)
     return transaction(command, f"unset {command.name} {command.property}{said}", edit=[edit])
+
+
+def track(command: Track) -> Transaction:
+    """An entity is tracked from now on, or not any more."""
+    edit = Edit(name=command.name, tracked="" if command.off else command.from_)
+    said = "--off" if command.off else f"--from {command.from_}"
+    return transaction(command, f"track {command.name} {said}", edit=[edit])
 
 
 def remove(command: Command, reason: str, names: Iterable[str]) -> Transaction:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from nodes.coordinator.scene.settled import Settled
 from nodes.runtime.futures import OwnFuture, settle
-from schemas.commands import Add, Clear, Load, Remove, Set, Undo, Unset, Update
+from schemas.commands import Add, Clear, Load, Remove, Set, Track, Undo, Unset, Update
 from schemas.replies import Changed
 
 GROUP = 16
@@ -24,7 +24,7 @@ GROUP = 16
 AT_ONCE = 2
 """How many groups may be under way: one that the knowledge base works on, and one that waits there."""
 
-Change = Add | Update | Set | Unset | Remove | Clear | Load | Undo | Settled
+Change = Add | Update | Set | Unset | Track | Remove | Clear | Load | Undo | Settled
 Results = list[Changed | Exception]
 
 
@@ -120,12 +120,12 @@ class Turns:
 def _entity(change: Change) -> str | None:
     """The one that it is about; None when it depends on others, or is to go alone."""
     if isinstance(change, Settled):
-        return next(iter(change.poses)) if len(change.poses) == 1 else None
+        return change.names[0] if len(change.names) == 1 else None
     if change.dry_run:
         return None
     if isinstance(change, Add):
         return change.name if change.at is not None else None
-    return change.name if isinstance(change, (Update, Set, Unset)) else None
+    return change.name if isinstance(change, (Update, Set, Unset, Track)) else None
 
 
 def _result(result: Changed | Exception) -> Changed:

@@ -92,21 +92,16 @@ def by_place(entities: Mapping[str, Entity], relations: Relations) -> Neighbourh
     for name, entity in entities.items():
         if entity.place:
             continue
-        around_it = [other for p, other in relations.get(name, ()) if p == LOCATED_IN and other in places]
-        if around_it:
-            number[min(around_it, key=lambda place: (_floor_m2(places[place]), place))] += 1
-        else:
+        around_it = _smallest_around(name, places, relations)
+        if around_it is None:
             elsewhere += 1
+        else:
+            number[around_it] += 1
     shown = sorted(places, key=lambda name: (-number[name], name))[:_MOST]
     knots = [_place_knot(places[name], number[name]) for name in shown]
     if elsewhere:
         knots.append(Knot("more:elsewhere", f"{elsewhere} elsewhere", "more", "", elsewhere))
-    pairs: dict[tuple[str, str], set[str]] = {}
-    for name in shown:
-        for said, other in relations.get(name, ()):
-            if other in places and other != name and other in shown:
-                pairs.setdefault((name, other), set()).add(said)
-    return Neighbourhood(tuple(knots), _links(pairs))
+    return Neighbourhood(tuple(knots), _links(_between_places(shown, places, relations)))
 
 
 def by_class(entities: Mapping[str, Entity], unfolded: Iterable[str] = ()) -> Neighbourhood:
@@ -127,6 +122,33 @@ def by_class(entities: Mapping[str, Entity], unfolded: Iterable[str] = ()) -> Ne
             knots.append(more)
             links.append(Link(more.id, _class_id(class_), ""))
     return Neighbourhood(tuple(knots), tuple(links))
+
+
+def _between_places(
+    shown: Sequence[str], places: Mapping[str, Entity], relations: Relations
+) -> dict[tuple[str, str], set[str]]:
+    """Each place in the smallest around it; and, once, what else is said of two that are side by side."""
+    pairs: dict[tuple[str, str], set[str]] = {}
+    within = {
+        frozenset((name, other))
+        for name in shown
+        for said, other in relations.get(name, ())
+        if said == LOCATED_IN
+    }
+    for name in shown:
+        around_it = _smallest_around(name, places, relations)
+        if around_it in shown:
+            pairs[(name, str(around_it))] = {LOCATED_IN}
+        for said, other in relations.get(name, ()):
+            pair = (other, name) if (other, name) in pairs else (name, other)
+            if other in shown and other != name and frozenset(pair) not in within:
+                pairs.setdefault(pair, set()).add(said)
+    return pairs
+
+
+def _smallest_around(name: str, places: Mapping[str, Entity], relations: Relations) -> str | None:
+    around_it = [p for said, p in relations.get(name, ()) if said == LOCATED_IN and p in places and p != name]
+    return min(around_it, key=lambda place: (_floor_m2(places[place]), place), default=None)
 
 
 def _place_knot(place: Entity, number: int) -> Knot:

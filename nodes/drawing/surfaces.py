@@ -20,6 +20,10 @@ class SurfaceCache:
         """The surface of a body, if it is known."""
         return None if body is None else self._known.get(_kind(body))
 
+    def of_kind(self, model: str, size_m: Size) -> Surface | None:
+        """The surface of a model at a size, if it is known."""
+        return self._known.get((model, size_m))
+
     def wanted(self, bodies: Iterable[Body]) -> dict[str, Kind]:
         """One body of each kind that was never asked for; they count as asked for from now on."""
         names: dict[str, Kind] = {}

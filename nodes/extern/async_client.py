@@ -16,7 +16,7 @@ import asyncio
 import contextlib
 import functools
 import threading
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, Final, Literal, TypeVar
@@ -82,6 +82,10 @@ class AsyncClient(Verbs):
     async def backup(self, file: str | Path, *, overwrite: bool = False) -> Opening:
         """Write the map with its history to a file here; see `Client.backup`."""
         return await self._beside(lambda: self._client.backup(file, overwrite=overwrite))
+
+    async def publish_pose(self, name: str, at: Sequence[float], **pose: Any) -> None:
+        """Say where a tracked entity is just now; see `Client.publish_pose`. It waits for nothing."""
+        self._client.publish_pose(name, at, **pose)
 
     @contextlib.asynccontextmanager
     async def commits(self, *, timeout: float | None = None) -> AsyncIterator[AsyncIterator[Commit]]:

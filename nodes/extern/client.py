@@ -17,7 +17,7 @@ import functools
 import os
 import queue
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
@@ -38,6 +38,7 @@ from schemas.calls import reply_type
 from schemas.commands import Clear, Command, Load, Status, Undo, Watch
 from schemas.commits import Commit
 from schemas.entities import Source
+from schemas.live import LivePose
 from schemas.moments import When, with_offset
 from schemas.replies import Changed
 
@@ -96,6 +97,8 @@ class Client(Verbs):
         self.session = session
         self.identity = identity
         self._lifelines = bus.Lifelines(session)
+        self._live: dict[str, Any] = {}
+        """The publishers of live poses, by name."""
         self.prefix = keys.CMD if identity is None else keys.commands_as(identity.name)
         role = "" if identity is None else identity.role
         self._signature: dict[str, Any] = {"source": source or roles.default_source(role), "agent": agent}
@@ -150,6 +153,35 @@ class Client(Verbs):
         overwritten, or cannot be written.
         """
         return backup.write(self.send, file, overwrite=overwrite)
+
+    def publish_pose(
+        self,
+        name: str,
+        at: Sequence[float],
+        *,
+        yaw: float | None = None,
+        orientation: Sequence[float] | None = None,
+        stamp_ns: int = 0,
+    ) -> None:
+        """Say where a tracked entity is just now, as often as that is known; the newest pose wins.
+
+        `at` is its bottom centre [m] in the map frame, `yaw` [rad] or `orientation` (unit quaternion wxyz)
+        how it is turned, and `stamp_ns` when that was measured (0: when it arrives). There is no reply: what
+        was taken, `client.get(name).live` tells, and what was not, the problems of `client.status()`. Raises
+        BadRequest for what is no pose, Refused where this client's certificate does not permit it.
+        """
+        fields = {"at": at, "yaw": yaw, "orientation": orientation, "stamp_ns": stamp_ns}
+        plain = msgspec.to_builtins(fields, enc_hook=_plain)
+        try:
+            message: LivePose = codec.convert(plain, LivePose)
+            message.require_pose()
+        except errors.BadRequest as error:
+            raise errors.BadRequest(error.text.removeprefix(codec.MALFORMED)) from None
+        if self.identity is not None and not roles.may_publish(self.identity.role, keys.LIVE_POSE):
+            raise errors.Refused(roles.not_publishing(self.identity.role, keys.LIVE_POSE))
+        if name not in self._live:
+            self._live[name] = bus.publisher(self.session, keys.LIVE_POSE, keys.live_pose_key(name))
+        self._live[name].put(codec.encode(message), encoding=codec.encoding_of(message))
 
     @contextlib.contextmanager
     def watch(

@@ -255,6 +255,7 @@ class Verbs:
     update = Verb(commands.Update)
     set = Verb(_set)
     unset = Verb(commands.Unset)
+    track = Verb(commands.Track)
     remove = Verb(_remove)
     clear = Verb(commands.Clear)
     load = Verb(_load)
@@ -291,6 +292,8 @@ class Verbs:
 
     # To run
     move = Verb(commands.Move)
+    open = Verb(commands.Open)
+    close = Verb(commands.Close)
     pause = Verb(commands.Pause)
     step = Verb(commands.StepOnce)
     reset = Verb(commands.Reset)

@@ -9,8 +9,22 @@ from nodes.bus import Network
 
 
 @dataclass(frozen=True)
+class Replay:
+    """The map replays the past: up to commit `until` of another journal, `speed` times as fast as it was.
+
+    No wait between two commits is longer than `longest_s`. It begins when all of `nodes` are ready.
+    """
+
+    until: int
+    speed: float
+    longest_s: float
+    nodes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class KbConfig:
-    """`data` is the folder of the journal; it must have been seeded (see seed.py)."""
+    """`data` is the folder of the journal; it must have been seeded, or prepared for a replay."""
 
     data: Path
     network: Network = field(default_factory=Network)
+    replay: Replay | None = None

@@ -17,6 +17,7 @@ from nodes.kb_node.handlers.asking import Asking
 from nodes.kb_node.handlers.changing import Changing, Tell
 from nodes.kb_node.handlers.keeping import Keeping
 from nodes.kb_node.handlers.loading import Loading
+from nodes.kb_node.replaying import Player, refusing
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.protocol import Surrounded
 from nodes.kb_node.sparql.service import SparqlService
@@ -41,7 +42,7 @@ CHECKPOINT_DELAY_S = 3.0
 class KnowledgeBase:
     """Binds the map to the wire."""
 
-    def __init__(self, node: Node, journal: Journal) -> None:
+    def __init__(self, node: Node, journal: Journal, config: KbConfig) -> None:
         self._node = node
         self.map = SemanticMap(journal, progress=node.beat)
         self._announcer = Announcer(node.session, self.map.entities(), whereabouts.Now(self.map).described)
@@ -71,10 +72,16 @@ class KnowledgeBase:
             **self._asking.handlers(),
             **self._keeping.handlers(),
         }
+        self._player: Player | None = None
+        if config.replay is not None:
+            handlers.update(refusing())
+            tell = partial(self._spread, told=False, at_once=True)
+            self._player = Player(node, self.map, config.data, config.replay, tell)
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):
                 node.serve_one(prefix, handlers[verb])
+        node.follow_newest(keys.LIVE_POSES, self._asking.live.take)
         node.follow(keys.OBSERVATIONS, self._asking.sightings.see)
         node.every(CHECKPOINT_PERIOD_S, self._checkpointing.if_due)
         node.every(CHECKPOINT_PERIOD_S, self._standing_places.drop_expired)
@@ -138,13 +145,16 @@ class KnowledgeBase:
 
     def _summary(self) -> str:
         entities = wording.entities(len(self.map))
-        return f"{entities}, {len(self.map.reasoner)} triples, commit {self.map.seq}"
+        replay = f"{self._player.describe()}: " if self._player is not None else ""
+        return f"{replay}{entities}, {len(self.map.reasoner)} triples, commit {self.map.seq}"
 
     def close(self) -> None:
         """Leave a checkpoint for a quick start, if the disk takes it."""
         self._sparql.close()
         self._asking.close()
         self._keeping.close()
+        if self._player is not None:
+            self._player.close()
         with suppress(errors.Refused):
             self._checkpointing.close()
 
@@ -158,7 +168,7 @@ def run(config: KbConfig) -> None:
         journal = Journal(path)
         try:
             with gc_pause.uncollected(freeze=True):
-                knowledge_base = KnowledgeBase(node, journal)
+                knowledge_base = KnowledgeBase(node, journal, config)
             heap.trim()
             node.run()
             if not knowledge_base.map.is_sound:

@@ -23,6 +23,7 @@ from nodes.runtime.map_replica import MapReplica
 from schemas import keys, wording
 from schemas.bridge import Recall, StarQuery
 from schemas.commits import MANY_ENTITIES, Commit, Star
+from schemas.live import LivePoses
 from schemas.scenes import Poses, Scene, SceneQuery, SurfaceQuery, Surfaces
 
 log = logging.getLogger(__name__)
@@ -62,6 +63,7 @@ class Recorder:
         self._poses_at = 0.0
         Follower(node, self._map, keys.COMMIT, heard=self._on_commit, begun=self._on_map)
         node.follow(keys.POSES, self._on_poses)
+        node.follow_newest(keys.LIVE_POSES, self._on_live)
         node.every(0.5, self._tick)
         self._growth, self._amiss = Growth(recording.path), ""
         self._keep, self._after, self._begun_s = keep, after, time.time()
@@ -154,6 +156,13 @@ class Recorder:
         self._at(poses.stamp_ns)
         for name, pose in self._scene.follow(poses):
             self._stage.move(name, pose)
+
+    def _on_live(self, live: LivePoses) -> None:
+        """Of what is tracked from elsewhere; the simulator's own poses come by themselves."""
+        self._at(live.stamp_ns)
+        for name, seen in live.entities.items():
+            if seen.source == "stream":
+                self._stage.move(name, seen.pose)
 
     def _fetch_scene(self) -> None:
         if self._fetching_scene:

@@ -3,27 +3,16 @@
 from __future__ import annotations
 
 import logging
-import os
-import shutil
-import struct
-import tempfile
-import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from rerun.chunk import RrdReader
-
 from nodes.recorder.recording import COMMIT_FIELDS, COMMITS
-from schemas import errors
+from nodes.recorder.whole_part import chunks, whole_part
 from schemas.explanations import Triple
 
 log = logging.getLogger(__name__)
-
-_SIGNATURE = b"RRF"
-_FILE_HEADER_BYTES = 12
-_MESSAGE_HEADER = struct.Struct("<QQ")
 
 
 @dataclass(frozen=True)
@@ -48,66 +37,28 @@ class RecordedCommit:
     went: tuple[Triple, ...] = field(default=(), compare=False)
 
 
-def require_recording(path: Path) -> None:
-    """Raises BadFile, saying why, when `path` is not the file of a recording."""
-    try:
-        with path.open("rb") as file:
-            signature = file.read(len(_SIGNATURE))
-    except FileNotFoundError:
-        raise errors.BadFile(f"no such file: {path}") from None
-    except OSError as error:
-        raise errors.BadFile(f"cannot read {path}: {error.strerror}") from None
-    if signature != _SIGNATURE:
-        raise errors.BadFile(f"{path} is not a recording (.rrd)")
-
-
 def read_commits(path: Path) -> list[RecordedCommit]:
     """All commits in a recording, by number. Raises BadFile.
 
     One that was both heard and recalled counts once. Where the file ends within a message, because it grows
-    or its writer was killed, the commits up to there are given, and a warning tells how much is left out.
+    or its writer was killed, or is damaged, the commits up to there are given, and a warning tells how much
+    is left out.
     """
-    require_recording(path)
-    try:
-        commits = _once_each(_commits(path, called=path))
-    except errors.BadFile:
-        with tempfile.TemporaryDirectory() as folder:
-            whole = Path(shutil.copyfile(path, Path(folder, path.name)))
-            left_out = _cut_after_last_message(whole)
-            if not left_out:
-                raise
-            commits = _once_each(_commits(whole, called=path))
-        log.warning("%s ends in the middle of a message; its last %d bytes are ignored", path, left_out)
-    return sorted(commits, key=lambda commit: (commit.seq, commit.stamp_ns))
+    with whole_part(path) as whole:
+        if told := whole.told(path):
+            log.warning("%s", told)
+        return commits_of(whole.path)
 
 
-def _cut_after_last_message(path: Path) -> int:
-    """Shorten the file of a recording to its whole messages: by how many bytes.
-
-    After the file's header, each message has its kind and its length before it.
-    """
-    with path.open("r+b") as file:
-        size, end = file.seek(0, os.SEEK_END), _FILE_HEADER_BYTES
-        while (start := end + _MESSAGE_HEADER.size) <= size:
-            file.seek(end)
-            _, length = _MESSAGE_HEADER.unpack(file.read(_MESSAGE_HEADER.size))
-            if start + length > size:
-                break
-            end = start + length
-        file.truncate(min(end, size))
-    return max(size - end, 0)
+def commits_of(path: Path) -> list[RecordedCommit]:
+    """All commits in a recording that can be read to its end, by number."""
+    return sorted(_once_each(_commits(path)), key=lambda commit: (commit.seq, commit.stamp_ns))
 
 
-def _commits(path: Path, *, called: Path) -> Iterator[RecordedCommit]:
-    with warnings.catch_warnings():
-        # A recording that is not closed, because it grows or its writer was killed, has no footer.
-        warnings.filterwarnings("ignore", message=".*no footer")
-        try:
-            for chunk in RrdReader(path).stream():
-                if chunk.entity_path == f"/{COMMITS}":
-                    yield from map(_commit_of, _rows(chunk.to_record_batch()))
-        except (RuntimeError, ValueError) as error:
-            raise errors.BadFile(f"cannot read {called}: {error}") from None
+def _commits(path: Path) -> Iterator[RecordedCommit]:
+    for chunk in chunks(path):
+        if chunk.entity_path == f"/{COMMITS}":
+            yield from map(_commit_of, _rows(chunk.to_record_batch()))
 
 
 def _once_each(commits: Iterable[RecordedCommit]) -> set[RecordedCommit]:

@@ -5,21 +5,25 @@ from __future__ import annotations
 import os
 import subprocess
 import sysconfig
+from collections.abc import Callable
 from pathlib import Path
 
-from nodes.recorder.recorded_commits import require_recording
+from nodes.recorder.whole_part import whole_part
 from schemas import errors
 
 
-def replay(path: Path) -> None:
+def replay(path: Path, tell: Callable[[str], None] = lambda text: None) -> None:
     """Open a recording in a viewer of its own, on loopback, and wait until it is closed.
 
-    Raises BadFile when `path` is no recording, and Refused when the viewer cannot be opened.
+    Of one that is cut off or damaged, what is whole is shown, and `tell` is told of the rest. Raises BadFile
+    when `path` is no recording or nothing of it can be read, and Refused when the viewer cannot be opened.
     """
-    require_recording(path)
-    viewer = Path(sysconfig.get_path("scripts"), "rerun")
-    command = [str(viewer), "--bind", "127.0.0.1", "--port", "auto", str(path)]
-    status = subprocess.run(command, env=viewer_environment()).returncode
+    with whole_part(path) as whole:
+        if told := whole.told(path):
+            tell(told)
+        viewer = Path(sysconfig.get_path("scripts"), "rerun")
+        command = [str(viewer), "--bind", "127.0.0.1", "--port", "auto", str(whole.path)]
+        status = subprocess.run(command, env=viewer_environment()).returncode
     if status not in (0, 130):
         raise errors.Refused(
             f"the viewer exited with status {status}; it needs a display and a graphics driver "

@@ -20,7 +20,7 @@ MODULES: Mapping[str, tuple[str, ...]] = {
     "record": ("PIL", "numpy", "rerun"),
     "keys": ("cryptography",),
     "mcp": ("anyio", "mcp", "uvicorn"),
-    "web": ("nicegui", "numpy", "uvicorn", "viser"),
+    "web": ("fastapi", "nicegui", "numpy", "psutil", "uvicorn", "viser", "websockets"),
     "movie": ("av", "numpy"),
     "ros": ("mcap", "numpy", "rosbags"),
 }
@@ -33,8 +33,9 @@ OF_NODE: Mapping[str, str] = {
     "sim_node": "sim",
     "perception_node": "perception",
     "recorder": "record",
+    "web": "web",
 }
-"""What a node needs."""
+"""What a node, and the page beside them, needs."""
 
 _OPTIONS = {"sim": "--no-sim", "record": "--no-record"}
 """How `semmap up` does without one."""

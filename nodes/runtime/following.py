@@ -46,8 +46,12 @@ class Follower(Generic[C]):
         *,
         heard: Callable[[C, bool], None],
         begun: Callable[[Begun], None],
+        classes_at: str = keys.BRIDGE,
     ) -> None:
         """Follow `topic`, which publishes commits in full or their effects.
+
+        The class table is asked for at `classes_at`: of the knowledge base, or, by who may not ask that, as a
+        command.
 
         `heard(commit, known)` is called after each commit; `known`: the replica is at it or beyond.
         `begun(what)` is called after each snapshot that the replica has begun with.
@@ -56,6 +60,7 @@ class Follower(Generic[C]):
         self._replica: MapReplica[C] = replica
         self._heard: Callable[[C, bool], None] = heard
         self._begun = begun
+        self._classes_at = classes_at
         self._fetching = False
         self._begun_ns = 0
         self._kb_started_ns = 0
@@ -136,7 +141,7 @@ class Follower(Generic[C]):
             self._fetching = False
             self._begin(pages.snapshot, tuple(classes))
 
-        self._ask(Classes(), on_classes)
+        self._ask(Classes(), on_classes, at=self._classes_at)
 
     def _give_up(self) -> None:
         self._fetching = False
@@ -148,7 +153,7 @@ class Follower(Generic[C]):
             self._begun_ns = time.time_ns()
             self._begun(Begun(before, snapshot.seq, classes))
 
-    def _ask(self, call: Call[Any], take: Callable[[Any], None]) -> None:
+    def _ask(self, call: Call[Any], take: Callable[[Any], None], *, at: str = keys.BRIDGE) -> None:
         def on_done(done: Future[Any]) -> None:
             try:
                 take(done.result())
@@ -158,4 +163,4 @@ class Follower(Generic[C]):
                 self._give_up()
                 self._node.report(f"cannot follow the map: {type(error).__name__}: {error}")
 
-        self._node.ask_later(keys.BRIDGE, call).add_done_callback(on_done)
+        self._node.ask_later(at, call).add_done_callback(on_done)

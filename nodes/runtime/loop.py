@@ -52,8 +52,14 @@ Admit = Callable[[str, Any], Any]
 class Node:
     """A running node: bind handlers, then `run`. Use `open_node`."""
 
-    def __init__(self, name: str, session: bus.Session, commands: str = keys.CMD) -> None:
-        """`commands` is the prefix under which it asks for commands."""
+    def __init__(
+        self, name: str, session: bus.Session, commands: str = keys.CMD, *, published: bool = True
+    ) -> None:
+        """`commands` is the prefix under which it asks for commands.
+
+        Unless `published`, its heart beats for whoever has started the process only: it is a program beside
+        the system, and no part of it.
+        """
         self.name = name
         self.session = session
         self._commands = commands
@@ -68,7 +74,7 @@ class Node:
         self._idle: list[Callable[[], None]] = []
         self._afterwards: list[Callable[[], None]] = []
         self._stopping = False
-        self._heartbeat = Heartbeat(name, session)
+        self._heartbeat = Heartbeat(name, session, published=published)
         self._lifelines = bus.Lifelines(session)
 
     @property

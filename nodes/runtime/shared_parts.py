@@ -45,6 +45,8 @@ class SharedParts:
         _set(entity, "pose_provenance", whole if pose_s.commit == seq else of(pose_s))
         _set(entity, "shape_provenance", whole if shape_s.commit == seq else of(shape_s))
         _set(entity, "reference_provenance", whole if reference_s.commit == seq else of(reference_s))
+        if (joint_s := entity.joint_provenance) is not None:
+            _set(entity, "joint_provenance", whole if joint_s.commit == seq else of(joint_s))
         return entity
 
     def _text(self, text: str) -> str:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import mujoco
 import numpy as np
+from msgspec import structs
 from numpy.typing import NDArray
 
 from nodes.sim_node.models.parts import Vec3, rotation_matrix
 from schemas.entities import Pose
+from schemas.joints import Joint
 from schemas.scenes import Body
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+_BALL = int(mujoco.mjtJoint.mjJNT_BALL)
 
 
 @dataclass(kw_only=True)
@@ -23,6 +26,7 @@ class BodyRecord:
 
     `origin_m` is the bottom centre in the frame of the MuJoCo body. `ordered` is the pose that the map
     (or the world file) gave it. `masks` are contype and conaffinity of each geom while it is solid.
+    `joints` stand where they were ordered to, `joint_names` are their names in MuJoCo.
     """
 
     name: str
@@ -37,14 +41,21 @@ class BodyRecord:
     ghost: bool = False
     commit: int = 0
     shape_commit: int = 0
+    joints: tuple[Joint, ...] = ()
+    joint_names: tuple[str, ...] = ()
+    joint_commit: int = 0
+    part_of: str = ""
+    """The body of a world that it is part of, which carries it."""
+    anchored: bool = False
+    """Held by a joint or by what it is part of: nobody can put it elsewhere."""
 
     @property
     def static(self) -> bool:
         """Held where it is: no free joint."""
         return self.fixed or self.ghost
 
-    def message(self, pose: Pose, *, resting: bool) -> Body:
-        """The body as others are told of it."""
+    def message(self, pose: Pose, *, resting: bool, positions: Iterable[float] = ()) -> Body:
+        """The body as others are told of it; `positions` are those of its joints now."""
         return Body(
             name=self.name,
             class_=self.class_,
@@ -57,6 +68,12 @@ class BodyRecord:
             resting=resting,
             commit=self.commit,
             shape_commit=self.shape_commit,
+            joints=tuple(
+                structs.replace(joint, position=position)
+                for joint, position in zip(self.joints, positions, strict=True)
+            ),
+            joint_commit=self.joint_commit,
+            part_of=self.part_of,
         )
 
 
@@ -65,7 +82,11 @@ class BodyIndex:
     """Where each body is in the arrays of one compiled model; N bodies in the order of `names` and `records`.
 
     `qpos` and `dof` (N,) are the addresses of the free joint, -1 for a static body; `tree` (N,) is the
-    kinematic tree, -1 if static. `ghost` (N,) tells the ghosts.
+    kinematic tree, -1 for what cannot move. `ghost` (N,) tells the ghosts.
+
+    The J joints of bodies come in the order of the bodies: `joint` (J,) is each one's number in the model,
+    `joint_body` its body's row, `joint_qpos` and `joint_dof` its addresses, `joint_ball` tells ball joints,
+    and `joint_row` has its place here by its name in MuJoCo.
     """
 
     names: tuple[str, ...]
@@ -77,6 +98,12 @@ class BodyIndex:
     tree: Ints
     ghost: NDArray[np.bool_]
     origin_m: Floats = field(repr=False)
+    joint: Ints
+    joint_body: Ints
+    joint_qpos: Ints
+    joint_dof: Ints
+    joint_ball: NDArray[np.bool_]
+    joint_row: dict[str, int]
 
     @staticmethod
     def of(model: mujoco.MjModel, records: Mapping[str, BodyRecord], numbers: Mapping[str, int]) -> BodyIndex:
@@ -85,6 +112,9 @@ class BodyIndex:
         body = np.array([numbers[name] for name in names], dtype=np.int64)
         static = np.array([records[name].static for name in names], dtype=bool)
         joint = np.where(static, -1, model.body_jntadr[body]) if names else np.empty(0, np.int64)
+        jointed = [(row, records[name]) for row, name in enumerate(names) if records[name].joints]
+        joint_names = [joint_name for _, record in jointed for joint_name in record.joint_names]
+        joints = np.array([model.joint(joint_name).id for joint_name in joint_names], dtype=np.int64)
         return BodyIndex(
             names=names,
             records=tuple(records.values()),
@@ -92,10 +122,23 @@ class BodyIndex:
             body=body,
             qpos=_at(model.jnt_qposadr, joint),
             dof=_at(model.jnt_dofadr, joint),
-            tree=np.where(static, -1, model.body_treeid[body]) if names else joint,
+            tree=model.body_treeid[body].astype(np.int64) if names else joint,
             ghost=np.array([records[name].ghost for name in names], dtype=bool),
             origin_m=np.array([records[name].origin_m for name in names], dtype=float).reshape(-1, 3),
+            joint=joints,
+            joint_body=np.array([row for row, record in jointed for _ in record.joints], dtype=np.int64),
+            joint_qpos=model.jnt_qposadr[joints].astype(np.int64),
+            joint_dof=model.jnt_dofadr[joints].astype(np.int64),
+            joint_ball=model.jnt_type[joints] == _BALL,
+            joint_row={joint_name: row for row, joint_name in enumerate(joint_names)},
         )
+
+    def positions(self, data: mujoco.MjData) -> Floats:
+        """(J,) where each joint stands [rad, m]; a ball joint's is the angle from its reference."""
+        positions = data.qpos[self.joint_qpos]
+        if self.joint_ball.any():
+            positions[self.joint_ball] = 2.0 * np.arccos(np.minimum(1.0, np.abs(positions[self.joint_ball])))
+        return np.asarray(positions)
 
     def poses(self, data: mujoco.MjData) -> Floats:
         """(N, 7): bottom centre [m] and quaternion wxyz of each body, map frame."""

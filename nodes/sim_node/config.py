@@ -34,3 +34,5 @@ class SimConfig:
     """The system's data folder, where model files may be, too."""
     patience_s: float = RESTART_S
     """Seconds to wait for the knowledge base, where the world is one that names classes."""
+    still: bool = False
+    """Time is paused from the start: bodies stand where they are ordered to."""

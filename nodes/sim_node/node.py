@@ -17,7 +17,7 @@ from nodes.sim_node.models.sources import Models
 from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import FROM_ABOVE, View, camera_view, overview
 from nodes.sim_node.window import Window
-from nodes.sim_node.world_file import is_scene, open_world
+from nodes.sim_node.world_file import names_classes, open_world
 from schemas import codec, errors, keys, wording
 from schemas.calls import by_verb
 from schemas.commands import Classes, Pause, Reset, StepOnce
@@ -26,7 +26,9 @@ from schemas.scenes import (
     BodiesMoved,
     Delete,
     Deleted,
+    JointsMoving,
     MoveBodies,
+    MoveJoints,
     Picture,
     PictureQuery,
     Scene,
@@ -64,7 +66,7 @@ class Simulator:
         self._node = node
         models = Models(config.models, config.data)
         self._world = open_world(config.world, models, node.tick, self._classes(config))
-        self._paused = False
+        self._paused = config.still
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
         self._studio = Studio(config.cameras, bus.watched(node.session, keys.SEGMENTS))
@@ -75,6 +77,7 @@ class Simulator:
                 Spawn.answered_by(self._spawn),
                 Delete.answered_by(self._delete),
                 MoveBodies.answered_by(self._move),
+                MoveJoints.answered_by(self._move_joints),
                 SceneQuery.answered_by(self._snapshot),
                 Pause.answered_by(self._pause),
                 StepOnce.answered_by(self._step),
@@ -95,7 +98,7 @@ class Simulator:
 
     def _classes(self, config: SimConfig) -> ClassNames:
         """What the TBox says of classes, if the world is a file that names bodies by class."""
-        if not is_scene(config.world):
+        if not names_classes(config.world):
             return ClassNames()
         self._node.describe("waiting for the knowledge base")
         try:
@@ -121,6 +124,9 @@ class Simulator:
 
     def _move(self, message: MoveBodies) -> BodiesMoved:
         return self._told(self._world.move(message.placements))
+
+    def _move_joints(self, message: MoveJoints) -> JointsMoving:
+        return self._told(self._world.move_joints(message.orders))
 
     def _snapshot(self, _: SceneQuery) -> Scene:
         return self._world.scene()

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
+from msgspec import structs
 
 from nodes.sim_node.bodies import BodyRecord
 from nodes.sim_node.models.library import Model, ModelError
 from nodes.sim_node.models.parts import Vec3
 from nodes.sim_node.physics import build
 from schemas.entities import Pose
-from schemas.scenes import BodyOrder, Placement
+from schemas.joints import Joint, stated
+from schemas.scenes import BodyOrder, JointOrder, Placement
 
 REACH_M = 1000.0
 """No body is put farther than this from the origin."""
@@ -55,11 +57,75 @@ def _newcomer(order: BodyOrder, model: Model) -> Newcomer:
         masks=[build.mask_of(part) for part in model.parts],
         commit=order.commit,
         shape_commit=order.commit,
+        joints=_joints(order, model),
+        joint_names=tuple(build.leaf_name(order.name, leaf.joint.name) for leaf in model.leaves),
+        joint_commit=order.commit,
     )
     return record, model
 
 
-def moves(placements: Iterable[Placement], there: Collection[str]) -> tuple[list[Placement], dict[str, str]]:
+def _joints(order: BodyOrder, model: Model) -> tuple[Joint, ...]:
+    """The joints of a model, where the map says that they stand."""
+    joints = [
+        Joint(
+            name=leaf.joint.name,
+            kind=leaf.joint.kind,
+            lower=leaf.joint.range[0],
+            upper=leaf.joint.range[1],
+            closed=leaf.joint.closed,
+        )
+        for leaf in model.leaves
+    ]
+    at = stated(joints, order.properties) or {}
+    return tuple(
+        structs.replace(joint, position=_within(joint, at.get(joint.name, joint.initial))) for joint in joints
+    )
+
+
+def _within(joint: Joint, position: float) -> float:
+    """A position between the limits."""
+    if joint.lower is None or joint.upper is None:
+        return position
+    return min(joint.upper, max(joint.lower, position))
+
+
+def joint_targets(
+    orders: Iterable[JointOrder], records: Mapping[str, BodyRecord]
+) -> tuple[dict[str, dict[str, float]], dict[str, str]]:
+    """Where the joints of each body are to go [rad, m], by the joint's own name; and why others cannot."""
+    targets: dict[str, dict[str, float]] = {}
+    failed: dict[str, str] = {}
+    for order in orders:
+        try:
+            if order.name not in records:
+                raise ModelError(f"the scene has no body named {order.name}")
+            targets[order.name] = _targets(order, records[order.name].joints)
+        except ModelError as error:
+            failed[order.name] = str(error)
+    return targets, failed
+
+
+def _targets(order: JointOrder, joints: Sequence[Joint]) -> dict[str, float]:
+    of_use = [joint for joint in joints if joint.kind != "ball" and order.joint in ("", joint.name)]
+    if order.joint and not of_use:
+        names = ", ".join(joint.name for joint in joints) or "none"
+        raise ModelError(f"{order.name} has no joint named {order.joint} that can be moved; it has: {names}")
+    if order.positions is not None:
+        return {
+            joint.name: _within(joint, order.positions[joint.name])
+            for joint in of_use
+            if joint.name in order.positions
+        }
+    opening = [joint for joint in of_use if joint.opens]
+    if not opening:
+        raise ModelError(f"{order.name} has no joint that opens it")
+    share = 1.0 if order.openness is None else order.openness
+    return {joint.name: joint.position_at(share) for joint in opening}
+
+
+def moves(
+    placements: Iterable[Placement], there: Mapping[str, BodyRecord]
+) -> tuple[list[Placement], dict[str, str]]:
     """What is to be moved, and why the rest, by name, cannot be."""
     accepted: list[Placement] = []
     failed: dict[str, str] = {}
@@ -67,6 +133,9 @@ def moves(placements: Iterable[Placement], there: Collection[str]) -> tuple[list
         try:
             if placement.name not in there:
                 raise ModelError(f"the scene has no body named {placement.name}")
+            if (record := there[placement.name]).anchored:
+                holder = record.part_of or "its joint"
+                raise ModelError(f"{placement.name} is held by {holder}; only its joints move it")
             _check_reach(placement.pose)
             accepted.append(placement)
         except ModelError as error:

@@ -20,7 +20,8 @@ from nodes.supervisor.settings import Settings
 from ontology import EMPTY_WORLD, FLAT_WORLD
 from ontology.model_shapes import add_own
 from schemas import codec, errors
-from schemas.keys import ROUTER
+from schemas.endpoints import WEB_TOKEN_VARIABLE
+from schemas.keys import ROUTER, WEB
 
 _RECORDED = "SEMMAP_RECORDED"
 """Handed from a recorder to itself: the last commit that is in its file."""
@@ -53,6 +54,9 @@ def seed(settings: Settings) -> None:
         write_own(None if settings.models is None else Path(settings.models), _own_shapes(settings))
     if "kb_node" not in settings.nodes:
         return
+    if (replay := settings.replay) is not None:
+        print(f"a replay of {replay.of}, from commit {replay.since} to {replay.until}; it cannot be changed")
+        return
     if not settings.fresh and (told := existing_map(Path(settings.data))) is not None:
         print(told)
         return
@@ -81,21 +85,31 @@ def _own_shapes(settings: Settings) -> Path:
 
 
 def _kb_node(settings: Settings) -> None:
-    from nodes.kb_node.config import KbConfig
+    from nodes.kb_node.config import KbConfig, Replay
     from nodes.kb_node.node import run
 
     add_own(_own_shapes(settings))
-    run(KbConfig(data=Path(settings.data), network=settings.network("kb_node")))
+    replay = settings.replay
+    run(
+        KbConfig(
+            data=Path(settings.data),
+            network=settings.network("kb_node"),
+            replay=None
+            if replay is None
+            else Replay(replay.until, replay.speed, replay.longest_s, settings.nodes),
+        )
+    )
 
 
 def _coordinator(settings: Settings) -> None:
-    from nodes.coordinator.config import CoordinatorConfig, Thresholds
+    from nodes.coordinator.config import CoordinatorConfig, LiveRules, Thresholds
     from nodes.coordinator.node import run
 
     add_own(_own_shapes(settings))
     thresholds = Thresholds(distance_m=settings.threshold_m, angle_rad=settings.angle_threshold_rad)
+    live = LiveRules(stale_s=settings.stale_s, journal_every_s=settings.journal_every_s)
     keys = None if settings.secure is None else Path(settings.secure)
-    run(CoordinatorConfig(settings.truth, thresholds, settings.network("coordinator"), keys))
+    run(CoordinatorConfig(settings.truth, thresholds, live, settings.network("coordinator"), keys))
 
 
 def _sim_node(settings: Settings) -> None:
@@ -110,7 +124,8 @@ def _sim_node(settings: Settings) -> None:
     network = settings.network("sim_node")
     patience_s = FOREVER_S if settings.only else RESTART_S  # another host may not be up yet
     data = Path(settings.data)
-    run(SimConfig(Path(settings.world), models, settings.window, cameras, network, data, patience_s))
+    still = settings.replay is not None
+    run(SimConfig(Path(settings.world), models, settings.window, cameras, network, data, patience_s, still))
 
 
 def _perception_node(settings: Settings) -> None:
@@ -141,6 +156,18 @@ def _recorder(settings: Settings) -> None:
         os.execv(sys.executable, sys.orig_argv)
 
 
+def _web(settings: Settings) -> None:
+    from nodes.extern.web.server import WebConfig, run
+
+    token = os.environ.get(WEB_TOKEN_VARIABLE, "")
+    run(WebConfig(network=settings.network(WEB), port=settings.web_port, token=token), tell=_log_address)
+
+
+def _log_address(address: str) -> None:
+    """The address without its token: logs are read by more people than a terminal is."""
+    print(f"web: serving {address.partition('?')[0]}", flush=True)
+
+
 def _router(settings: Settings) -> None:
     from nodes.router.config import RouterConfig
     from nodes.router.node import run
@@ -156,6 +183,7 @@ _LAUNCHERS: dict[str, Callable[[Settings], None]] = {
     "sim_node": _sim_node,
     "perception_node": _perception_node,
     "recorder": _recorder,
+    WEB: _web,
 }
 
 

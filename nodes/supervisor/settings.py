@@ -14,7 +14,7 @@ from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network, is_local
 from nodes.identity import Identity
 from schemas.endpoints import ALL_ROBOTS, robot_name
 from schemas.errors import BadRequest
-from schemas.keys import ROUTER
+from schemas.keys import ROUTER, WEB
 
 _LIMIT = re.compile("[1-9][0-9]{0,5}(h|d|MB|GB)")
 ANY_PORT = "tcp/127.0.0.1:0"
@@ -27,6 +27,19 @@ JOURNAL = "journal.sqlite"
 def default_data() -> Path:
     """Where the map is kept when nothing else is said."""
     return platformdirs.user_data_path("semmap")
+
+
+class Replay(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Which commits of another map are replayed, and how fast."""
+
+    of: str
+    """The data folder of that map."""
+    since: int
+    """The commit after which the replay begins."""
+    until: int
+    speed: float
+    longest_s: float
+    """No wait between two commits is longer."""
 
 
 class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -42,9 +55,13 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     abox: str | None
     """None is an empty map."""
     world: str
-    truth: Literal["map", "scene", "perceived"] = "map"
+    truth: Literal["map", "scene", "perceived", "replayed"] = "map"
     threshold_m: Annotated[float, Meta(gt=0.0)] = 0.05
     angle_threshold_deg: Annotated[float, Meta(gt=0.0, le=180.0)] = 5.0
+    stale_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] = 2.0
+    """After how long a live pose that is not followed by another is stale."""
+    journal_every_s: Annotated[float, Meta(ge=0.0, le=86_400.0)] = 0.0
+    """How often the live poses of what moves are committed; 0 is only where it stops."""
     listen: str = DEFAULT_ENDPOINT
     connect: tuple[str, ...] = ()
     only: tuple[str, ...] = ()
@@ -68,6 +85,11 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     perception: bool = False
     when_gone: Literal["remove", "mark"] = "remove"
     """What becomes of an entity that perception brought in and no longer sees."""
+    web: bool = False
+    """The page runs beside the nodes."""
+    web_port: Annotated[int, Meta(ge=0, le=65_535)] = 8080
+    web_as: str = ""
+    """With `secure`: the name of the certificate under whose role the page acts."""
     live_view: str | None = None
     """Where the recorder streams to Rerun viewers, `host:port`."""
     secure: str | None = None
@@ -78,6 +100,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     Of a single router that robots share it is `*`.
     """
+    replay: Replay | None = None
+    """The map replays the past, and nobody changes it; then `truth` is `replayed`."""
     zenoh_config: str | None = None
     """A Zenoh configuration file of one's own, for every process of the system."""
 
@@ -110,13 +134,14 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def nodes(self) -> tuple[str, ...]:
-        """The nodes to run, in the order of starting."""
+        """The nodes to run, in the order of starting, and the page after them."""
         optional = {"sim_node": self.sim, "recorder": self.record, "perception_node": self.perception}
         order = ("coordinator", "kb_node", "sim_node", "recorder", "perception_node")
         router = (ROUTER,) if self.has_router else ()
+        page = (WEB,) if self.web else ()
         if self.only:
-            return router + tuple(node for node in order if node in self.only)
-        return router + tuple(node for node in order if optional.get(node, True))
+            return router + tuple(node for node in order if node in self.only) + page
+        return router + tuple(node for node in order if optional.get(node, True)) + page
 
     @property
     def has_router(self) -> bool:
@@ -142,15 +167,21 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return structs.replace(self._place(node), namespace=namespace, own_config=self.zenoh_config)
 
     def _place(self, node: str) -> Network:
-        identity = None if self.secure is None else Identity.read(Path(self.secure) / node)
+        identity = None if self.secure is None else self.identity_of(node)
         if node == ROUTER:
             return Network(mode="router", listen=(self.listen,), connect=self.connect, identity=identity)
         if self.has_router:
             where = self.connect if self.single and self.connect else (self.reachable,)
             return Network(connect=where, identity=identity, patience_s=FOREVER_S)
+        if node == WEB:  # which nobody's messages are to go through, and which must hold up nobody
+            return Network(connect=(self.reachable,), patience_s=FOREVER_S)
         if node == "coordinator":
             return Network(mode="peer", listen=(self.listen,), connect=self.connect)
         return Network(mode="peer", listen=(ANY_PORT,), connect=(self.reachable, *self.connect))
+
+    def identity_of(self, node: str) -> Identity:
+        """The certificate that a node shows; the page shows that of whom it acts for. Raises BadFile."""
+        return Identity.read(Path(self.secure or "") / ((self.web_as or WEB) if node == WEB else node))
 
     @property
     def reachable(self) -> str:

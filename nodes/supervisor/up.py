@@ -6,6 +6,7 @@ import contextlib
 import fcntl
 import os
 import re
+import secrets
 import shlex
 import signal
 import socket
@@ -22,7 +23,7 @@ from nodes.identity import SUPERVISOR, Identity
 from nodes.supervisor import presence, registry
 from nodes.supervisor.control import LONGEST_STOP_S, Supervisor
 from nodes.supervisor.notices import Notices
-from nodes.supervisor.settings import Settings
+from nodes.supervisor.settings import Replay, Settings
 from nodes.supervisor.watchdog import Watchdog
 from schemas import errors, keys
 from schemas.calls import reply_type
@@ -55,11 +56,14 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
         _require_free(settings.listen)
         if settings.record and settings.secure is None:  # anybody on this machine may look at a live view
             settings = structs.replace(settings, live_view=_live_view())
+        token = secrets.token_urlsafe(24) if settings.web else ""
+        if settings.web:
+            settings = structs.replace(settings, web_port=_web_port(settings.web_port))
         with presence.announced(settings.reachable):
             if seeded := supervisor.seed(settings):
                 say(f"{'map':<{_COLUMN}} {seeded}")
             notices = Notices(supervisor.notices)
-            process = supervisor.start(settings)
+            process = supervisor.start(settings, web_token=token)
             try:
                 with registry.entered(
                     data=supervisor.data,
@@ -68,7 +72,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
                     pid=process.pid,
                     namespace=settings.namespace,
                 ):
-                    _Foreground(supervisor, settings, process, notices, say).run()
+                    _Foreground(supervisor, settings, process, notices, say, token).run()
             finally:
                 _stop(process)
                 supervisor.end_leftovers()
@@ -110,7 +114,9 @@ class _Foreground:
         process: subprocess.Popen[bytes],
         notices: Notices,
         say: Callable[[str], None],
+        web_token: str = "",
     ) -> None:
+        self._web_token = web_token
         self._supervisor = supervisor
         self._settings = settings
         self._process = process
@@ -124,6 +130,7 @@ class _Foreground:
         self._waits_from_s = time.monotonic() + _WAITS_S
         self._waits: set[tuple[str, str]] = set()
         """What was said of a node that waits."""
+        self._is_replayed = False
 
     def run(self) -> None:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -156,12 +163,20 @@ class _Foreground:
         if health.state == "starting":  # a large map takes its time, and tells so
             self._deadline_s = time.monotonic() + _START_TIMEOUT_S
             self._tell_of_waiting(health)
+        if health.node == "kb_node" and self._settings.replay is not None:
+            self._tell_of_replay(self._settings.replay, health)
         if health.state == "ready" and self._pids.get(health.node) != health.pid:
             again = " again" if health.node in self._pids else ""
             self._pids[health.node] = health.pid
             self._say(f"{health.node:<{_COLUMN}} ready{again}  pid {health.pid:<7} {health.detail}")
             for note in health.notes:
                 self._say(f"{'TBox':<{_COLUMN}} {note}")
+
+    def _tell_of_replay(self, replay: Replay, health: Health) -> None:
+        """Say once that all of it has been replayed."""
+        if health.commit == replay.until and not self._is_replayed:
+            self._is_replayed = True
+            self._say(f"{'map':<{_COLUMN}} is as it was after commit {replay.until}, and stays so")
 
     def _tell_of_waiting(self, health: Health) -> None:
         """In a part of a system, say once for what a node waits: it may be on a host that is not up yet."""
@@ -235,7 +250,7 @@ class _Foreground:
                 status = bus.ask(session, keys.CMD, Status.VERB, Status(), reply_type(Status))
                 known = {node.pid for node in status.nodes if node.state == "ready"}
                 stands = status.in_agreement or status.truth == "perceived" or "sim_node" not in self._pids
-                if stands and known >= {*self._pids.values()}:
+                if stands and known >= {pid for node, pid in self._pids.items() if node != keys.WEB}:
                     break
                 time.sleep(0.05)
             self._tell_of_truth(status.truth)
@@ -274,6 +289,8 @@ class _Foreground:
             lines["recording"] = f"{self._settings.data}/recordings"
         if self._settings.live_view is not None:
             lines["live view"] = f"rerun --connect rerun+http://{self._settings.live_view}/proxy"
+        if self._settings.web:
+            lines["page"] = f"http://127.0.0.1:{self._settings.web_port}/?token={self._web_token}"
         lines |= {"try": f"semmap list{connect}", "stop": "Ctrl-C"}
         self._say("")
         for what, value in lines.items():
@@ -294,6 +311,20 @@ def _require_free(endpoint: str) -> None:
             raise errors.Refused(
                 f"cannot listen on {endpoint}: {error.strerror}; choose another with --listen"
             ) from None
+
+
+def _web_port(port: int) -> int:
+    """The port of the page: this one, if it is free, or for 0 any that is. Raises Refused."""
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(("127.0.0.1", port))
+        except OSError as error:
+            raise errors.Refused(
+                f"the page cannot listen on 127.0.0.1:{port}: {error.strerror}; choose another with"
+                " --web-port, or --web-port 0 for any that is free"
+            ) from None
+        return int(probe.getsockname()[1])
 
 
 def _ending(status: int) -> str:

@@ -28,6 +28,7 @@ PARSED = {
     "node",
     "repair",
     "replay",
+    "movie",
     "completion",
     "watch",
     "perceive",

@@ -76,6 +76,25 @@ def test_by_place_each_thing_counts_in_its_smallest_place():
     assert graph.links == (Link("kitchen1", "corner1", "hasSubLocation"),)
 
 
+def test_by_place_each_place_is_in_the_smallest_around_it_and_nothing_is_said_twice():
+    places = ENTITIES | {
+        "flat1": entity("flat1", "Location", place=True, size_m=(9.0, 9.0, 2.5)),
+        "hall1": entity("hall1", "Corridor", place=True, size_m=(1.0, 9.0, 2.5)),
+    }
+    relations = {
+        "corner1": (("isLocatedIn", "kitchen1"), ("isLocatedIn", "flat1")),
+        "kitchen1": (("hasSubLocation", "corner1"), ("isAdjacentTo", "hall1"), ("isLocatedIn", "flat1")),
+        "hall1": (("isAdjacentTo", "kitchen1"), ("isLocatedIn", "flat1")),
+        "flat1": (("hasSubLocation", "kitchen1"), ("hasSubLocation", "hall1")),
+    }
+    assert {(a, said, b) for a, b, said in by_place(places, relations).links} == {
+        ("corner1", "isLocatedIn", "kitchen1"),
+        ("kitchen1", "isLocatedIn", "flat1"),
+        ("hall1", "isLocatedIn", "flat1"),
+        ("hall1", "isAdjacentTo", "kitchen1"),
+    }
+
+
 def test_without_places_it_is_by_class():
     cups = {name: ENTITIES[name] for name in ("cup1", "cup2", "table1")}
     assert by_place(cups, {}) == by_class(cups)

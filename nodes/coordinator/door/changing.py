@@ -9,12 +9,12 @@ from nodes.coordinator.door.committing import changed, commit, new_id, once, tak
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.plausibility import doubts, require_carrying, require_same_nature
 from nodes.coordinator.scene.hands import Hand
-from nodes.coordinator.scene.settled import Settled
+from nodes.coordinator.scene.settled import Settled, doing
 from ontology import vocabulary as v
 from ontology.name_index import Ambiguous, Named, NameIndex
 from schemas import changes, errors, wording
-from schemas.commands import Add, Clear, Command, Infer, Properties, Remove, Set, Unset, Update
-from schemas.commits import Edit, Effects, Transaction
+from schemas.commands import Add, Clear, Command, Infer, Properties, Remove, Set, Track, Unset, Update
+from schemas.commits import Effects, Transaction
 from schemas.entities import ClassInfo, Entity, Pose, Value
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
@@ -149,6 +149,20 @@ def _after(made: Effects | None, name: str) -> Entity | None:
 
 
 @once
+def track(view: KnownMap, command: Track) -> Talk[Changed]:
+    """Let an entity's pose come live, or no more. Raises Refused for a place."""
+    entity = view.entity(command.name)
+    if entity.place:
+        raise errors.Refused(f"{entity.name} is a place, which stays where it is; track what moves")
+    made = yield from commit(view, transactions.track(command))
+    if made is None:
+        source = "the simulator" if entity.tracked == "sim" else "a stream of poses"
+        now = f"is tracked from {source} already" if entity.tracked else "is not tracked"
+        return changed(None, f"unchanged: {entity.name} {now}", names=(entity.name,))
+    return changed(made, _said(entity, made), names=(entity.name,))
+
+
+@once
 def remove(view: KnownMap, command: Remove) -> Talk[Changed]:
     """Take entities out: all of them, or, if one is unknown, none."""
     if not command.names:
@@ -167,22 +181,24 @@ def clear(view: KnownMap, command: Clear) -> Talk[Changed]:
 
 def follow(view: KnownMap, settled: Settled, hand: Hand) -> Talk[Changed]:
     """The map takes over where bodies came to rest, in one commit: those that nobody has moved meanwhile."""
-    poses = settled.still(view.entities)
-    if not poses:
+    edits = settled.edits(view.entities)
+    if not edits:
         return changed(None, UNCHANGED)
+    reason = settled.reason or (hand.reason if hand.verb or settled.poses else _of_joints(settled))
     moved = Transaction(
         id=new_id(),
-        source="scene",
+        source=settled.source,
         agent=hand.agent,
         verb=hand.verb,
-        reason=hand.reason,
-        edit=tuple(
-            Edit(name=name, at=pose.position_m, orientation=pose.orientation_wxyz)
-            for name, pose in poses.items()
-        ),
+        reason=reason,
+        edit=tuple(edits),
     )
     made = yield from commit(view, moved)
-    return changed(made, hand.reason, names=tuple(poses))
+    return changed(made, reason, names=tuple(edit.name for edit in edits))
+
+
+def _of_joints(settled: Settled) -> str:
+    return "; ".join(f"{name} {doing(joints)} in the scene" for name, joints in settled.joints.items())
 
 
 def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:

@@ -8,10 +8,10 @@ from typing import Any
 from nodes.coordinator.dialogues import Ask, Talk, alone, hold, in_step
 from nodes.coordinator.door import changing, loading, undoing
 from nodes.coordinator.door.known_map import KnownMap
-from nodes.coordinator.scene.hands import Hands
+from nodes.coordinator.scene.hands import Hand, Hands
 from nodes.coordinator.scene.settled import Settled
 from nodes.coordinator.turns import Change
-from schemas.commands import Add, Clear, Command, Load, Remove, Set, Undo, Unset, Update
+from schemas.commands import Add, Clear, Command, Load, Remove, Set, Track, Undo, Unset, Update
 from schemas.replies import Changed
 
 _CHANGING: Mapping[type[Command], Callable[[KnownMap, Any], Talk[Changed]]] = {
@@ -19,6 +19,7 @@ _CHANGING: Mapping[type[Command], Callable[[KnownMap, Any], Talk[Changed]]] = {
     Update: changing.update,
     Set: changing.set_,
     Unset: changing.unset,
+    Track: changing.track,
     Remove: changing.remove,
     Clear: changing.clear,
     Load: loading.load,
@@ -55,6 +56,8 @@ class Door:
         return _CHANGING[type(command)](self.map, command)
 
     def _settled(self, settled: Settled) -> Talk[Changed]:
-        """The map takes over where bodies came to rest: one, or those that a hand carried together."""
-        with self.hands.that_moved(*settled.poses) as hand:
+        """The map takes over where things are: one, or those that a hand carried together."""
+        if settled.reason:
+            return (yield from changing.follow(self.map, settled, Hand("", "", settled.reason)))
+        with self.hands.that_moved(*settled.names) as hand:
             return (yield from changing.follow(self.map, settled, hand))

@@ -23,6 +23,8 @@ class KnownMap(map_replica.MapReplica[Effects]):
         self.touched: set[str] = set()
         """The names of the entities that commits touched, for whoever looks after them to take."""
         self._places: dict[str, Entity] | None = None
+        self.tracked: dict[str, Entity] = {}
+        """The entities that are tracked, by name."""
         self._names = FreeNames()
         self._floor: FreePlaces | None = None
         """Once somebody asked for a free place."""
@@ -61,13 +63,22 @@ class KnownMap(map_replica.MapReplica[Effects]):
         """See `MapReplica.begin`."""
         self._places = None
         self._names, self._floor = FreeNames(), None
-        return super().begin(snapshot)
+        begun = super().begin(snapshot)
+        self.tracked = {name: entity for name, entity in self.entities.items() if entity.tracked}
+        return begun
 
     def _apply(self, commit: Effects) -> None:
         """See `MapReplica._apply`."""
         super()._apply(commit)
         self.touched.update(commit.names)
         self._names.freed(gone.name for gone in commit.removed)
+        for gone in commit.removed:
+            self.tracked.pop(gone.name, None)
+        for changed in commit.changed:
+            if changed.tracked:
+                self.tracked[changed.name] = changed
+            elif changed.name in self.tracked:
+                del self.tracked[changed.name]
         if self._floor is not None:
             self._floor.touch(commit.names)
         if self._places is not None:

@@ -8,10 +8,11 @@ from contextlib import contextmanager
 from typing import NamedTuple
 
 from schemas import wording
-from schemas.commands import Move
+from schemas.commands import Close, Move, Open
 from schemas.errors import NoAnswer
 
 _RESTS_WITHIN_S = 10.0
+_DONE = {"move": "moved", "open": "opened", "close": "closed"}
 
 
 class Hand(NamedTuple):
@@ -30,11 +31,11 @@ class Hands:
     def __init__(self) -> None:
         self._released: dict[str, tuple[Hand, float]] = {}
 
-    def let_go(self, command: Move, load: Collection[str] = ()) -> None:
+    def let_go(self, command: Move | Open | Close, load: Collection[str] = ()) -> None:
         """A hand let go of a body, and of what it carried along with it."""
         party = frozenset((command.name, *load)) if load else frozenset[str]()
-        reason = command.reason or f"{command.name} was moved by hand"
-        hand = Hand("move", command.agent, reason, party)
+        reason = command.reason or f"{command.name} was {_DONE[command.VERB]} by hand"
+        hand = Hand(command.VERB, command.agent, reason, party)
         for name in (command.name, *load):
             self._released[name] = (hand, time.monotonic() + _RESTS_WITHIN_S)
 

@@ -4,10 +4,12 @@ It looks only at how things are, never at how they came to be, so it also mends 
 node was away. Who changed last wins: a body carries the number of the commit whose pose it was last ordered
 to take, an entity that of the commit which last changed its pose. If the map's is later, and did not itself
 come from the scene, the body is ordered there; otherwise a body that rests elsewhere was moved, and the map
-follows.
+follows. The same goes for joints, by the commits that concern these.
 
 If only perception updates the map (`perceived`), nothing is to be done: an entity without a body is a belief,
-a body without an entity has not been seen yet, and a pose that differs will be seen.
+a body without an entity has not been seen yet, and a pose that differs will be seen. Only what is tracked
+from the simulator is followed all the same. What is tracked from a stream never follows its body. If the map
+is `replayed`, every pose of it is an order, also those that came from the scene, and the map follows nothing.
 """
 
 from __future__ import annotations
@@ -17,7 +19,8 @@ from typing import NamedTuple
 
 from nodes.coordinator.config import Thresholds, Truth
 from schemas.entities import Entity, Pose, angle_rad, distance_m
-from schemas.scenes import Body, BodyOrder, Placement
+from schemas.joints import IS_OPEN, JOINT_POSITIONS, OPEN_FROM, OPENING, OPENNESS, Joint, openness, stated
+from schemas.scenes import Body, BodyOrder, JointOrder, Placement
 
 
 class Actions(NamedTuple):
@@ -28,6 +31,10 @@ class Actions(NamedTuple):
     place: tuple[Placement, ...] = ()
     follow: tuple[Placement, ...] = ()
     """Poses that the map takes over from the scene."""
+    joints: tuple[JointOrder, ...] = ()
+    """Joints that the scene moves to where the map says."""
+    opened: tuple[str, ...] = ()
+    """Bodies of which the map takes over how their joints stand."""
     adopt: tuple[Body, ...] = ()
     """Bodies that become entities."""
     missing: tuple[str, ...] = ()
@@ -47,9 +54,11 @@ def reconcile(
     not tried again before the entity changes.
     """
     if truth == "perceived":
-        return Actions()
+        tracked = (e for e in entities.values() if e.tracked == "sim" and e.name in bodies)
+        moved = (bodies[e.name] for e in tracked if _moved(e, bodies[e.name], thresholds))
+        return Actions(follow=tuple(Placement(name=body.name, pose=body.pose) for body in moved))
     failed = failed or {}
-    delete, spawn, place, follow, adopt, missing = [], [], [], [], [], []
+    delete, spawn, place, follow, joints, opened, adopt, missing = [], [], [], [], [], [], [], []
     coming = {latest(e) for e in entities.values() if not (e.place or e.pose is None or e.name in bodies)}
     for name, entity in entities.items():
         body = bodies.get(name)
@@ -59,25 +68,43 @@ def reconcile(
         elif truth == "scene":
             if body is None:
                 missing.append(name)
-            elif _moved(entity, body, thresholds):
+                continue
+            if _moved(entity, body, thresholds):
                 follow.append(Placement(name=name, pose=body.pose))
+            if body.joints and body.resting and _stand_elsewhere(entity, body, thresholds):
+                opened.append(name)
         elif body is None or _reshaped(entity, body) or _comes_with(entity, body, coming):
             if entity.pose is not None and failed.get(name) != latest(entity):
                 spawn.append(order(entity, entity.pose))
                 if body is not None:
                     delete.append(name)
-        elif _ordered_since(entity, body):
-            assert entity.pose is not None
-            place.append(Placement(name=name, pose=entity.pose, commit=entity.pose_provenance.commit))
-        elif _moved(entity, body, thresholds):
-            follow.append(Placement(name=name, pose=body.pose))
+        else:
+            replayed = truth == "replayed"
+            if _ordered_since(entity, body) or (replayed and _posed_since(entity, body)):
+                assert entity.pose is not None
+                place.append(Placement(name=name, pose=entity.pose, commit=entity.pose_provenance.commit))
+            elif not replayed and _moved(entity, body, thresholds):
+                follow.append(Placement(name=name, pose=body.pose))
+            if body.joints and _joints_ordered_since(entity, body, whoever=replayed):
+                joints.append(joint_order(entity, body, thresholds))
+            elif body.joints and not replayed and body.resting and _stand_elsewhere(entity, body, thresholds):
+                opened.append(name)
     for name, body in bodies.items():
         if name not in entities:
             if truth == "scene":
                 adopt.append(body)
             elif body.entity:
                 delete.append(name)
-    return Actions(tuple(delete), tuple(spawn), tuple(place), tuple(follow), tuple(adopt), tuple(missing))
+    return Actions(
+        tuple(delete),
+        tuple(spawn),
+        tuple(place),
+        tuple(follow),
+        tuple(joints),
+        tuple(opened),
+        tuple(adopt),
+        tuple(missing),
+    )
 
 
 def order(entity: Entity, pose: Pose) -> BodyOrder:
@@ -89,13 +116,61 @@ def order(entity: Entity, pose: Pose) -> BodyOrder:
         pose=pose,
         size_m=entity.size_m,
         fixed=entity.fixed,
+        properties={
+            name: said
+            for name in OPENING
+            if isinstance(said := entity.properties.get(name), (bool, int, float, str))
+        },
         commit=latest(entity),
+    )
+
+
+def joint_order(entity: Entity, body: Body, thresholds: Thresholds) -> JointOrder:
+    """The positions that an entity wants of the joints of its body; none where they suit it as they are."""
+    said = entity.joint_provenance
+    return JointOrder(
+        name=entity.name,
+        positions=_wanted(entity, body) if _stand_elsewhere(entity, body, thresholds) else {},
+        commit=said.commit if said is not None else entity.provenance.commit,
     )
 
 
 def latest(entity: Entity) -> int:
     """The commit that last changed anything which concerns the body."""
-    return max(entity.pose_provenance.commit, entity.shape_provenance.commit)
+    joints = entity.joint_provenance
+    latest = max(entity.pose_provenance.commit, entity.shape_provenance.commit)
+    return latest if joints is None else max(latest, joints.commit)
+
+
+def _wanted(entity: Entity, body: Body) -> dict[str, float]:
+    """Where the map says that the joints of a body stand; as they are made where it does not say."""
+    said = stated(body.joints, entity.properties)
+    return {joint.name: joint.initial for joint in body.joints} if said is None else said
+
+
+def _stand_elsewhere(entity: Entity, body: Body, thresholds: Thresholds) -> bool:
+    """Do the joints of a body stand otherwise than the map says?"""
+    if entity.properties.keys().isdisjoint((OPENNESS, JOINT_POSITIONS)) and IS_OPEN in entity.properties:
+        share = openness(body.joints)
+        return share is not None and (share > OPEN_FROM) != entity.properties[IS_OPEN]
+    wanted = _wanted(entity, body)
+    return any(
+        joint.name in wanted and abs(joint.position - wanted[joint.name]) > _tolerance(joint, thresholds)
+        for joint in body.joints
+    )
+
+
+def _tolerance(joint: Joint, thresholds: Thresholds) -> float:
+    """How far a joint may be from where the map says [rad, m]."""
+    if joint.opens:
+        return thresholds.share * abs(joint.open_end - joint.position_at(0.0))
+    return thresholds.distance_m if joint.kind == "slide" else thresholds.angle_rad
+
+
+def _joints_ordered_since(entity: Entity, body: Body, *, whoever: bool = False) -> bool:
+    """Has the map said since how they are to stand: by anybody but the scene, or by `whoever`?"""
+    said = entity.joint_provenance
+    return said is not None and (whoever or said.source != "scene") and said.commit > body.joint_commit
 
 
 def _reshaped(entity: Entity, body: Body) -> bool:
@@ -108,12 +183,15 @@ def _comes_with(entity: Entity, body: Body, coming: Set[int]) -> bool:
 
 
 def _ordered_since(entity: Entity, body: Body) -> bool:
-    posed = entity.pose_provenance
-    return entity.pose is not None and posed.source != "scene" and posed.commit > body.commit
+    return entity.pose_provenance.source != "scene" and _posed_since(entity, body)
+
+
+def _posed_since(entity: Entity, body: Body) -> bool:
+    return entity.pose is not None and entity.pose_provenance.commit > body.commit
 
 
 def _moved(entity: Entity, body: Body, thresholds: Thresholds) -> bool:
-    if not body.resting:
+    if not body.resting or entity.tracked == "stream":
         return False
     if entity.pose is None:
         return True

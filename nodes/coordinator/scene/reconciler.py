@@ -15,7 +15,7 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
-from nodes.coordinator.scene.reconcile import Actions, latest, order, reconcile
+from nodes.coordinator.scene.reconcile import Actions, joint_order, latest, order, reconcile
 from nodes.coordinator.scene.scene_view import SceneView
 from nodes.coordinator.scene.settled import Settled
 from nodes.coordinator.scene.spawn_batches import batches
@@ -23,13 +23,16 @@ from schemas import errors, wording
 from schemas.calls import Call
 from schemas.commands import Add
 from schemas.entities import BodyState, Entity, rounded
+from schemas.joints import openness
 from schemas.replies import Changed
 from schemas.scenes import (
     BodiesMoved,
     Body,
     BodyOrder,
     Delete,
+    JointOrder,
     MoveBodies,
+    MoveJoints,
     Placement,
     Poses,
     SceneQuery,
@@ -40,6 +43,7 @@ from schemas.scenes import (
 log = logging.getLogger(__name__)
 
 T = TypeVar("T")
+_PART_OF = "isDirectPartOf"
 GHOSTLY = "overlaps another body, so it does not collide until there is room"
 
 
@@ -89,6 +93,8 @@ class Keeping:
         self._later: set[str] = set()  # what changed while orders were under way
         self._following: set[str] = set()  # bodies that the map is about to follow, or to take in
         self._put_back: dict[str, Placement] = {}  # bodies that the map did not follow
+        self._shut_again: dict[str, JointOrder] = {}  # those whose joints it did not follow
+        self._unsaid: set[str] = set()  # bodies of whose joints the map has no way to speak
 
     def on_poses(self, poses: Poses) -> None:
         """New poses from the simulator."""
@@ -113,10 +119,12 @@ class Keeping:
         actions = self.wanted(names)
         for group in self._to_follow(actions.follow):
             self._follow(group)
+        self._follow_joints(actions.opened)
         for body in actions.adopt:
             self._adopt(body)
         refused, self._put_back = self._put_back, {}
-        steps = self._orders(actions, [*refused.values()])
+        shut, self._shut_again = self._shut_again, {}
+        steps = self._orders(actions, [*refused.values()], [*shut.values()])
         if steps:
             self._start(steps)
 
@@ -143,8 +151,16 @@ class Keeping:
         return (
             self._door.map.is_confirmed
             and not self._busy
-            and not (any(wanted[:4]) or foreign or wanted.missing)
+            and not (any(wanted[:5]) or not self._unsaid.issuperset(wanted.opened))
+            and not (foreign or wanted.missing)
         )
+
+    def is_followed(self, name: str) -> bool:
+        """Whether the map says of an entity what its body does, or never will; nothing of it is under way."""
+        if self._config.truth == "perceived" or name in self._unsaid:
+            return True
+        wanted = self.wanted((name,))
+        return name not in self._following and not (wanted.follow or wanted.opened or wanted.joints)
 
     def place_all(self) -> Future[Any]:
         """Put every body back where the map says it stands; those that could not be made are tried again.
@@ -160,6 +176,11 @@ class Keeping:
             for e in self._door.map.entities.values()
             if e.pose is not None and e.name in self.scene.bodies
         )
+        bodies, entities = self.scene.bodies, self._door.map.entities
+        jointed = [name for name, body in bodies.items() if body.joints and name in entities]
+        orders = tuple(joint_order(entities[name], bodies[name], self._config.thresholds) for name in jointed)
+        if orders:
+            self._ask(MoveJoints(orders=orders))
         return self._ask(MoveBodies(placements=placements))
 
     def body_state(self, entity: Entity) -> BodyState:
@@ -174,8 +195,13 @@ class Keeping:
         if not self.scene.known:
             return BodyState(status="unknown", detail="no simulator is running", model=entity.model)
         if body is not None:
-            detail = GHOSTLY if body.ghost else ""
-            return BodyState(status="ghost" if body.ghost else "present", detail=detail, model=body.model)
+            return BodyState(
+                status="ghost" if body.ghost else "present",
+                detail=GHOSTLY if body.ghost else "",
+                model=body.model,
+                joints=body.joints,
+                openness=openness(body.joints),
+            )
         if entity.name in self._failed and self._failed[entity.name][0] == latest(entity):
             return BodyState(status="failed", detail=self._failed[entity.name][1], model=entity.model)
         if self._config.truth == "scene":
@@ -195,9 +221,19 @@ class Keeping:
         )
         seen = sorted(f"{e.name}: perception: {e.conflict}" for e in entities if e.conflict)
         foreign = sorted((name, why) for name, why in self._foreign.items() if name in self.scene.bodies)
-        return amiss + seen + [f"{name}: {why}" for name, why in foreign]
+        return amiss + seen + [f"{name}: {why}" for name, why in foreign] + self._of_the_world()
 
-    def _orders(self, actions: Actions, refused: list[Placement]) -> list[Step[Any]]:
+    def _of_the_world(self) -> list[str]:
+        """Which bodies of the world are no entities, though the scene is the truth."""
+        names = self.scene.left_out if self._config.truth == "scene" else ()
+        if not names:
+            return []
+        return [
+            f"{wording.bodies(len(names))} of the world are only parts of others: {', '.join(names)}"
+            ' (to have one, add <text name="semmap:BODY" data="CLASS"/>)'
+        ]
+
+    def _orders(self, actions: Actions, refused: list[Placement], shut: list[JointOrder]) -> list[Step[Any]]:
         steps: list[Step[Any]] = []
         if actions.delete:
             steps.append(Step(Delete(names=actions.delete), lambda _: None))
@@ -205,6 +241,9 @@ class Keeping:
         placements = (*actions.place, *refused)
         if placements:
             steps.append(Step(MoveBodies(placements=placements), self._placed))
+        joints = (*actions.joints, *shut)
+        if joints:
+            steps.append(Step(MoveJoints(orders=joints), lambda _: None))
         return steps
 
     def _spawning(self, batch: tuple[BodyOrder, ...]) -> Step[Spawned]:
@@ -243,12 +282,16 @@ class Keeping:
             log.warning("%s has no body: %s", name, reason)  # `problems` says so as long as it is true
 
     def _placed(self, reply: BodiesMoved) -> None:
-        """A body that cannot be put where the map says is made anew there, or there is a reason why not."""
-        entities = self._door.map.entities
+        """A body that cannot be put where the map says is made anew there, or there is a reason why not.
+
+        The world's own are not: what these are held by does not let them go, and the map follows them.
+        """
+        entities, bodies = self._door.map.entities, self.scene.bodies
         anew = tuple(
             order(entity, entity.pose)
             for name in reply.failed
             if (entity := entities.get(name)) is not None and entity.pose is not None
+            if name not in bodies or bodies[name].entity
         )
         if anew:
             gone = Delete(names=tuple(order.name for order in anew))
@@ -289,11 +332,33 @@ class Keeping:
 
         self._change_about(poses, Settled.of(self._door.map.entities, poses), failed)
 
+    def _follow_joints(self, names: Sequence[str]) -> None:
+        """Let the map take over how joints stand; if the map refuses, they have to go back."""
+        for name in names:
+            if name in self._following or name in self._unsaid or name in self._shut_again:
+                continue
+            body = self.scene.bodies[name]
+            settled = Settled.of(self._door.map.entities, {}, {name: body.joints})
+            self._change_about((name,), settled, partial(self._not_followed, name))
+
+    def _not_followed(self, name: str, error: BaseException) -> None:
+        if isinstance(error, errors.BadRequest):  # a TBox without these properties
+            self._unsaid.add(name)
+            log.warning("the map does not say how %s stands: %s", name, error)
+        elif not isinstance(error, errors.Refused):
+            self._report(f"the map cannot take over how {name} stands yet: {error}")
+        elif (entity := self._door.map.entities.get(name)) is not None:
+            self._report(f"{name} was put back as it stood, because the map rejected how it stands: {error}")
+            self._shut_again[name] = joint_order(entity, self.scene.bodies[name], self._config.thresholds)
+
     def _adopt(self, body: Body) -> None:
         """Let a body of the scene become an entity."""
         name = body.name
         if name in self._foreign or name in self._following or not body.resting:
             return
+        whole = self._whole_of(body)
+        if whole in self.scene.bodies and whole not in self._door.map.entities:
+            return  # what it is part of comes first
 
         def adopted(error: BaseException) -> None:
             if isinstance(error, (errors.Refused, errors.BadRequest)):
@@ -319,8 +384,16 @@ class Keeping:
             at=(x, y, z),
             orientation=pose.orientation_wxyz,
             size=body.size_m,
+            set=(f"{_PART_OF}={whole}",) if whole else (),
         )
         self._change_about((name,), add, adopted)
+
+    def _whole_of(self, body: Body) -> str:
+        """The nearest body that it is part of and that is an entity or may become one; "" for none."""
+        whole = body.part_of
+        while whole in self._foreign and whole in self.scene.bodies:
+            whole = self.scene.bodies[whole].part_of
+        return whole
 
     def _change_about(
         self, names: Collection[str], change: Add | Settled, failed: Callable[[BaseException], None]

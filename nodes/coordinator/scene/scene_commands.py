@@ -39,6 +39,8 @@ class Running:
     def move(self, command: c.Move) -> Future[Moved]:
         """Take a body and put it elsewhere, as a hand would; with what it bears, if that is wanted."""
         require_carrying(command)
+        if self._truth == "replayed":
+            raise errors.Refused("this scene is a replay of the past, and nothing in it can be moved by hand")
         body = self._keeping.scene.bodies.get(command.name)
         if body is None:
             state = self._keeping.body_state(self._door.map.entity(command.name))

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from msgspec import structs
 
 from schemas.entities import Pose
+from schemas.joints import Joint
 from schemas.scenes import Body, Poses, Scene
 
 _STRANGE_NS = 10_000_000_000
@@ -19,6 +20,8 @@ class SceneView:
     def __init__(self) -> None:
         self.known = False
         self.bodies: dict[str, Body] = {}
+        self.left_out: tuple[str, ...] = ()
+        """The named bodies of the world that are only parts of others."""
         self._run = ""
         self._version = -1
         self._stamp_ns = 0
@@ -29,6 +32,7 @@ class SceneView:
             return
         self.known = True
         self.bodies = {body.name: body for body in scene.bodies}
+        self.left_out = scene.left_out
         self._run, self._version, self._stamp_ns = scene.run, scene.version, scene.stamp_ns
 
     def add(self, bodies: Iterable[Body]) -> None:
@@ -49,19 +53,48 @@ class SceneView:
         if (poses.run, poses.version) != (self._run, self._version):
             return None
         self._stamp_ns = poses.stamp_ns
+        joint, jointed = 0, 0
         for i, name in enumerate(poses.names):
             body = self.bodies.get(name)
             resting = poses.resting[i]
-            if body is None or (resting and body.resting and body.commit == poses.commits[i]):
+            joints: tuple[float, ...] = ()
+            joint_commit = 0
+            if body is not None and body.joints:
+                joints = poses.joints[joint : joint + len(body.joints)]
+                joint_commit = poses.joint_commits[jointed]
+                joint, jointed = joint + len(body.joints), jointed + 1
+            if body is None or (
+                resting
+                and body.resting
+                and body.commit == poses.commits[i]
+                and body.joint_commit == joint_commit
+            ):
                 continue
             x, y, z, *orientation = poses.poses[7 * i : 7 * i + 7]
             pose = Pose(position_m=(x, y, z), orientation_wxyz=tuple(orientation))  # type: ignore[arg-type]
-            self.bodies[name] = structs.replace(body, pose=pose, resting=resting, commit=poses.commits[i])
+            self.bodies[name] = structs.replace(
+                body,
+                pose=pose,
+                resting=resting,
+                commit=poses.commits[i],
+                joints=_at(body.joints, joints) if joints else (),
+                joint_commit=joint_commit,
+            )
             changed.add(name)
         return changed
+
+    @property
+    def stamp_ns(self) -> int:
+        """When the poses are from."""
+        return self._stamp_ns
 
     def forget(self) -> None:
         """The simulator is gone."""
         self.known = False
-        self.bodies = {}
+        self.bodies, self.left_out = {}, ()
         self._run, self._version, self._stamp_ns = "", -1, 0
+
+
+def _at(joints: tuple[Joint, ...], positions: tuple[float, ...]) -> tuple[Joint, ...]:
+    """The joints where they are now."""
+    return tuple(structs.replace(j, position=p) for j, p in zip(joints, positions, strict=True))

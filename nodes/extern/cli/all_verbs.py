@@ -12,7 +12,7 @@ import click
 from schemas import errors
 
 _MODULES = {
-    "edit": ("add", "update", "set", "unset", "remove", "clear", "load"),
+    "edit": ("add", "update", "set", "unset", "track", "remove", "clear", "load"),
     "ask": (
         *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
         *("classes", "properties", "status", "sparql", "watch"),
@@ -21,7 +21,9 @@ _MODULES = {
     "past": ("undo", "history", "diff", "when", "last-seen"),
     "run": ("run",),
     "perceive": ("perceive",),
-    "scene": ("move", "pause", "step", "reset", "picture", "replay"),
+    "scene": ("move", "open", "close", "pause", "step", "reset", "picture"),
+    "replay": ("replay",),
+    "movie": ("movie",),
     "lifecycle": ("up", "down", "node", "repair"),
     "keep": ("backup", "restore", "compact"),
     "tbox": ("tbox",),
@@ -29,6 +31,7 @@ _MODULES = {
     "fleet": ("fleet",),
     "mcp": ("mcp",),
     "ros": ("ros", "mcap"),
+    "web": ("web",),
     "approve": ("approve",),
     "completion": ("completion",),
 }

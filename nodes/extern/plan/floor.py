@@ -56,6 +56,11 @@ class Floor:
     unplaced: int = 0
     """Things without a position or a size, which no plan can show."""
 
+    def at(self, point: Point) -> str | None:
+        """The name of what is at a point of the map [m], the uppermost first; of a room, if that is all."""
+        shapes: list[Area | Piece] = [*reversed(self.pieces), *reversed(self.zones), *self.rooms]
+        return next((shape.name for shape in shapes if _contains(shape.outline, point)), None)
+
     @property
     def bounds(self) -> tuple[float, float, float, float]:
         """The least and greatest x, then y, of all but what is in walls; a square metre for an empty plan."""
@@ -110,6 +115,16 @@ def footprint(pose: Pose, size: Size) -> tuple[Point, ...]:
     return tuple(
         hull([(x0 + xx * x + xy * y + xz * z, y0 + yx * x + yy * y + yz * z) for x, y, z in corners])
     )
+
+
+def _contains(outline: Polygon, point: Point) -> bool:
+    """Whether a point lies in a polygon, convex or not: a ray from it crosses an odd number of sides."""
+    px, py = point
+    odd = False
+    for (ax, ay), (bx, by) in zip(outline, (*outline[1:], outline[0]), strict=True):
+        if (ay > py) != (by > py) and px < ax + (py - ay) * (bx - ax) / (by - ay):
+            odd = not odd
+    return odd
 
 
 def _is_upright(wxyz: Quaternion) -> bool:

@@ -15,6 +15,8 @@ from nodes.kb_node.relations.geometry.polygons import Point, Polygon
 
 _SHEETS_MM: Final = ((297.0, 210.0), (210.0, 297.0))
 _MARGIN_MM: Final = 10.0
+_PIXELS_IN_MM: Final = 96.0 / 25.4
+"""CSS pixels."""
 _HEAD_MM, _FOOT_MM, _RULER_MM = 10.0, 9.0, 5.0
 _LEGEND_MM: Final = 52.0
 """The width of the list of what has no room for its name on the plan."""
@@ -67,28 +69,59 @@ text{font-family:Helvetica,Arial,'DejaVu Sans',sans-serif;fill:#1d2430}
 
 
 def drawing(floor: Floor, *, title: str, commit: int, stamp_ns: int) -> str:
-    """The plan of `floor` as an SVG document: one A4 sheet, at the largest usual scale that fits.
+    """The plan of `floor` as an SVG document: see `draw`."""
+    return draw(floor, title=title, commit=commit, stamp_ns=stamp_ns).svg
+
+
+def draw(floor: Floor, *, title: str, commit: int, stamp_ns: int) -> Drawing:
+    """The plan of `floor` on one A4 sheet, at the largest usual scale that fits.
 
     `title` heads the sheet, with the commit that it shows and that commit's time [ns since 1970; 0 for
     unknown]. Names that find no room on the plan are numbers there, and listed beside it.
     """
     sheet = _sheet_for(floor)
-    return "\n".join(
-        (
-            f'<svg xmlns="http://www.w3.org/2000/svg" width="{sheet.wide:g}mm" height="{sheet.high:g}mm" '
-            f'viewBox="0 0 {sheet.wide:g} {sheet.high:g}" role="img" aria-label={quoteattr(title)}>',
-            f"<title>{escape(_plain(title))}</title>",
-            f"<style>{_STYLE}</style>",
-            f'<rect width="{sheet.wide:g}" height="{sheet.high:g}" fill="#fff"/>',
-            *_head(sheet, title, commit, stamp_ns),
-            *_ruler(sheet),
-            *_shapes(sheet, floor),
-            *_names(sheet, floor),
-            *_foot(sheet, floor),
-            "</svg>",
-            "",
-        )
+    lines = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{sheet.wide:g}mm" height="{sheet.high:g}mm" '
+        f'viewBox="0 0 {sheet.wide:g} {sheet.high:g}" role="img" aria-label={quoteattr(_plain(title))}>',
+        f"<title>{escape(_plain(title))}</title>",
+        f"<style>{_STYLE}</style>",
+        f'<rect width="{sheet.wide:g}" height="{sheet.high:g}" fill="#fff"/>',
+        *_head(sheet, title, commit, stamp_ns),
+        *_ruler(sheet),
+        *_shapes(sheet, floor),
+        *_names(sheet, floor),
+        *_foot(sheet, floor),
+        "</svg>",
+        "",
     )
+    return Drawing("\n".join(lines), sheet)
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """An SVG document, and where on it what of the map is."""
+
+    svg: str
+    _sheet: _Paper
+
+    @property
+    def wide_mm(self) -> float:
+        """The width of the sheet."""
+        return self._sheet.wide
+
+    @property
+    def high_mm(self) -> float:
+        """The height of the sheet."""
+        return self._sheet.high
+
+    def pixel(self, point: Point) -> tuple[float, float]:
+        """Where a point of the map [m] is on the picture [CSS pixel, y down]."""
+        x, y = self._sheet.at(point)
+        return (x * _PIXELS_IN_MM, y * _PIXELS_IN_MM)
+
+    def point(self, x: float, y: float) -> Point:
+        """The point of the map [m] that a pixel of the picture shows."""
+        return self._sheet.point((x / _PIXELS_IN_MM, y / _PIXELS_IN_MM))
 
 
 @dataclass(frozen=True)
@@ -126,6 +159,11 @@ class _Paper:
         x0, _, _, y1 = self.bounds
         frame = self.frame
         return (frame.x0 + (point[0] - x0) * self.mm, frame.y0 + (y1 - point[1]) * self.mm)
+
+    def point(self, at: tuple[float, float]) -> Point:
+        x0, _, _, y1 = self.bounds
+        frame = self.frame
+        return (x0 + (at[0] - frame.x0) / self.mm, y1 - (at[1] - frame.y0) / self.mm)
 
     def box(self, outline: Polygon) -> Box:
         return box_of(map(self.at, outline))

@@ -173,6 +173,11 @@ def export(picture: Picture, syntax: RdfFormat) -> Document:
     checked = check(picture.asserted, "semmap")
     if not checked.consistent:
         raise errors.Inconsistent(checked.text, explanation=checked.explanation)
+    return document(picture, syntax)
+
+
+def document(picture: Picture, syntax: RdfFormat) -> Document:
+    """The map as a document, unchecked. Raises Refused for a text that the syntax cannot hold."""
     written = picture.written
     if measured := set(picture.measured()).difference(written):
         written = [*written, *measured]

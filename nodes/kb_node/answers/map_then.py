@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from nodes.kb_node.answers import answers
 from nodes.kb_node.beliefs import UNCHANGED, Beliefs, Believed
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.entities.class_table import ClassTable
@@ -15,9 +16,12 @@ from nodes.kb_node.storage import closure_cache
 from nodes.kb_node.storage.compaction.compaction import asserted_after
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
-from schemas.commands import Sparql
+from ontology import prefixes
+from schemas import errors
+from schemas.commands import Export, Sparql
 from schemas.entities import Entity
 from schemas.explanations import Triple
+from schemas.replies import Document
 from schemas.sparql import SparqlResult
 
 
@@ -44,6 +48,24 @@ def map_then(journal: Journal, past: Past, seq: int, *, inferred: bool) -> MapTh
     there: dict[str, Entity] = {entity.name: entity for entity in past.entities(seq)}
     beliefs.fill(there)
     return MapThen(seq, tuple(asserted), beliefs.all(), tuple(map(Placed.of, there.values())), limits)
+
+
+def export_then(journal: Journal, past: Past, query: Export) -> Document:
+    """What was asserted as of `query.as_of`, as a document; it was checked when it was committed.
+
+    Raises Refused when there was no map, and where what followed is asked for; BadRequest for what is no
+    moment.
+    """
+    assert query.as_of is not None
+    if query.inferred:
+        raise errors.Refused(
+            "what follows can be exported of the map as it is now only; leave out --inferred or --as-of"
+        )
+    seq = past.commit_at(query.as_of)
+    tbox = frozenset(rdf.parse(journal.tbox(seq), f"the TBox in {journal.path}"))
+    abox = sorted(asserted_after(journal, seq) - tbox)
+    used = prefixes.used_by(abox, prefixes.WELL_KNOWN)
+    return answers.document(answers.Picture([], abox, seq, used), query.format)
 
 
 def ask_then(journal: Journal, past: Past, query: Sparql) -> SparqlResult:

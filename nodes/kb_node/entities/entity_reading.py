@@ -16,8 +16,9 @@ from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Star
-from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated
+from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
 from schemas.explanations import Term, Triple
+from schemas.joints import OPENING
 
 _NAME = re.compile(NAME_PATTERN)
 _FEW = 16
@@ -78,6 +79,7 @@ def read_entity(
         preferred=preferred,
         alternatives=_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
         conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
+        tracked=_tracked(iri, said.get(v.TRACKED_FROM, ())),
         properties=classes.stated.stated(said),
     )
 
@@ -103,6 +105,7 @@ def entity_of(
     preferred: Iterable[str],
     alternatives: Iterable[str],
     conflict: str = "",
+    tracked: Tracked = "",
     properties: dict[str, Stated] | None = None,
 ) -> Entity:
     """The entity of a kind whose star says this, all of it by `provenance`.
@@ -120,7 +123,9 @@ def entity_of(
         preferred_reference=min(preferred, default=None),
         alternative_references=tuple(alternatives),
         conflict=conflict,
+        tracked=tracked,
         properties=properties or {},
+        joint_provenance=provenance if properties and not properties.keys().isdisjoint(OPENING) else None,
         place=kind.place,
         fixed=kind.fixed,
         model=kind.model,
@@ -148,6 +153,7 @@ def read_again(reasoner: Reasoner, classes: ClassTable, known: Entity) -> Entity
         pose_provenance=known.pose_provenance,
         shape_provenance=known.shape_provenance,
         reference_provenance=known.reference_provenance,
+        joint_provenance=entity.joint_provenance and known.joint_provenance,
     )
 
 
@@ -171,12 +177,16 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
         known.alternative_references,
     )
     said = entity.provenance
+    same_joints = not (entity.joint_provenance or known.joint_provenance) or all(
+        entity.properties.get(name) == known.properties.get(name) for name in OPENING
+    )
     return structs.replace(
         entity,
         provenance=said if concerned else known.provenance,
         pose_provenance=known.pose_provenance if entity.pose == known.pose else said,
         shape_provenance=known.shape_provenance if same_shape else said,
         reference_provenance=known.reference_provenance if same_references else said,
+        joint_provenance=known.joint_provenance if same_joints else said,
     )
 
 
@@ -323,6 +333,20 @@ def _numbers(iri: Term, predicates: Sequence[Term], said: Objects) -> tuple[floa
             )
         found.append(value)
     return tuple(found) if len(found) == len(predicates) else None
+
+
+def _tracked(iri: Term, terms: Sequence[Term]) -> Tracked:
+    """Raises BadRequest for what is no source of live poses."""
+    if not terms:
+        return ""
+    source = _said(min(terms))
+    if source == "sim":
+        return "sim"
+    if source == "stream":
+        return "stream"
+    raise errors.BadRequest(
+        f"{v.local_name(iri)}: trackedFrom is '{source}'; live poses come from sim or stream"
+    )
 
 
 def _said(term: Term) -> str:

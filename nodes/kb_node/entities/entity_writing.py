@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from nodes.kb_node.entities import aligned, entity_reading
+from nodes.kb_node.entities import aligned, entity_reading, opening
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.entity_reading import Objects
 from nodes.kb_node.entities.property_table import Property
@@ -83,6 +83,8 @@ class Draft:
         self.insert.update(dict.fromkeys(triples))
         for prop, terms in self._typed(new.set, new.name):
             self._come((iri, prop.iri, term) for term in terms)
+        if new.tracked:
+            self.insert[(iri, v.TRACKED_FROM, v.literal(new.tracked))] = None
         for word in new.affordances:
             self.insert[(iri, v.HAS_AFFORDANCE, v.dm(word))] = None
 
@@ -126,6 +128,10 @@ class Draft:
             self._go((iri, v.CONFLICTING_OBSERVATION, o) for o in known)
             if edit.conflict:
                 self._come([(iri, v.CONFLICTING_OBSERVATION, v.literal(edit.conflict))])
+        if edit.tracked is not None and edit.tracked != entity.tracked:
+            self._go((iri, v.TRACKED_FROM, o) for o in said.get(v.TRACKED_FROM, ()))
+            if edit.tracked:
+                self._come([(iri, v.TRACKED_FROM, v.literal(edit.tracked))])
 
     def _require(self, name: str, said: Objects, only_if: Sequence[Statement]) -> None:
         """Raises PreconditionFailed unless each property has one of these values (none, if none is given)."""
@@ -159,6 +165,7 @@ class Draft:
             known = left.get(prop.iri, list(said.get(prop.iri, ())))
             new = [term for term in terms if not any(same(k, term) for k in known)]
             left[prop.iri] = [*([] if prop.functional and new else known), *new]
+        left.update(opening.implied(left, said))
         for property_, now in left.items():
             before = said.get(property_, ())
             self._go((iri, property_, term) for term in before if term not in now)

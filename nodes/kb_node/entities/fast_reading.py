@@ -21,6 +21,8 @@ from schemas.explanations import Term
 Places = tuple[int, ...]
 """Which of a run's other objects."""
 
+_OF_FEW = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM)
+
 
 class _Text(NamedTuple):
     """A reference: the individual that has it, and which of the other objects it is."""
@@ -130,7 +132,7 @@ def _pattern(run: Run, reasoner: Reasoner, classes: ClassTable) -> Pattern | Non
     if not are_entities[0] or any(are_entities[1:]):
         return None
     said = _Said(run)
-    if said.has_conflict or said.speaks(classes.first_words):
+    if said.is_out_of_the_ordinary or said.speaks(classes.first_words):
         return None
     kind = classes.kind(reasoner.types(said.entity), frozenset(said.classes))
     assert kind is not None
@@ -171,9 +173,9 @@ class _Said:
                 self._places.setdefault((subject, p), []).append(next(place))
 
     @property
-    def has_conflict(self) -> bool:
-        """Whether perception is against it."""
-        return any((0, v.CONFLICTING_OBSERVATION) in by for by in (self._nodes, self._places))
+    def is_out_of_the_ordinary(self) -> bool:
+        """Whether it says what few entities do: that perception is against it, or that it is tracked."""
+        return any((0, p) in by for p in _OF_FEW for by in (self._nodes, self._places))
 
     def speaks(self, words: Set[Term]) -> bool:
         """Whether the entity says anything by one of these properties."""

@@ -23,6 +23,7 @@ STRUCTURAL: Mapping[Term, str] = {
     v.HAS_PREFERRED_REFERENCE: "update {name} --ref TEXT",
     v.HAS_ALTERNATIVE_REFERENCE: "update {name} --alt TEXT",
     v.CONFLICTING_OBSERVATION: "update {name} --conflict TEXT",
+    v.TRACKED_FROM: "track {name}",
     v.RDF_TYPE: "update {name} --class CLASS",
 }
 """What makes up an entity's star has options of its own."""

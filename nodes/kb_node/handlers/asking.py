@@ -14,6 +14,7 @@ from nodes.kb_node.answers import answers, beginnings, differences, map_then, qu
 from nodes.kb_node.answers.accounts import Accounts
 from nodes.kb_node.answers.finding import Finding
 from nodes.kb_node.answers.gone import gone
+from nodes.kb_node.answers.live import LiveEntities
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.sightings import Sightings
 from nodes.kb_node.answers.standing_places import StandingPlaces
@@ -82,6 +83,8 @@ class Asking:
         self._past = history.Past(journal)
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
+        self.live = LiveEntities(semantic_map)
+        """To be told where tracked entities are."""
         self._finding = Finding(semantic_map)
         self._understanding = Understanding(semantic_map, self._finding)
         self._then = whereabouts.Then(semantic_map, self._past)
@@ -173,19 +176,26 @@ class Asking:
     def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
         """The entities of a class, now or as of then; with `where` those that are there."""
         if query.as_of is None:
-            return self._now.entities(query)
+            if query.where is None:
+                return self._now.entities(query)
+            with self.live.supposed():
+                return self._now.entities(query)
         return self._aside.submit(self._then.entities, query)
 
     def on_relations(self, query: Relations) -> tuple[Relation, ...] | Future[tuple[Relation, ...]]:
         """Where a thing is relative to others, now or as of then."""
         if query.as_of is None:
-            return self._now.relations(query)
+            with self.live.supposed():
+                return self._now.relations(query)
         return self._aside.submit(self._then.relations, query)
 
     def on_get(self, query: Get) -> Described | Future[Described]:
         """One entity, now or as of then."""
         if query.as_of is None:
-            return self._now.entity(query)
+            if not query.where:
+                return self._now.entity(query)
+            with self.live.supposed():
+                return self._now.entity(query)
         return self._aside.submit(self._then.entity, query)
 
     def on_infer(self, query: Infer) -> Inferred | Future[Inferred]:
@@ -241,7 +251,9 @@ class Asking:
         return self._aside.submit(lambda: answer(questions.copy_of(copied, names), asked))
 
     def on_export(self, query: Export) -> Future[Document]:
-        """The map as a document; checked first, and written beside the node's own work."""
+        """The map as a document, now or as of then; checked first, and written beside the node's own work."""
+        if query.as_of is not None:
+            return self._aside.submit(map_then.export_then, self._journal, self._past, query)
         return self._aside.submit(answers.export, answers.picture(self._map, query.inferred), query.format)
 
     def on_history(self, query: History) -> Future[tuple[LoggedCommit, ...]]:
@@ -257,7 +269,8 @@ class Asking:
 
     def on_find(self, query: Find) -> Found | Future[Found]:
         """What a description means; where nothing fits, also when it was last there."""
-        sought = self._finding.find(query)
+        with self.live.supposed():
+            sought = self._finding.find(query)
         if sought.missing is None:
             return sought.found
         missing, there, limits = sought.missing, frozenset(self._map.names), self._map.classes.limits

@@ -150,10 +150,16 @@ def column(radius: float, bottom: float, top: float, colour: Colour) -> Part:
 
 
 def shifted(parts: Iterable[Part], *, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Parts:
-    """The same parts elsewhere."""
+    """The same parts elsewhere, with their joints."""
+
+    def there(point: Vec3) -> Vec3:
+        return (float(point[0] + x), float(point[1] + y), float(point[2] + z))
+
     return [
         replace(
-            part, centre=(float(part.centre[0] + x), float(part.centre[1] + y), float(part.centre[2] + z))
+            part,
+            centre=there(part.centre),
+            joint=part.joint and replace(part.joint, anchor=there(part.joint.anchor)),
         )
         for part in parts
     ]

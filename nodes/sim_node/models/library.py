@@ -8,7 +8,17 @@ from functools import lru_cache
 
 from nodes.sim_node.models.forms import shifted
 from nodes.sim_node.models.model_table import MODELS, ModelKind
-from nodes.sim_node.models.parts import Inertial, Part, Vec3, bounds, box, inertial, quarter_turned
+from nodes.sim_node.models.parts import (
+    Inertial,
+    Joint,
+    Part,
+    Role,
+    Vec3,
+    bounds,
+    box,
+    inertial,
+    quarter_turned,
+)
 
 FALLBACK_M: Vec3 = (0.3, 0.3, 0.3)
 """The size of a box for a class without a model and an entity without a size."""
@@ -27,13 +37,31 @@ class ModelError(ValueError):
 
 
 @dataclass(frozen=True)
+class Leaf:
+    """What one joint of a model moves, a door or a drawer, and what that weighs."""
+
+    joint: Joint
+    parts: tuple[Part, ...]
+    inertial: Inertial
+
+
+@dataclass(frozen=True)
 class Model:
-    """A model at one size: its parts, what they weigh, and what it really measures along its own axes [m]."""
+    """A model at one size: its parts, what they weigh, and what it really measures along its own axes [m].
+
+    Of a model with joints, `inertial` is that of what no joint moves, whose parts come first.
+    """
 
     name: str
     parts: tuple[Part, ...]
     inertial: Inertial
     size_m: Vec3
+    leaves: tuple[Leaf, ...] = ()
+
+    @property
+    def frame(self) -> tuple[Part, ...]:
+        """The parts that no joint moves."""
+        return tuple(part for part in self.parts if part.joint is None) if self.leaves else self.parts
 
 
 @lru_cache(maxsize=1024)
@@ -77,14 +105,31 @@ def _plain_box(size_m: Vec3) -> Model:
 
 
 def assemble(name: str, parts: Sequence[Part], mass_kg: float) -> Model:
-    """Parts as a model, moved so that the origin is the bottom centre."""
+    """Parts as a model, moved so that the origin is the bottom centre.
+
+    The mass is shared out by the volumes of what collides.
+    """
     low, high = bounds(parts)
     parts = shifted(parts, x=-(low[0] + high[0]) / 2, y=-(low[1] + high[1]) / 2, z=-low[2])
     low, high = bounds(parts)
     mass_kg = min(max(mass_kg, 0.002), 5000.0)
+    frame = [part for part in parts if part.joint is None]
+    joints = dict.fromkeys(part.joint for part in parts if part.joint is not None)
+    share = mass_kg / sum(part.volume for part in parts if part.role is not Role.SEEN)
+    leaves = tuple(_leaf(joint, [part for part in parts if part.joint == joint], share) for joint in joints)
     return Model(
         name=name,
-        parts=tuple(parts),
-        inertial=inertial(parts, mass_kg),
+        parts=(*frame, *(part for leaf in leaves for part in leaf.parts)),
+        inertial=_weighed(frame, share) if leaves else inertial(parts, mass_kg),
         size_m=(float(high[0] - low[0]), float(high[1] - low[1]), float(high[2] - low[2])),
+        leaves=leaves,
     )
+
+
+def _leaf(joint: Joint, parts: Sequence[Part], density: float) -> Leaf:
+    return Leaf(joint, tuple(parts), _weighed(parts, density))
+
+
+def _weighed(parts: Sequence[Part], density: float) -> Inertial:
+    volume = sum(part.volume for part in parts if part.role is not Role.SEEN)
+    return inertial(parts, max(density * volume, 0.001))

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,8 +47,29 @@ class Mesh:
 
 
 @dataclass(frozen=True)
+class Joint:
+    """How some parts of a model move against the rest; where they are drawn, the joint is at 0.
+
+    A hinge turns about `axis` through `anchor` [m], a slide shifts along it. `range` is from the least to
+    the greatest position [rad, m], `closed` the end of it at which what moves is shut. `friction` [N m, N]
+    holds it where it was left.
+    """
+
+    name: str
+    kind: Literal["hinge", "slide"]
+    anchor: Vec3
+    axis: Vec3
+    range: tuple[float, float]
+    closed: float = 0.0
+    friction: float = 0.5
+
+
+@dataclass(frozen=True)
 class Part:
-    """One primitive or mesh of a model; `centre` and `half` in metres, `turn` a unit quaternion wxyz."""
+    """One primitive or mesh of a model; `centre` and `half` in metres, `turn` a unit quaternion wxyz.
+
+    Parts that move together have equal joints.
+    """
 
     shape: Shape
     half: Vec3
@@ -56,6 +78,7 @@ class Part:
     turn: Quat = UPRIGHT
     role: Role = Role.BOTH
     mesh: Mesh | None = None
+    joint: Joint | None = None
 
     @property
     def volume(self) -> float:
@@ -143,14 +166,39 @@ ALONG_Y: Quat = about("x", -math.pi / 2)
 def quarter_turned(parts: Iterable[Part]) -> Parts:
     """The model turned by -90 degrees about z, so that its front faces -y."""
     turn = about("z", -math.pi / 2)
+
+    def turned(vector: Vec3) -> Vec3:
+        return (vector[1], -vector[0], vector[2])
+
     return [
         replace(
             part,
-            centre=(part.centre[1], -part.centre[0], part.centre[2]),
+            centre=turned(part.centre),
             turn=product(turn, part.turn),
+            joint=part.joint
+            and replace(part.joint, anchor=turned(part.joint.anchor), axis=turned(part.joint.axis)),
         )
         for part in parts
     ]
+
+
+def moving(joint: Joint, parts: Part | Iterable[Part]) -> Parts:
+    """The same parts, carried by a joint."""
+    return [replace(part, joint=joint) for part in ([parts] if isinstance(parts, Part) else parts)]
+
+
+def moved(part: Part, position: float) -> Part:
+    """A part where it is when its joint is at `position` [rad, m]; what has no joint stays."""
+    joint = part.joint
+    if joint is None or position == 0.0:
+        return part
+    axis, anchor, centre = (np.asarray(v) for v in (joint.axis, joint.anchor, part.centre))
+    if joint.kind == "slide":
+        return replace(part, centre=_vec3(centre + position * axis))
+    x, y, z = math.sin(position / 2) * axis
+    turn: Quat = (math.cos(position / 2), float(x), float(y), float(z))
+    centre = anchor + rotation_matrix(turn) @ (centre - anchor)
+    return replace(part, centre=_vec3(centre), turn=product(turn, part.turn))
 
 
 def product(a: Quat, b: Quat) -> Quat:

@@ -150,8 +150,11 @@ def _set_frames(
 
 @lru_cache(maxsize=256)
 def compiled_alone(model: Model) -> mujoco.MjModel | None:
-    """A MuJoCo model of nothing but this one body, free; None if it has meshes, which no berth knows."""
-    if any(part.mesh for part in model.parts):
+    """A MuJoCo model of nothing but this one body, free.
+
+    None if it has meshes, which no berth knows, or joints, whose bodies no berth has.
+    """
+    if model.leaves or any(part.mesh for part in model.parts):
         return None
     spec = mujoco.MjSpec()
     x, y, z = model.inertial.centre_m

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
+from itertools import combinations
 from typing import TypeVar
 
 import mujoco
 
 from nodes.sim_node.bodies import BodyRecord, frame_of
-from nodes.sim_node.models.library import Model
+from nodes.sim_node.models.library import Leaf, Model
 from nodes.sim_node.models.parts import Mesh, Part, Role, Shape, Vec3
 from schemas.entities import Pose
 
@@ -26,6 +28,7 @@ _GROUP = {Role.BOTH: 0, Role.SEEN: 2, Role.FELT: 3}
 FELT_GROUP = _GROUP[Role.FELT]
 """The geom group that no camera sees."""
 
+_JOINT = {"hinge": mujoco.mjtJoint.mjJNT_HINGE, "slide": mujoco.mjtJoint.mjJNT_SLIDE}
 _WIDTH = {
     int(mujoco.mjtJoint.mjJNT_FREE): (7, 6),
     int(mujoco.mjtJoint.mjJNT_BALL): (4, 3),
@@ -62,11 +65,13 @@ def add_bodies(spec: mujoco.MjSpec, newcomers: Sequence[tuple[BodyRecord, Model,
     for record, model, pose in newcomers:
         if any(part.mesh for part in model.parts):  # meshes are shared, so they are known to the whole
             add_body(spec, record, model, pose)
+        if model.leaves:
+            _let_pass(spec, record.name, model)
 
 
 def _attach(spec: mujoco.MjSpec, batch: mujoco.MjSpec) -> None:
     """Take over all bodies of a small specification, with their names."""
-    names = [(element, element.name) for element in (*batch.worldbody.bodies, *batch.joints)]
+    names = [(element, element.name) for element in (*batch.bodies[1:], *batch.joints)]
     spec.attach(batch, prefix=f"batch{len(spec.frames)}/", frame=spec.worldbody.add_frame())
     for element, name in names:
         element.name = name
@@ -81,10 +86,53 @@ def add_body(spec: mujoco.MjSpec, record: BodyRecord, model: Model, pose: Pose) 
         joint.damping = [max(model.inertial.moments) / _SPIN_S, 0.0, 0.0]
     body.explicitinertial, body.ipos, body.iquat = True, [0.0] * 3, [1.0, 0.0, 0.0, 0.0]
     body.mass, body.inertia = model.inertial.mass_kg, list(model.inertial.moments)
-    for part in model.parts:
+    for part in model.frame:
         if part.mesh is not None:
             add_mesh(spec, part.mesh)
         add_part(body, part, origin_m=record.origin_m, ghost=record.ghost)
+    for leaf in model.leaves:
+        _add_leaf(spec, body, record, leaf)
+
+
+def leaf_name(body: str, joint: str) -> str:
+    """What a joint and what it moves are called in MuJoCo; no entity has a slash in its name."""
+    return f"{body}/{joint}"
+
+
+def _add_leaf(spec: mujoco.MjSpec, body: mujoco.MjsBody, record: BodyRecord, leaf: Leaf) -> None:
+    """What a joint moves, as a body within the body; its frame, too, is its centre of mass."""
+    x, y, z = (-centre for centre in leaf.inertial.centre_m)
+    position = [shift - own for shift, own in zip(record.origin_m, (x, y, z), strict=True)]
+    name = leaf_name(record.name, leaf.joint.name)
+    child = body.add_body(name=name, pos=position)
+    child.explicitinertial, child.ipos, child.iquat = True, [0.0] * 3, [1.0, 0.0, 0.0, 0.0]
+    child.mass, child.inertia = leaf.inertial.mass_kg, list(leaf.inertial.moments)
+    joint = child.add_joint(
+        name=name,
+        type=_JOINT[leaf.joint.kind],
+        pos=[at + shift for at, shift in zip(leaf.joint.anchor, (x, y, z), strict=True)],
+        axis=list(leaf.joint.axis),
+        limited=mujoco.mjtLimited.mjLIMITED_TRUE,
+        range=[_as_compiled(spec, leaf.joint.kind, limit) for limit in leaf.joint.range],
+        frictionloss=leaf.joint.friction,
+    )
+    joint.damping = [0.1 * leaf.joint.friction, 0.0, 0.0]
+    for part in leaf.parts:
+        if part.mesh is not None:
+            add_mesh(spec, part.mesh)
+        add_part(child, part, origin_m=(x, y, z), ghost=record.ghost)
+
+
+def _as_compiled(spec: mujoco.MjSpec, kind: str, limit: float) -> float:
+    """A limit in the unit in which a specification's angles are."""
+    return math.degrees(limit) if kind == "hinge" and spec.compiler.degree else limit
+
+
+def _let_pass(spec: mujoco.MjSpec, name: str, model: Model) -> None:
+    """A door does not collide with its own frame, nor one drawer with the next."""
+    bodies = [name, *(leaf_name(name, leaf.joint.name) for leaf in model.leaves)]
+    for one, other in combinations(bodies, 2):
+        spec.add_exclude(bodyname1=one, bodyname2=other)
 
 
 def add_spares(spec: mujoco.MjSpec, parts: Sequence[tuple[bool, int]]) -> list[str]:

@@ -12,7 +12,8 @@ from nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_
 from nodes.sim_node.models.library import Model
 from nodes.sim_node.physics import base_scene, body_slots, build, sleep
 from nodes.sim_node.physics.body_slots import Berth
-from nodes.sim_node.physics.rest import RestWatch
+from nodes.sim_node.physics.drives import STEPS_A_PUSH, Drives
+from nodes.sim_node.physics.rest import JointWatch, RestWatch
 from nodes.sim_node.placement.obstacles import Stage
 from nodes.sim_node.vision.view import View
 from schemas.entities import Pose
@@ -27,15 +28,23 @@ class Engine:
     every change of the model; while the next is made (`compiling`) bodies are asked about and stepped only.
     """
 
-    def __init__(self, ground: mujoco.MjSpec, meanwhile: Callable[[], None]) -> None:
-        """A world of nothing but its ground yet; `meanwhile` is called while it compiles, and may `step`."""
+    def __init__(
+        self,
+        ground: mujoco.MjSpec,
+        meanwhile: Callable[[], None],
+        is_class: Callable[[str], bool] = lambda word: False,
+    ) -> None:
+        """A world of nothing but its ground yet; `meanwhile` is called while it compiles, and may `step`.
+
+        `is_class` tells the names of classes, by which parts of the world's bodies are bodies of their own.
+        """
         base_scene.prepare(ground)
         self._meanwhile = meanwhile
         self._ground = ground
         self._shapes: dict[str, Model] = {}
         self._berths: dict[str, Berth] = {}
         self._vacant: list[Berth] = []
-        self.records = base_scene.bodies_of(ground)
+        self.records = base_scene.bodies_of(ground, is_class)
         self.revision = 0
         self.compiling = False
         self.model: mujoco.MjModel
@@ -43,11 +52,17 @@ class Engine:
         self.index: BodyIndex
         self._compile({name: record.ordered for name, record in self.records.items()})
         self._rest = RestWatch(self.poses(), self.data.time)
-        self.resting: NDArray[np.bool_] = self.index.qpos < 0
+        self._joint_rest = JointWatch(self.positions(), self.data.time)
+        self._drives = Drives()
+        self.resting: NDArray[np.bool_] = self.index.tree < 0
 
     def poses(self) -> Floats:
         """(N, 7): bottom centre [m] and quaternion wxyz of each body, map frame."""
         return self.index.poses(self.data)
+
+    def positions(self) -> Floats:
+        """(J,): where each joint of a body stands [rad, m], in the order of the index."""
+        return self.index.positions(self.data)
 
     def stage(self) -> Stage:
         """The scene as it is now, for questions of who is in whose way."""
@@ -73,13 +88,16 @@ class Engine:
     def remove(self, names: Sequence[str]) -> None:
         """Take bodies out."""
         own = [name for name in names if name not in self._shapes]
+        jointed = any(self._shapes[name].leaves for name in names if name in self._shapes)
         for name in names:
+            self._drives.stop(self.records[name].joint_names)
             self._leave(name)
             self._shapes.pop(name, None)
             del self.records[name]
         for name in own:
-            self._ground.delete(self._ground.body(name))
-        if own:
+            if (body := self._ground.body(name)) is not None:  # else it went with what it was part of
+                self._ground.delete(body)
+        if own or jointed:
             self._recompile({})
         else:
             self._renew()
@@ -99,6 +117,30 @@ class Engine:
             )
             self.data.qvel[dof : dof + 6] = 0.0
             self.data.qacc_warmstart[dof : dof + 6] = 0.0
+
+    def drive(self, name: str, targets: Mapping[str, float]) -> None:
+        """Begin to move joints of a body, by their own names, to these positions [rad, m]."""
+        record = self.records[name]
+        of = {
+            joint.name: in_mujoco for joint, in_mujoco in zip(record.joints, record.joint_names, strict=True)
+        }
+        self._drives.begin({of[joint]: position for joint, position in targets.items()}, self.data.time)
+        rows = [self.index.joint_row[of[joint]] for joint in targets]
+        for row in rows:
+            sleep.wake(self.data, int(self.model.dof_treeid[self.index.joint_dof[row]]))
+        self._joint_rest.disturb(rows, self.data.time)
+        self.resting[self.index.row[name]] = False
+
+    def set_joints(self, names: Iterable[str]) -> None:
+        """Put the joints of these bodies where their records say, with no speed."""
+        for name in names:
+            record = self.records[name]
+            self._drives.stop(record.joint_names)
+            for joint, in_mujoco in zip(record.joints, record.joint_names, strict=True):
+                row = self.index.joint_row[in_mujoco]
+                if joint.kind != "ball":
+                    self.data.qpos[self.index.joint_qpos[row]] = joint.position
+                    self.data.qvel[self.index.joint_dof[row]] = 0.0
 
     def lift(self, row: int, rise_m: float) -> None:
         """Raise a free body."""
@@ -143,7 +185,9 @@ class Engine:
         self._compile(now)
         slept = sleep.drowsy(data, index.tree)
         self.data.time = data.time
-        build.carry_joints(model, data, self.model, self.data, [joint.name for joint in self._ground.joints])
+        joints = [name for record in self.records.values() for name in record.joint_names]
+        kept = dict.fromkeys([*(joint.name for joint in self._ground.joints), *joints])
+        build.carry_joints(model, data, self.model, self.data, kept)
         before, names, free = self._rows_in(index), self.index.names, self.index.qpos >= 0
         stays = free & np.append(index.qpos >= 0, False)[before] & ~np.isin(names, list(poses))
         self.put({names[row]: now[names[row]] for row in np.flatnonzero(free & ~stays)})
@@ -151,6 +195,7 @@ class Engine:
             to, of = getattr(self.index, address)[stays], getattr(index, address)[before[stays]]
             offsets = np.arange(width)
             getattr(self.data, field)[to[:, None] + offsets] = getattr(data, field)[of[:, None] + offsets]
+        self.set_joints(name for name in poses if name not in index.row and self.records[name].joints)
         mujoco.mj_kinematics(self.model, self.data)
         sleep.lull(self.data, self.index.tree[stays & np.append(slept, False)[before]])
         self._follow(before)
@@ -163,7 +208,8 @@ class Engine:
         finally:
             self.compiling = False
         self.data = mujoco.MjData(self.model)
-        self._berths = {name: Berth.of(self.model, name) for name in self._shapes}
+        berthed = [name for name, shape in self._shapes.items() if not shape.leaves]
+        self._berths = {name: Berth.of(self.model, name) for name in berthed}
         self._vacant = [Berth.of(self.model, name) for name in spares]
         for berth in self._vacant:
             body_slots.clear(self.model, self.data, berth)
@@ -178,7 +224,7 @@ class Engine:
         build.add_bodies(spec, made)
         spares = build.add_spares(spec, body_slots.spare_parts(len(made)))
         for name, record in self.records.items():
-            if record.static and name not in self._shapes:
+            if record.static and not record.anchored and name not in self._shapes:
                 build.set_standing(spec, record, poses[name])
         build.set_memory(spec, len(self.records) + len(spares))
         return spec.compile(), spares
@@ -205,7 +251,8 @@ class Engine:
         """Those who were there, in the rows `before`, and rested rest on."""
         self._rest = self._rest.carried(self.poses(), self.data.time, before)
         rested = np.append(self.resting, False)[before]
-        self.resting = (self.index.qpos < 0) | rested
+        self._joint_rest = JointWatch(self.positions(), self.data.time)
+        self.resting = (self.index.tree < 0) | rested
 
     def aim(self, camera: str, view: View) -> None:
         """Put a camera of the ground where the view is seen from."""
@@ -222,17 +269,24 @@ class Engine:
             if self.asleep:
                 self.data.time = end
             else:
-                before = self.data.qpos.copy()
-                mujoco.mj_step(self.model, self.data, nstep=min(left, _STEPS_A_LOOK))
+                before, most = self.data.qpos.copy(), _STEPS_A_LOOK
+                if self._drives:
+                    self._drives.push(self.model, self.data, self.index)
+                    most = STEPS_A_PUSH
+                mujoco.mj_step(self.model, self.data, nstep=min(left, most))
                 if not np.isfinite(self.data.qpos).all():
                     self._calm(before)
             asleep = sleep.sleeping(self.data, self.index.tree)
             self.resting = self._rest.update(self.poses(), self.data.time, asleep)
+            if len(self.index.joint):
+                still = self._joint_rest.update(self.positions(), self.data.time)
+                still[self._drives.rows(self.index)] = False
+                self.resting[self.index.joint_body[~still]] = False
 
     @property
     def asleep(self) -> bool:
         """Nothing moves: every body sleeps, and none is about to be woken."""
-        return sleep.all_asleep(self.data)
+        return not self._drives and sleep.all_asleep(self.data)
 
     @property
     def awake(self) -> int:
@@ -248,7 +302,7 @@ class Engine:
     def disturb(self, rows: Sequence[int]) -> None:
         """These bodies were taken in hand: those that are free do not rest before they were still anew."""
         self._rest.disturb(list(rows), self.data.time)
-        self.resting[list(rows)] = self.index.qpos[list(rows)] < 0
+        self.resting[list(rows)] = self.index.tree[list(rows)] < 0
 
     def _calm(self, before: Floats) -> None:
         """A body whose motion ran out of bounds stops where it was a step ago."""

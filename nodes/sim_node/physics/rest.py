@@ -45,3 +45,23 @@ class RestWatch:
     def disturb(self, rows: list[int], time_s: float) -> None:
         """These were taken in hand: they do not rest before they have been still anew."""
         self._since_s[rows] = time_s
+
+
+class JointWatch:
+    """Watches J joints in the same way: each is compared with where it last counted as having moved."""
+
+    def __init__(self, positions: Floats, time_s: float) -> None:
+        """`positions` (J,) [rad, m]."""
+        self._anchor = positions.copy()
+        self._since_s = np.full(len(positions), time_s)
+
+    def update(self, positions: Floats, time_s: float) -> NDArray[np.bool_]:
+        """(J,) which joints rest at `time_s`."""
+        moved = np.abs(positions - self._anchor) > STILL_M
+        self._anchor[moved] = positions[moved]
+        self._since_s[moved] = time_s
+        return np.asarray(time_s - self._since_s >= ASLEEP_S)
+
+    def disturb(self, rows: list[int], time_s: float) -> None:
+        """These were taken in hand: they do not rest before they have been still anew."""
+        self._since_s[rows] = time_s

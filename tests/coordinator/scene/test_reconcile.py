@@ -207,3 +207,30 @@ def test_what_one_commit_brings_and_puts_elsewhere_is_set_down_together():
     assert [p.name for p in look([cup, other], [body("chair1", at(3))]).place] == ["chair1"]
     furniture = look([cup, table], [body("table1", at(3), of_entity=False)])
     assert [p.name for p in furniture.place] == ["table1"]
+
+
+def test_what_is_tracked_from_a_stream_does_not_follow_its_body():
+    robot = structs.replace(entity("chair1", at(0.0)), tracked="stream")
+    for truth in ("map", "scene", "perceived"):
+        assert look([robot], [body("chair1", at(2.0))], truth).follow == ()
+
+
+def test_what_is_tracked_from_the_simulator_is_followed_where_it_rests_whatever_the_truth_is():
+    robot = structs.replace(entity("chair1", at(0.0)), tracked="sim")
+    for truth in ("map", "scene", "perceived"):
+        assert [p.name for p in look([robot], [body("chair1", at(2.0))], truth).follow] == ["chair1"]
+        assert look([robot], [body("chair1", at(2.0), resting=False)], truth).follow == ()
+    assert look([entity("chair1", at(0.0))], [body("chair1", at(2.0))], "perceived") == Actions()
+
+
+@given(st.data())
+def test_a_map_that_is_replayed_orders_every_pose_and_follows_nothing(data):
+    here, there = Pose(position_m=(0.0, 0.0, 0.0)), Pose(position_m=(1.0, 0.0, 0.0))
+    source = data.draw(st.sampled_from(["operator", "scene", "perception"]))
+    pushed = look([entity("cup1", here, posed=1)], [body("cup1", there, commit=1)], "replayed")
+    assert pushed == Actions()
+    moved = look([entity("cup1", there, posed=2, source=source)], [body("cup1", here, commit=1)], "replayed")
+    assert [(p.name, p.pose, p.commit) for p in moved.place] == [("cup1", there, 2)]
+    assert moved == Actions(place=moved.place)
+    assert look([entity("cup1", here)], [], "replayed").spawn
+    assert look([], [body("cup1", here)], "replayed").delete == ("cup1",)

@@ -10,10 +10,12 @@ from schemas.explanations import Explanation
 from schemas.happenings import Difference
 from schemas.language import Found
 from schemas.relations import Relation
-from schemas.replies import Changed, Inferred
+from schemas.replies import Changed, Inferred, LoggedCommit
 
 _MOST = 20
 """Lines of what would follow, or would no longer; names of what a thing bears."""
+_FEW_ENTITIES = 6
+"""Entities of which it is said what a commit did to them."""
 _BEARS = {"isOn": "supports", "isInside": "holds"}
 """By relation, what the other thing does."""
 
@@ -41,6 +43,20 @@ def difference(found: Difference) -> Iterable[str]:
     count = wording.entities(len(about)) if about else "nothing"
     times = f"{_clock(found.first_ns)} and {_clock(found.last_ns)}"
     yield f"{count} changed between commits {found.first} and {found.last} ({times})"
+
+
+def touched(commit: LoggedCommit) -> str:
+    """What was and what is, of a few entities; of the others their number."""
+    about: dict[str, list[str]] = {}
+    for change in commit.changes:
+        about.setdefault(change.name, []).append(change.text)
+    said = [f"{name}: {'; '.join(texts)}" for name, texts in list(about.items())[:_FEW_ENTITIES]]
+    touched = len({*commit.changed, *commit.removed})
+    if touched > len(said):
+        said.append(f"{touched - len(said)} more" if said else wording.entities(touched))
+    if commit.tbox:
+        said.append("another TBox")
+    return ", ".join(said) or f"+{commit.inserted} -{commit.retracted} triples"
 
 
 def _clock(stamp_ns: int) -> str:

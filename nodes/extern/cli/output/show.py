@@ -10,19 +10,21 @@ from rich.table import Table
 from rich.text import Text
 from rich.tree import Tree
 
-from nodes.extern.cli.output.tables import (
+from nodes.extern.cli.output.tables import card, printable, table
+from nodes.extern.phrasing import (
     author,
-    card,
+    english,
+    labelled,
     pose_cells,
     pose_text,
-    printable,
     provenance_text,
-    table,
+    size_text,
 )
 from schemas import wording
 from schemas.changes import value_in_words
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, PropertyInfo, Value
+from schemas.joints import in_words
 from schemas.relations import Described, Relation
 from schemas.replies import SystemStatus
 
@@ -47,7 +49,8 @@ def entity_table(entities: Iterable[Entity]) -> Table:
     for column in rows.columns[2:6]:
         column.justify = "right"
     for e in entities:
-        rows.add(e.name, e.class_, *pose_cells(e.pose), _size(e), e.preferred_reference or "", _body(e))
+        pose = e.pose if e.live is None else e.live.pose
+        rows.add(e.name, e.class_, *pose_cells(pose), size_text(e), e.preferred_reference or "", _body(e))
     return rows
 
 
@@ -72,21 +75,37 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "class": e.class_,
         "types": ", ".join(e.types),
         "pose": pose_text(e.pose),
-        "size": (_size(e) or "unknown") + own_size,
+        **({"live": _live(e)} if e.tracked else {}),
+        "size": (size_text(e) or "unknown") + own_size,
         **({"where": where} if (where := _where(e)) else {}),
         **({"but": "; ".join(doubts)} if (doubts := (*(r.text for r in e.denied), *e.withheld)) else {}),
         "reference": e.preferred_reference or "none",
         "also called": ", ".join(e.alternative_references) or "-",
         **_stated(e, {p.name: p for p in properties}),
         "body": body,
+        **(
+            {"joints": ", ".join(map(in_words, e.body.joints))}
+            if e.body is not None and e.body.joints
+            else {}
+        ),
         **({"perception": e.conflict} if e.conflict else {}),
         "model": "-" if e.place else _model(e),
         "last change": provenance_text(e.provenance),
         "pose set": provenance_text(e.pose_provenance),
         "class and size set": provenance_text(e.shape_provenance),
         "reference set": provenance_text(e.reference_provenance),
+        **({"joints set": provenance_text(e.joint_provenance)} if e.joint_provenance is not None else {}),
     }
     return card(rows)
+
+
+def _live(e: Entity) -> str:
+    """Where it is just now, how old that is and where it comes from."""
+    source = "the simulator" if e.tracked == "sim" else "a stream of poses"
+    if e.live is None:
+        return f"tracked from {source}, which has told nothing yet"
+    stale = " (stale)" if e.live.stale else ""
+    return f"{pose_text(e.live.pose)}; {wording.duration(e.live.age_s)} ago{stale}, from {source}"
 
 
 def _stated(e: Entity, properties: Mapping[str, PropertyInfo]) -> dict[str, str]:
@@ -95,9 +114,9 @@ def _stated(e: Entity, properties: Mapping[str, PropertyInfo]) -> dict[str, str]
     for name, stated in e.properties.items():
         known = properties.get(name)
         values = stated if isinstance(stated, tuple) else (stated,)
-        label = _english(known.labels) if known else ""
-        rows[_labelled(name, label)] = ", ".join(
-            _labelled(value_in_words(value), _label(known, value)) for value in values
+        label = english(known.labels) if known else ""
+        rows[labelled(name, label)] = ", ".join(
+            labelled(value_in_words(value), _label(known, value)) for value in values
         )
     return rows
 
@@ -106,21 +125,13 @@ def _label(known: PropertyInfo | None, value: Value) -> str:
     return known.values.get(str(value), "") if known is not None else ""
 
 
-def _labelled(name: str, label: str) -> str:
-    return f"{name} ({label})" if label and label != name else name
-
-
-def _english(labels: Mapping[str, str]) -> str:
-    return labels.get("en") or labels.get("") or next(iter(labels.values()), "")
-
-
 def property_table(properties: Iterable[PropertyInfo]) -> Table:
     """One row a property."""
     rows = table("property", "label", "of", "takes", "values", fold=("label", "of", "takes"))
     for p in properties:
         takes = ", ".join(p.range) or ("a value" if p.kind == "data" else "an individual")
         often = "one" if p.functional else "any number"
-        rows.add(p.name, _english(p.labels), ", ".join(p.domain), takes, often)
+        rows.add(p.name, english(p.labels), ", ".join(p.domain), takes, often)
     return rows
 
 
@@ -192,11 +203,6 @@ def commit_line(commit: Commit) -> str:
     shown = " ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
     line = f"{stamp}  commit {commit.seq}  {author(commit)}: {commit.reason}  [{counts}]  {shown}"
     return printable(line).plain
-
-
-def _size(e: Entity) -> str:
-    extents = e.size_m or ()
-    return " x ".join(f"{extent:.3g}" if extent < 100 else f"{extent:.0f}" for extent in extents)
 
 
 def _where(e: Described) -> str:

@@ -6,11 +6,10 @@ from collections.abc import Iterable
 
 from rich.table import Table
 
-from nodes.extern.cli.output.tables import author, card, moment, pose_text, provenance_text, table
-from schemas import wording
+from nodes.extern.cli.output.lines import touched
+from nodes.extern.cli.output.tables import card, table
+from nodes.extern.phrasing import author, moment, pose_text, provenance_text
 from schemas.replies import LoggedCommit, Sighting
-
-_FEW = 6
 
 
 def history_table(commits: Iterable[LoggedCommit]) -> Table:
@@ -25,25 +24,11 @@ def history_table(commits: Iterable[LoggedCommit]) -> Table:
             author(c),
             c.reason,
             "" if c.confidence is None else f"{c.confidence:.2f}",
-            _what(c),
+            touched(c),
         )
         for note in c.notes:
             rows.add("", "", "", "", "", f"note: {note}")
     return rows
-
-
-def _what(commit: LoggedCommit) -> str:
-    """What was and what is, of a few entities; of the others their number."""
-    about: dict[str, list[str]] = {}
-    for change in commit.changes:
-        about.setdefault(change.name, []).append(change.text)
-    said = [f"{name}: {'; '.join(texts)}" for name, texts in list(about.items())[:_FEW]]
-    touched = len({*commit.changed, *commit.removed})
-    if touched > len(said):
-        said.append(f"{touched - len(said)} more" if said else wording.entities(touched))
-    if commit.tbox:
-        said.append("another TBox")
-    return ", ".join(said) or f"+{commit.inserted} -{commit.retracted} triples"
 
 
 def sighting_card(s: Sighting) -> Table:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
@@ -15,10 +13,6 @@ from rich.text import Text
 
 from nodes.extern.cli.output import plain
 from nodes.extern.cli.output.printable import escaped
-from schemas import agents
-from schemas.commits import Commit
-from schemas.entities import Pose, Provenance
-from schemas.replies import LoggedCommit
 
 _NARROWEST = 8
 """Characters: a column that folds keeps so many, if it has them."""
@@ -84,42 +78,3 @@ def card(rows: Mapping[str, str]) -> Table:
     for key, value in rows.items():
         lines.add_row(key, printable(value))
     return lines
-
-
-def pose_cells(pose: Pose | None) -> tuple[str, str, str, str]:
-    """x, y, z [m] and yaw [degrees]."""
-    if pose is None:
-        return ("-", "-", "-", "-")
-    x, y, z = (_plain(value, 3) for value in pose.position_m)
-    return (x, y, z, _plain(math.degrees(pose.yaw_rad), 0))
-
-
-def pose_text(pose: Pose | None) -> str:
-    """A pose in one line."""
-    return "none" if pose is None else "({}, {}, {}) m, yaw {}°".format(*pose_cells(pose))
-
-
-def provenance_text(p: Provenance) -> str:
-    """Which commit, when, who, why and how sure, in one line."""
-    if p.commit == 0:
-        return p.reason
-    sure = "" if p.confidence is None else f" (confidence {p.confidence:.2f})"
-    return f"commit {p.commit}, {moment(p.stamp_ns)}, {author(p)}: {p.reason}{sure}"
-
-
-def author(p: Provenance | Commit | LoggedCommit) -> str:
-    """The source with the agent: `@bob` if a certificate has proved the name, `bob` if it was claimed."""
-    if not p.agent:
-        return p.source
-    proved = not isinstance(p, Provenance) and p.authenticated
-    return f"{p.source}/{agents.proved(p.agent) if proved else p.agent}"
-
-
-def moment(stamp_ns: int) -> str:
-    """A time, local, as `--as-of` takes it."""
-    return time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(stamp_ns // 1_000_000_000))
-
-
-def _plain(value: float, digits: int) -> str:
-    """Rounded, and never minus zero."""
-    return f"{round(value, digits) + 0.0:.{digits}f}"

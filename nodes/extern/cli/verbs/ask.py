@@ -207,10 +207,11 @@ def _beside_nothing(client: Client, name: str) -> str:
 @click.argument("file", type=click.Path(path_type=Path))
 @_format(type=click.Choice(commands.RDF_FORMATS), help="Default: by the file's suffix, else rdfxml.")
 @click.option("--inferred", is_flag=True, help="Include inferred facts.")
+@_as_of
 @talks
-def export(client: Client, file: Path, format: Any, inferred: bool) -> None:
+def export(client: Client, file: Path, format: Any, inferred: bool, as_of: str | None) -> None:
     """Export the map to FILE, checked for consistency first."""
-    document = client.export(format or _format_of(file), inferred=inferred)
+    document = client.export(format or _format_of(file), inferred=inferred, as_of=as_of)
     write_atomically(file, document.content)
     print(f"wrote {document.triples} triples to {file} (commit {document.seq})")
 

@@ -1,4 +1,4 @@
-"""The verbs that change the map: `add`, `update`, `set`, `unset`, `remove`, `clear`, `load`."""
+"""The verbs that change the map: `add`, `update`, `set`, `unset`, `track`, `remove`, `clear`, `load`."""
 
 from __future__ import annotations
 
@@ -58,6 +58,9 @@ _describing = _options(
 @click.argument("name", required=False)
 @_describing
 @_set
+@click.option(
+    "--track", type=click.Choice(["stream", "sim"]), help="Track it from the start (see: semmap track)."
+)
 @click.option("--default", is_flag=True, help="Use the next free place and the class's label as reference.")
 @_dry_run
 @talks
@@ -120,6 +123,28 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
 def unset(client: Client, **fields: Any) -> None:
     """Take back one value of an entity's property, or all."""
     print_lines(lines.changed(client.unset(**_stated(fields))))
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@click.option(
+    "--from",
+    "from_",
+    type=click.Choice(["stream", "sim"]),
+    default="stream",
+    show_default=True,
+    help="Who tells its pose: programs that publish it, or the simulator.",
+)
+@click.option("--off", is_flag=True, help="Stop tracking it; it stays where it was last.")
+@_id
+@_dry_run
+@talks
+def track(client: Client, **fields: Any) -> None:
+    """Let an entity's pose come live, on semmap/live/NAME.
+
+    The newest pose wins and costs no commit; where the entity stops, its pose is committed.
+    """
+    print_lines(lines.changed(client.track(**given(fields))))
 
 
 @click.command()

@@ -1,4 +1,4 @@
-"""The verbs about the scene: `move`, `pause`, `step`, `reset`, `picture`, `replay`."""
+"""The verbs about the scene: `move`, `open`, `close`, `pause`, `step`, `reset`, `picture`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.output.printable import say
 from nodes.extern.files import write_atomically
-from nodes.runtime import extras
 from schemas import errors
 
 if TYPE_CHECKING:
@@ -32,6 +31,37 @@ def move(client: Client, **fields: Any) -> None:
     The map follows when it comes to rest.
     """
     say(client.move(**given(fields)).text)
+
+
+_WAIT = click.option("--wait", is_flag=True, help="Wait until it stands and the map has followed.")
+_JOINT = click.option("--joint", metavar="JOINT", help="Only this one of its doors or drawers.")
+
+
+@click.command("open")
+@click.argument("name", shell_complete=entity_names)
+@click.option("--to", type=float, default=1.0, help="How far, from 0 to 1.  [default: 1]")
+@_JOINT
+@_WAIT
+@talks
+def open_(client: Client, name: str, to: float, joint: str | None, wait: bool) -> None:
+    """Open a door, lid or drawer by hand.
+
+    The map follows when it comes to rest.
+    """
+    say(client.open(name, to=to, joint=joint, wait=wait).text)
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@_JOINT
+@_WAIT
+@talks
+def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
+    """Close a door, lid or drawer by hand.
+
+    The map follows when it comes to rest.
+    """
+    say(client.close(name, joint=joint, wait=wait).text)
 
 
 @click.command()
@@ -76,13 +106,3 @@ def picture(
         raise errors.BadRequest(f"pictures are written as PNG; name the file {file.stem or 'scene'}.png")
     write_atomically(file, client.picture(camera, place=place, labels=labels, width=width, height=height))
     print(f"wrote {file}")
-
-
-@click.command()
-@click.argument("file", type=click.Path(path_type=Path))
-def replay(file: Path) -> None:
-    """Open a recording in the Rerun viewer."""
-    extras.require("semmap replay", "record")
-    from nodes.recorder.replay import replay as open_viewer
-
-    open_viewer(file)

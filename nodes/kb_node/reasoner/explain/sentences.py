@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
 from nodes.kb_node.reasoner.explain.axiom_sentences import Axioms
 from nodes.kb_node.reasoner.explain.words import Words, base_form
@@ -71,6 +71,26 @@ def denial(supposed: Triple, support: Sequence[Triple], words: Words) -> str:
 def said(triple: Triple, words: Words) -> str:
     """A triple as a clause: "milk1 is on counter1"."""
     return _Speaker((triple,), words).say(triple)
+
+
+class Clause(NamedTuple):
+    """A triple in words, and whether it is an axiom, which the TBox says, rather than a fact."""
+
+    text: str
+    is_axiom: bool
+
+
+def clauses(triples: Iterable[Triple], proof: Sequence[Triple], words: Words) -> dict[Triple, Clause]:
+    """The triples of a proof in words, without those that are told with the axiom they are a part of.
+
+    `proof` has all triples of it: what anonymous classes and lists are is read there.
+    """
+    speaker = _Speaker(proof, words)
+    return {
+        triple: Clause(speaker.say(triple), speaker.axioms.is_axiom(triple))
+        for triple in triples
+        if not speaker.is_told_elsewhere(triple)
+    }
 
 
 def as_measured(text: str, facts: Iterable[Triple], words: Words) -> str:
@@ -155,7 +175,7 @@ class _Speaker:
             if triple[1] == iri("owl:onProperty") and is_named(triple[0]):
                 clauses.append(self.axioms.definition(triple[0]))
                 before = None
-            if triple[1] in _STRUCTURE or self._is_part(triple):
+            if self.is_told_elsewhere(triple):
                 continue
             if self.axioms.is_axiom(triple):
                 clauses.append(self.say(triple))
@@ -169,6 +189,10 @@ class _Speaker:
         """The subject, if a clause names no other individual."""
         s, p, o = triple
         return s if p == TYPE or is_literal(o) or s == o else None
+
+    def is_told_elsewhere(self, triple: Triple) -> bool:
+        """Whether a triple has no clause of its own, because it is a part of an axiom."""
+        return triple[1] in _STRUCTURE or self._is_part(triple)
 
     def _is_part(self, triple: Triple) -> bool:
         s, p, o = triple

@@ -16,11 +16,11 @@ from nodes.sim_node.models.forms import (
     column,
     front,
     shade,
-    shifted,
     slab,
     solid,
     turned,
 )
+from nodes.sim_node.models.openings import cabinet_box, side_door
 from nodes.sim_node.models.parts import (
     ALONG_X,
     ALONG_Y,
@@ -62,14 +62,28 @@ def knobs(x: float, y: float, height: float, count: int, radius: float) -> Parts
 def fridge(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A freezer door above a tall door, each with an upright handle."""
     split, deep = 0.68 * z, 0.07 * x
+    body = shade(colour, 0.9)
+    rooms = [
+        *cabinet_box(
+            (x - deep, y, split), (-deep / 2, 0, split / 2), body, boards=(0.3, 0.5, 0.7), depth=0.85
+        ),
+        *cabinet_box((x - deep, y, z - split), (-deep / 2, 0, (z + split) / 2), body),
+    ]
     return [
-        *case(x, y, split, shade(colour, 0.9), deep=deep, boards=(0.3, 0.5, 0.7), depth=0.85),
-        *shifted(case(x, y, z - split, shade(colour, 0.9), deep=deep), z=split),
-        *front(x / 2 - 0.02, 0.98 * y, split - 0.02, (0, split / 2 + 0.01), colour, deep=deep - 0.02),
-        *front(x / 2 - 0.02, 0.98 * y, z - split - 0.02, (0, (z + split) / 2), colour, deep=deep - 0.02),
-        *seen(
-            box((0.02, 0.025, height), (x / 2 - 0.01, -0.42 * y, middle), STEEL)
-            for middle, height in ((0.75 * split, 0.3 * split), (split + 0.16 * z, 0.18 * z))
+        *rooms,
+        *side_door(
+            "door",
+            (deep - 0.02, 0.98 * y, split - 0.02),
+            (x / 2 - 0.02 - (deep - 0.02) / 2, 0, split / 2 + 0.01),
+            colour,
+            handle=box((0.02, 0.025, 0.3 * split), (x / 2 - 0.01, -0.42 * y, 0.75 * split), STEEL),
+        ),
+        *side_door(
+            "freezer",
+            (deep - 0.02, 0.98 * y, z - split - 0.02),
+            (x / 2 - 0.02 - (deep - 0.02) / 2, 0, (z + split) / 2),
+            colour,
+            handle=box((0.02, 0.025, 0.18 * z), (x / 2 - 0.01, -0.42 * y, split + 0.16 * z), STEEL),
         ),
     ]
 

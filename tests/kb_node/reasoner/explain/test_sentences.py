@@ -5,6 +5,7 @@ import functools
 import pytest
 
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.explain.sentences import Clause, clauses
 from nodes.kb_node.reasoner.explain.words import Words, article
 from tests.kb_node.reasoner.graphs import household, triple, triples
 
@@ -153,3 +154,14 @@ def test_articles():
         "dairy food",
         "something that is on a table",
     ]
+
+
+def test_the_triples_of_a_proof_have_a_clause_each_but_for_the_parts_of_axioms():
+    proof = triples(
+        ":milk1 a dm:Milk . dm:Milk rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:hasAffordance ;"
+        " owl:hasValue dm:drinking ] ."
+    )
+    told = clauses(proof, proof, home().words)
+    assert Clause("milk1 is milk", is_axiom=False) in told.values()
+    assert Clause("whatever is milk has affordance drinking", is_axiom=True) in told.values()
+    assert not any(predicate.endswith(("onProperty>", "hasValue>")) for _, predicate, _ in told)

@@ -1,0 +1,127 @@
+"""Live poses on the wire: in by `semmap/live/<name>` and the simulator's poses, out by `semmap/live`."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from functools import partial
+
+from nodes import bus
+from nodes.coordinator.config import CoordinatorConfig
+from nodes.coordinator.door.known_map import KnownMap
+from nodes.coordinator.live.live_poses import Due, LivePoses
+from nodes.coordinator.scene.scene_view import SceneView
+from nodes.coordinator.scene.settled import Settled
+from nodes.runtime.loop import Node
+from schemas import codec, errors, keys
+from schemas import live as messages
+from schemas.entities import Entity, Live, Pose, Source
+from schemas.replies import Changed
+
+_PERIOD_S = 0.1
+_AT_LEAST_S = 1.0
+"""Whoever has just started hears of what does not move within this time."""
+
+
+class LiveFeed:
+    """Owned by the coordinator's thread. Poses are read in batches: a hundred things at 50 Hz cost little."""
+
+    def __init__(
+        self,
+        node: Node,
+        config: CoordinatorConfig,
+        known_map: KnownMap,
+        scene: SceneView,
+        change: Callable[[Settled], Future[Changed]],
+    ) -> None:
+        """`change(settled)` changes the map in its turn."""
+        self._node = node
+        self._map = known_map
+        self._scene = scene
+        self._scene_heard_s = 0.0
+        self._change = change
+        self._poses = LivePoses(config.live, config.thresholds)
+        self._under_way: set[str] = set()
+        self._may_follow = config.truth != "replayed"
+        self._published: dict[str, tuple[Pose, int]] = {}
+        self._published_s = 0.0
+        self._stream = bus.Newest(node.session, keys.LIVE_POSE)
+        self._out = bus.publisher(node.session, keys.LIVE_POSES)
+        node.every(_PERIOD_S, self._tick)
+
+    def on_scene(self) -> None:
+        """The simulator has just told where bodies are."""
+        self._scene_heard_s = time.monotonic()
+
+    def of(self, entity: Entity) -> Live | None:
+        """Where a tracked entity is just now, if that was ever heard."""
+        if not entity.tracked:
+            return None
+        self._read()
+        return self._poses.live(entity.name, time.monotonic())
+
+    def problems(self) -> list[str]:
+        """What is amiss with live poses, one sentence each."""
+        return list(self._poses.problems(self._map.tracked, time.monotonic()))
+
+    def settle(self, name: str) -> Future[Changed] | None:
+        """Commit where an entity is just now; None where that is not known, or is what the map says."""
+        entity = self._map.tracked.get(name)
+        live = None if entity is None else self.of(entity)
+        if entity is None or live is None or live.stale or live.pose == entity.pose:
+            return None
+        return self._commit(Due(name, live.pose, f"{name} is no longer tracked"))
+
+    def _read(self) -> None:
+        now_s, tracked, poses = time.monotonic(), self._map.tracked, self._poses
+        for key, read in self._stream.take():
+            poses.read(keys.of_live_pose(key), partial(_pose, read), self._map.entities, now_s)
+        if self._scene.known:
+            for name, entity in tracked.items():
+                body = self._scene.bodies.get(name) if entity.tracked == "sim" else None
+                if body is not None:
+                    poses.take(name, body.pose, self._scene.stamp_ns, self._scene_heard_s, "sim")
+
+    def _tick(self) -> None:
+        if self._map.seq < 0:
+            return
+        self._poses.forget(self._map.tracked)
+        self._read()
+        now_s = time.monotonic()
+        for due in [*self._poses.due(self._map.tracked, now_s)]:
+            if due.name not in self._under_way and self._may_follow:
+                self._commit(due)
+        self._publish(now_s)
+
+    def _commit(self, due: Due) -> Future[Changed]:
+        self._under_way.add(due.name)
+        source: Source = "scene" if self._map.tracked[due.name].tracked == "sim" else "perception"
+
+        def on_done(done: Future[Changed]) -> None:
+            self._under_way.discard(due.name)
+            error = done.exception()
+            self._poses.journalled(due.name, time.monotonic(), refused=error is not None)
+            if error is not None and not isinstance(error, errors.NoAnswer):
+                self._node.report(f"{due.name}: the map cannot take over its live pose: {error}")
+
+        made = self._change(
+            Settled.of(self._map.entities, {due.name: due.pose}, source=source, reason=due.reason)
+        )
+        made.add_done_callback(on_done)
+        return made
+
+    def _publish(self, now_s: float) -> None:
+        current = self._poses.current(now_s)
+        told = {name: (live.pose, live.stamp_ns) for name, live in current.items()}
+        if told == self._published and (not told or now_s - self._published_s < _AT_LEAST_S):
+            return
+        self._published, self._published_s = told, now_s
+        message = messages.LivePoses(stamp_ns=time.time_ns(), entities=current)
+        self._out.put(codec.encode(message), encoding=codec.encoding_of(message))
+
+
+def _pose(read: Callable[[], messages.LivePose]) -> tuple[Pose, int]:
+    """With the stamp that it has, or that of its arrival. Raises BadRequest."""
+    message = read()
+    return message.require_pose(), message.stamp_ns or time.time_ns()

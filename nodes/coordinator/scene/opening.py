@@ -1,0 +1,116 @@
+"""Opening and closing by hand: joints are set moving, and replies may wait until they stand."""
+
+from __future__ import annotations
+
+import time
+from concurrent.futures import Future
+from typing import NamedTuple
+
+from nodes.coordinator.door import Door
+from nodes.coordinator.scene.reconciler import AskSim, Keeping
+from nodes.runtime.futures import OwnFuture, settle
+from schemas import commands as c
+from schemas import errors
+from schemas.joints import in_words
+from schemas.replies import Moved
+from schemas.scenes import Body, JointOrder, JointsMoving, MoveJoints
+
+_WAIT_S = 20.0
+_THERE = 0.02
+"""Of its way: so near to where it was sent, a joint has arrived."""
+
+
+class _Waiting(NamedTuple):
+    command: c.Open | c.Close
+    until_s: float
+    reply: Future[Moved]
+
+
+class Opening:
+    """Executes `open` and `close`; the coordinator's thread owns it and calls `answer_waiting`."""
+
+    def __init__(self, door: Door, keeping: Keeping, ask: AskSim) -> None:
+        """`ask(call)` asks the simulator, without waiting."""
+        self._door = door
+        self._keeping = keeping
+        self._ask = ask
+        self._waiting: list[_Waiting] = []
+
+    def move(self, command: c.Open | c.Close) -> Future[Moved]:
+        """Set the joints of a body moving. Raises Refused for what has none; NoAnswer without a simulator."""
+        body = self._keeping.scene.bodies.get(command.name)
+        if body is None:
+            entity = self._door.map.entity(command.name)
+            state = self._keeping.body_state(entity)
+            if not self._keeping.scene.known:
+                raise errors.NoAnswer(
+                    f"no simulator is running; to state it: semmap set {entity.name} isOpen"
+                    f" {str(isinstance(command, c.Open)).lower()}"
+                )
+            raise errors.Refused(
+                f"{entity.name} has no body to {command.VERB}: {state.detail or state.status}"
+            )
+        _require_joints(command, body)
+        order = JointOrder(name=command.name, joint=command.joint or "", openness=_share(command))
+
+        def moving(reply: JointsMoving) -> Moved | Future[Moved]:
+            if command.name in reply.failed:
+                raise errors.Refused(reply.failed[command.name])
+            self._keeping.scene.add(reply.bodies)
+            self._door.hands.let_go(command)
+            if not command.wait:
+                return Moved(name=command.name, text=_on_its_way(command))
+            later: Future[Moved] = OwnFuture()
+            self._waiting.append(_Waiting(command, time.monotonic() + _WAIT_S, later))
+            return later
+
+        future: Future[Moved] = OwnFuture()
+        asked = self._ask(MoveJoints(orders=(order,)))
+        asked.add_done_callback(lambda done: settle(future, lambda: moving(done.result())))
+        return future
+
+    def answer_waiting(self) -> None:
+        """Answer those whose joints stand, and of whose map it is known."""
+        still = []
+        for waiting in self._waiting:
+            command, until_s, reply = waiting
+            body = self._keeping.scene.bodies.get(command.name)
+            if body is not None and time.monotonic() < until_s and not self._is_settled(body):
+                still.append(waiting)
+            elif body is None:
+                reply.set_exception(errors.Refused(f"{command.name} lost its body meanwhile"))
+            else:
+                reply.set_result(Moved(name=command.name, text=_arrived(command, body)))
+        self._waiting = still
+
+    def _is_settled(self, body: Body) -> bool:
+        """Does it stand, and does the map know?"""
+        return body.resting and self._keeping.is_followed(body.name)
+
+
+def _share(command: c.Open | c.Close) -> float:
+    return command.to if isinstance(command, c.Open) else 0.0
+
+
+def _require_joints(command: c.Open | c.Close, body: Body) -> None:
+    """Raises Refused where nothing opens."""
+    opening = [joint.name for joint in body.joints if joint.opens]
+    if not opening:
+        raise errors.Refused(f"{body.name} has no door, lid or drawer to {command.VERB}")
+    if command.joint and command.joint not in opening:
+        hint = errors.did_you_mean(command.joint, opening) or f"; it has: {', '.join(opening)}"
+        raise errors.Refused(f"{body.name} has no joint '{command.joint}' to {command.VERB}{hint}")
+
+
+def _on_its_way(command: c.Open | c.Close) -> str:
+    if isinstance(command, c.Close):
+        return f"closing {command.name}"
+    return f"opening {command.name}{'' if command.to == 1.0 else f' to {command.to:.0%}'}"
+
+
+def _arrived(command: c.Open | c.Close, body: Body) -> str:
+    """How the joints stand that were moved; and which did not get there."""
+    moved = [joint for joint in body.joints if joint.opens and command.joint in (None, joint.name)]
+    text = f"{body.name}: {', '.join(map(in_words, moved))}"
+    short = [joint.name for joint in moved if abs((joint.openness or 0.0) - _share(command)) > _THERE]
+    return f"{text}; something stops {' and '.join(short)}" if short else text

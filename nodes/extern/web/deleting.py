@@ -1,0 +1,49 @@
+"""Deleting what is selected, once that is confirmed; and taking back the last change."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+from schemas import wording
+from schemas.commands import Remove, Undo
+from schemas.errors import shortened
+
+_NAMED = 5
+
+
+async def delete_selected(page: Page) -> None:
+    """Ask whether what is selected is to be deleted, and do so if it is."""
+    names = page.selected
+    if not names:
+        page.tell("Nothing is selected; select what is to be deleted first.")
+        return
+    if not page.may("remove"):
+        page.tell("Your certificate may not delete.", "warning")
+        return
+    if await _confirms(names) and (done := await page.change(Remove(names=names))) is not None:
+        page.tell(done.text, "positive")
+
+
+async def undo(page: Page) -> None:
+    """Take back the newest change that a person asked for."""
+    if not page.may("undo"):
+        page.tell("Your certificate may not undo.", "warning")
+        return
+    if (done := await page.change(Undo())) is not None:
+        page.tell(done.text, "positive")
+
+
+async def _confirms(names: tuple[str, ...]) -> bool:
+    what = names[0] if len(names) == 1 else wording.entities(len(names))
+    with ui.dialog().props('aria-label="Delete"') as dialog, ui.card():
+        ui.label(f"Delete {shortened(what, 80)}?").classes("text-h6")
+        if len(names) > 1:
+            more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+            ui.label(", ".join(names[:_NAMED]) + more).classes("semmap-quiet")
+        with ui.row().classes("w-full justify-end"):
+            ui.button("Cancel", on_click=lambda: dialog.submit(False)).props("flat")
+            ui.button("Delete", on_click=lambda: dialog.submit(True)).props("color=negative autofocus")
+    chosen = await dialog
+    dialog.delete()
+    return bool(chosen)

@@ -1,0 +1,128 @@
+"""What the page knows beyond the entities themselves: where they are, and what properties are called.
+
+It is read once for all tabs, and kept up to date by the commits. Owned by the event loop.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable
+from typing import Final
+from weakref import WeakKeyDictionary
+
+from nicegui import background_tasks
+
+from nodes.extern.web.live import Happening, Live
+from nodes.extern.web.views.steps import words_of
+from nodes.extern.web.views.whereabouts import QUERY, Whereabouts
+from nodes.kb_node.reasoner.explain.words import Words
+from schemas import errors
+from schemas.commands import Properties, Sparql
+from schemas.commits import Commit
+from schemas.entities import PropertyInfo
+from schemas.moments import When
+
+_ROWS: Final = 100_000
+_QUERY_S: Final = 30.0
+
+Told = Callable[[frozenset[str] | None], None]
+"""Is given the names of the entities that a commit touched; None where everything may be otherwise."""
+
+_KNOWING: WeakKeyDictionary[Live, Knowing] = WeakKeyDictionary()
+
+
+class Knowing:
+    """One for the process: use `Knowing.of(live)`."""
+
+    def __init__(self, live: Live) -> None:
+        self.whereabouts = Whereabouts()
+        """As of the commit that `live` is at."""
+        self.properties: dict[str, PropertyInfo] = {}
+        self.words: Words = words_of((), ())
+        """What classes and properties are called in a sentence."""
+        self._live = live
+        self._told: list[Told] = []
+        self._since: list[Commit] | None = None
+        """The commits that came while the whereabouts are being read; None while they are not."""
+        self._again = False
+        live.listen(self._on_happening)
+        if live.commit >= 0:
+            self._read()
+
+    @classmethod
+    def of(cls, live: Live) -> Knowing:
+        """That of this process."""
+        if (known := _KNOWING.get(live)) is None:
+            known = _KNOWING[live] = cls(live)
+        return known
+
+    def listen(self, told: Told) -> Callable[[], None]:
+        """Call `told` after each change of the map, when all that is here is so; the answer ends that."""
+        self._told.append(told)
+
+        def stop() -> None:
+            with contextlib.suppress(ValueError):
+                self._told.remove(told)
+
+        return stop
+
+    async def at(self, moment: When) -> Whereabouts:
+        """What everything was on and in after a commit. Raises SemmapError."""
+        found = Whereabouts()
+        query = Sparql(query=QUERY, inferred=True, as_of=moment, limit=_ROWS, timeout=_QUERY_S)
+        found.begin((await self._live.ask(query, _QUERY_S)).rows)
+        return found
+
+    def _on_happening(self, happening: Happening) -> None:
+        if happening.kind == "begun":
+            self._read()
+            self._tell(None)
+        elif happening.kind == "commit":
+            self._take(happening.commits)
+        elif happening.kind == "scene":
+            self._tell(None)
+
+    def _take(self, commits: tuple[Commit, ...]) -> None:
+        if self._since is not None:
+            self._since.extend(commits)
+        if any(commit.tbox or commit.abridged is not None for commit in commits):
+            self._read()
+            self._tell(None)
+            return
+        touched: set[str] = set()
+        for commit in commits:
+            touched |= self.whereabouts.take(commit)
+            touched.update(commit.names)
+        self._tell(frozenset(touched))
+
+    def _read(self) -> None:
+        if self._since is not None:
+            self._again = True
+            return
+        self._since = []
+        background_tasks.create(self._fetch(), name="whereabouts")
+
+    async def _fetch(self) -> None:
+        live = self._live
+        try:
+            properties = await live.ask(Properties())
+            query = Sparql(query=QUERY, inferred=True, limit=_ROWS, timeout=_QUERY_S)
+            found = await live.ask(query, _QUERY_S)
+        except errors.SemmapError:
+            self._since = None  # it is read again when the knowledge base is back
+            return
+        self.properties = {p.name: p for p in properties}
+        self.words = words_of(live.classes, properties)
+        self.whereabouts.begin(found.rows)
+        for commit in self._since or ():
+            if commit.seq > found.seq:
+                self.whereabouts.take(commit)
+        self._since = None
+        self._tell(None)
+        if self._again:
+            self._again = False
+            self._read()
+
+    def _tell(self, names: frozenset[str] | None) -> None:
+        for told in tuple(self._told):
+            told(names)

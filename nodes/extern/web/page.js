@@ -1,0 +1,38 @@
+// What has to happen in the browser: keys, and the look of the browser, which only it knows. The scene's frame
+// passes on the keys that are pressed in it.
+(() => {
+  const HANDLED = new Set(["/", "?", "u", "Delete", "Home", "Escape"]);
+  const isWriting = (element) =>
+    element && (element.isContentEditable || /^(INPUT|TEXTAREA|SELECT)$/.test(element.tagName));
+
+  function onKey(event) {
+    if (event.ctrlKey || event.altKey || event.metaKey || !HANDLED.has(event.key)) return;
+    const element = event.target;
+    if (isWriting(element)) {
+      if (event.key === "Escape") element.blur();
+      return;
+    }
+    if (document.querySelector(".q-dialog")) return; // it has its own
+    if (event.key === "/") {
+      const search = document.querySelector(".semmap-search input");
+      if (search) { event.preventDefault(); window.focus(); search.focus(); search.select(); }
+      return;
+    }
+    if (event.key !== "Escape") event.preventDefault();
+    emitEvent("semmap_key", { key: event.key });
+  }
+
+  function tellLook() {
+    emitEvent("semmap_look", {
+      dark: document.body.classList.contains("body--dark"),
+      narrow: window.innerWidth <= 760,
+    });
+  }
+
+  document.addEventListener("keydown", onKey);
+  window.semmapStart = () => {
+    new MutationObserver(tellLook).observe(document.body, { attributeFilter: ["class"] });
+    window.matchMedia("(max-width: 760px)").addEventListener("change", tellLook);
+    tellLook();
+  };
+})();

@@ -1,0 +1,101 @@
+"""The fields that describe an entity, for adding one and for editing one."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+from nodes.extern.web.views.forms import Filled
+
+_AXES: Final = ("x", "y", "z")
+
+
+class Fields:
+    """What is filled in of an entity: class, name, references, place, size."""
+
+    def __init__(self, page: Page, *, named: bool) -> None:
+        """Draw them where this is made; `named`: with a field for the name."""
+        self._page = page
+        with ui.column().classes("w-full gap-2 semmap-fields"):
+            self._class = (
+                ui.select({}, label="Class", with_input=True, new_value_mode="add-unique", clearable=True)
+                .props("dense outlined options-dense hide-bottom-space")
+                .classes("w-full")
+            )
+            self._name = ui.input("Name (made from the class, if empty)") if named else None
+            if self._name is not None:
+                self._name.props("dense outlined maxlength=128").classes("w-full")
+            self._ref = ui.input("Called").props("dense outlined maxlength=1000").classes("w-full")
+            self._alt = (
+                ui.textarea("Also called (a line each)")
+                .props("dense outlined autogrow rows=1")
+                .classes("w-full")
+            )
+            self._at = self._vector("Position [m]", "position")
+            with ui.row().classes("w-full items-center gap-2 no-wrap"):
+                self._yaw = _number("Turned by [°]")
+                if page.pick is not None:
+                    ui.button("Point at the place", icon="my_location", on_click=self._pick).props(
+                        "flat dense no-caps"
+                    )
+            self._size = self._vector("Size [m]", "size", least=0.0)
+
+    @property
+    def filled(self) -> Filled:
+        """What stands in the fields."""
+        return Filled(
+            class_=str(self._class.value or ""),
+            name="" if self._name is None else str(self._name.value or ""),
+            at=tuple(field.value for field in self._at),
+            yaw_deg=self._yaw.value,
+            size=tuple(field.value for field in self._size),
+            ref=str(self._ref.value or ""),
+            alt=str(self._alt.value or ""),
+        )
+
+    def fill(self, filled: Filled) -> None:
+        """Write into the fields."""
+        if filled.class_ and filled.class_ not in self._class.options:
+            self._class.set_options({**dict(self._class.options), filled.class_: filled.class_})
+        self._class.value = filled.class_ or None
+        if self._name is not None:
+            self._name.value = filled.name
+        self._ref.value, self._alt.value, self._yaw.value = filled.ref, filled.alt, filled.yaw_deg
+        for field, value in (
+            *zip(self._at, filled.at, strict=True),
+            *zip(self._size, filled.size, strict=True),
+        ):
+            field.value = value
+
+    def offer(self, classes: dict[str, str]) -> None:
+        """The classes to choose from, each with what it is called."""
+        chosen = self._class.value
+        if chosen and chosen not in classes:
+            classes = {**classes, chosen: chosen}
+        if self._class.options != classes:
+            self._class.set_options(classes, value=chosen)
+
+    async def _pick(self) -> None:
+        self._page.tell("Click in the scene where it is to be.")
+        place = await self._page.pick_place()
+        if place is not None:
+            for field, value in zip(self._at, place, strict=False):
+                field.value = round(value, 3)
+
+    @staticmethod
+    def _vector(label: str, of: str, *, least: float | None = None) -> list[ui.number]:
+        with ui.row().classes("w-full gap-2 no-wrap items-center"):
+            ui.label(label).classes("semmap-quiet").style("width: 84px; flex: none")
+            return [_number(axis, f"{of} {axis}", least=least) for axis in _AXES]
+
+
+def _number(label: str, spoken: str = "", *, least: float | None = None) -> ui.number:
+    options: dict[str, Any] = {} if least is None else {"min": least}
+    return (
+        ui.number(label, step=0.1, **options)
+        .props(f'dense outlined hide-bottom-space aria-label="{spoken or label}"')
+        .classes("grow")
+        .style("flex-basis: 0; min-width: 0")
+    )

@@ -1,0 +1,192 @@
+"""Files: load by upload, tried first and done then; and export by download."""
+
+from __future__ import annotations
+
+from typing import Final, get_args
+
+from nicegui import events, ui
+
+from nodes.extern.cli.output.lines import changed
+from nodes.extern.web.page import Page
+from nodes.extern.web.views.uploads import (
+    BEGINNING,
+    LARGEST,
+    megabytes,
+    refusal,
+    takes_long,
+    too_large,
+)
+from schemas import errors
+from schemas.commands import Export, Load, RdfFormat
+from schemas.packing import packed
+
+_TIMEOUT_S: Final = 1800.0
+_FORMATS: Final[dict[RdfFormat, str]] = {
+    "turtle": "Turtle", "rdfxml": "RDF/XML", "ntriples": "N-Triples", "jsonld": "JSON-LD",
+}  # fmt: skip
+_ENDINGS: Final[dict[RdfFormat, str]] = {
+    "turtle": "ttl", "rdfxml": "rdf", "ntriples": "nt", "jsonld": "jsonld"
+}  # fmt: skip
+assert set(_FORMATS) == set(get_args(RdfFormat))
+
+
+def files(page: Page) -> None:
+    """Loading, where that is permitted, and exporting."""
+    with ui.row().classes("w-full gap-4 items-stretch"):
+        if page.may("load"):
+            _Loading(page)
+        if page.may("export"):
+            _exporting(page)
+
+
+class _Loading:
+    """A file is tried as soon as it is chosen: what it would do is said, and done when somebody says so."""
+
+    def __init__(self, page: Page) -> None:
+        self._page = page
+        self._tried: Load | None = None
+        with ui.card().classes("grow").props("flat bordered").style("min-width: 18rem; flex-basis: 24rem"):
+            ui.label("Load").classes("text-subtitle1")
+            ui.label(
+                "A map in any RDF syntax or OWL, a scene in JSON, a HuRIC map, or an ontology; up to "
+                f"{megabytes(LARGEST)}. It is tried first, and nothing changes until you say so."
+            ).classes("text-caption")
+            with ui.row().classes("gap-2"):
+                self._replace = ui.checkbox("In place of what is there", on_change=self._again)
+                self._skip = ui.checkbox("Leave out unknown classes", on_change=self._again)
+                self._tbox = ui.checkbox("It is the ontology (TBox)", on_change=self._again)
+            self._upload = ui.upload(
+                label="Choose a file, or drop it here",
+                auto_upload=True,
+                max_files=None,
+                max_file_size=LARGEST,
+                on_upload=self._uploaded,
+                on_rejected=self._rejected,
+            )
+            self._upload.classes("w-full").props("flat bordered").mark("upload")
+            self._said = ui.column().classes("w-full gap-0").props('role="status"').mark("load-said")
+            self._error = ui.label().classes("text-negative whitespace-pre-wrap").props('role="alert"')
+            self._error.mark("load-error")
+            with ui.row().classes("gap-2"):
+                self._button = ui.button("Load", icon="file_upload", on_click=self._load)
+                self._button.props("no-caps dense").classes("px-3").mark("load-button")
+            self._button.visible = False
+
+    def _rejected(self) -> None:
+        self._forget()
+        self._error.text = too_large("the file", LARGEST + 1).replace(
+            f" has {megabytes(LARGEST + 1)}", " is larger"
+        )
+
+    async def _uploaded(self, event: events.UploadEventArguments) -> None:
+        self._forget()
+        self._upload.reset()
+        file = event.file
+        beginning = b""
+        async for chunk in file.iterate(chunk_size=BEGINNING):
+            beginning = chunk
+            break
+        if sentence := refusal(file.name, file.size(), beginning):
+            self._error.text = sentence
+            return
+        content = packed(await file.read())
+        self._tried = Load(content=content, filename=file.name)
+        await self._try()
+
+    async def _again(self) -> None:
+        """Another way to load the same file."""
+        if self._tried is not None:
+            await self._try()
+
+    async def _try(self) -> None:
+        assert self._tried is not None
+        self._tried = Load(
+            content=self._tried.content,
+            filename=self._tried.filename,
+            replace=bool(self._replace.value),
+            skip_unknown=bool(self._skip.value),
+            tbox=bool(self._tbox.value),
+            dry_run=True,
+        )
+        name, size = self._tried.filename, len(self._tried.content)
+        self._error.text, self._button.visible = "", False
+        self._say(
+            f"Trying {name} ({megabytes(size)}) ..." + (" this may take a while" if takes_long(size) else "")
+        )
+        try:
+            reply = await self._page.live.ask(self._tried, _TIMEOUT_S)
+        except errors.SemmapError as error:
+            self._say()
+            self._error.text = error.text
+            return
+        self._say(f"If {name} is loaded:", *changed(reply))
+        self._button.text = f"Load {name}"
+        self._button.visible = True
+
+    async def _load(self) -> None:
+        if self._tried is None:
+            return
+        tried = self._tried
+        self._button.set_enabled(False)
+        try:
+            wanted = Load(
+                content=tried.content,
+                filename=tried.filename,
+                replace=tried.replace,
+                skip_unknown=tried.skip_unknown,
+                tbox=tried.tbox,
+                reason=f"loaded {tried.filename}"[:1000],
+            )
+            reply = await self._page.change(wanted, _TIMEOUT_S)
+        finally:
+            self._button.set_enabled(True)
+        if reply is not None:
+            self._forget()
+            self._say(*changed(reply))
+
+    def _forget(self) -> None:
+        self._tried, self._error.text, self._button.visible = None, "", False
+        self._say()
+
+    def _say(self, *lines: str) -> None:
+        self._said.clear()
+        with self._said:
+            for line in lines:
+                ui.label(line).classes("whitespace-pre-wrap")
+
+
+def _exporting(page: Page) -> None:
+    with ui.card().classes("grow").props("flat bordered").style("min-width: 16rem; flex-basis: 18rem"):
+        ui.label("Export").classes("text-subtitle1")
+        of = ui.label().classes("text-caption")
+        syntax = ui.select(dict(_FORMATS), value="turtle", label="Format").props("dense outlined")
+        syntax.classes("w-full").mark("export-format")
+        inferred = ui.checkbox("With what follows").tooltip("Also what is inferred")
+        error = ui.label().classes("text-negative whitespace-pre-wrap").props('role="alert"')
+
+        async def export() -> None:
+            error.text = ""
+            as_of = None if page.moment.is_now else page.state.commit
+            try:
+                command = Export(format=syntax.value, inferred=bool(inferred.value), as_of=as_of)
+                document = await page.live.ask(command, _TIMEOUT_S)
+            except errors.SemmapError as refused:
+                error.text = refused.text
+                return
+            name = f"map-{document.seq}.{_ENDINGS[command.format]}"
+            ui.download.content(document.content, name, document.media_type)
+            page.tell(f"{name}: {document.triples:,} triples", "positive")
+
+        ui.button("Export", icon="file_download", on_click=export).props("no-caps dense").classes(
+            "px-3"
+        ).mark("export-button")
+
+        def show() -> None:
+            moment = "as it is now" if page.moment.is_now else f"as it was after commit {page.state.commit}"
+            of.text = f"The map {moment}"
+            inferred.set_enabled(page.moment.is_now)
+            if not page.moment.is_now:
+                inferred.value = False
+
+        page.on_change(show)
+        show()

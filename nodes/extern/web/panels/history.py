@@ -1,0 +1,47 @@
+"""What became of one thing, the newest first: each commit can be looked at, and undone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from nicegui import ui
+
+from nodes.extern.web.page import Page
+from nodes.extern.web.views.past import Event, events
+from schemas.commands import Undo
+from schemas.errors import shortened
+from schemas.replies import LoggedCommit
+
+
+def history(page: Page, name: str, commits: Iterable[LoggedCommit], last_seen: str) -> None:
+    """Draw it where it is called."""
+    places = [entity for entity in page.state.entities.values() if entity.place and entity.name != name]
+    if last_seen:
+        ui.label(f"{last_seen[:1].upper()}{last_seen[1:]}").classes("semmap-sentence")
+    with ui.element("ol").classes("semmap-history").props('aria-label="History"'):
+        for event in events(name, commits, places):
+            with ui.element("li"):
+                _event(page, event)
+
+
+def _event(page: Page, event: Event) -> None:
+    for text in event.texts:
+        ui.label(shortened(text, 1000))
+    with ui.row().classes("w-full items-center gap-1 no-wrap"):
+        sure = f", sure to {event.sure}" if event.sure else ""
+        what = f"commit {event.commit} · {event.when.replace('T', ' ')} · {event.by}{sure}"
+        ui.label(shortened(f"{what} · {event.why}", 300)).classes("text-caption grow").style("min-width: 0")
+        _button("visibility", f"Show the map after commit {event.commit}", lambda: page.go_to(event.commit))
+        if page.may("undo") and page.moment.is_now:
+            _button("undo", f"Undo commit {event.commit}", lambda: _undo(page, event.commit))
+
+
+def _button(icon: str, label: str, on_click: object) -> None:
+    button = ui.button(icon=icon, on_click=on_click).props("flat round dense size=sm")  # type: ignore[arg-type]
+    button.props["aria-label"] = label
+    button.tooltip(label)
+
+
+async def _undo(page: Page, commit: int) -> None:
+    if (done := await page.change(Undo(commit=commit))) is not None:
+        page.tell(done.text, "positive")

@@ -1,0 +1,121 @@
+"""The plan: the floor from above, at a scale, to look at, to select in, to print and to keep."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+from typing import Final
+
+from nicegui import events, ui
+
+from nodes.extern.plan.floor import Floor, floor_of
+from nodes.extern.plan.svg import Drawing, draw
+from nodes.extern.web.page import Page
+from nodes.extern.web.panels.redrawing import Redrawing
+
+_MARKED: Final = 'fill="rgba(47,129,247,.25)" stroke="#2f81f7" stroke-width="2"'
+_PRINT: Final = """
+const frame = document.createElement("iframe");
+frame.style.cssText = "position:fixed;right:0;bottom:0;width:0;height:0;border:0";
+document.body.append(frame);
+const sheet = frame.contentDocument;
+const style = sheet.createElement("style");
+style.textContent = "@page { size: %(sheet)s; margin: 0 } body { margin: 0 } img { width: %(wide)gmm }";
+sheet.head.append(style);
+const picture = sheet.createElement("img");
+picture.onload = () => { frame.contentWindow.print(); setTimeout(() => frame.remove(), 60000) };
+picture.src = "%(source)s";
+sheet.body.append(picture);
+"""
+
+
+def plan(page: Page) -> None:
+    """The plan of the moment shown; a click selects."""
+    _Plan(page)
+
+
+class _Plan:
+    def __init__(self, page: Page) -> None:
+        self._page = page
+        self._floor: Floor | None = None
+        self._drawing: Drawing | None = None
+        self._redrawing: Redrawing | None = None
+        with ui.column().classes("w-full gap-2"):
+            with ui.row().classes("w-full items-center gap-2"):
+                self._title = ui.input("Title", value="Plan").props("dense outlined").classes("grow")
+                self._title.on("blur", self._again)
+                ui.button("SVG", icon="download", on_click=self._download).props(
+                    "dense no-caps flat"
+                ).tooltip("Save the plan as a file").mark("plan-download")
+                ui.button("Print", icon="print", on_click=self._print).props("dense no-caps flat")
+            self._picture = ui.interactive_image(on_mouse=self._click, events=["click"], sanitize=False)
+            self._picture.classes("w-full border rounded").style("background: #fff")
+            self._picture.props('role="img" aria-label="Plan of the rooms and the furniture"').mark("plan")
+        self._redrawing = Redrawing(page, self._draw)
+        page.on_change(self._again)
+        page.on_select(self._mark)
+
+    def _again(self) -> None:
+        if self._redrawing is not None:
+            self._redrawing.stale()
+
+    async def _draw(self) -> None:
+        state = self._page.state
+        entities, poses, title = (
+            tuple(state.entities.values()),
+            dict(state.poses),
+            self._title.value or "Plan",
+        )
+        commit, stamp_ns = state.commit, _stamp_ns(self._page)
+
+        def drawn() -> tuple[Floor, Drawing]:
+            floor = floor_of(entities, poses)
+            return floor, draw(floor, title=title, commit=commit, stamp_ns=stamp_ns)
+
+        self._floor, drawing = await asyncio.to_thread(drawn)
+        self._drawing = drawing
+        self._picture.set_source(_source(drawing.svg))
+        self._mark()
+
+    def _mark(self) -> None:
+        """Draw around what is selected; of it only numbers go into the picture."""
+        if self._floor is None or self._drawing is None:
+            return
+        shapes = {room.name: room.outline for room in (*self._floor.rooms, *self._floor.zones)}
+        shapes.update((piece.name, piece.outline) for piece in self._floor.pieces)
+        marks = [
+            f'<polygon points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in map(self._drawing.pixel, outline))}" '
+            f"{_MARKED}/>"
+            for name in self._page.selected
+            if (outline := shapes.get(name)) is not None
+        ]
+        self._picture.content = "".join(marks)
+
+    def _click(self, event: events.MouseEventArguments) -> None:
+        if self._floor is None or self._drawing is None:
+            return
+        name = self._floor.at(self._drawing.point(event.image_x, event.image_y))
+        if name is not None:
+            self._page.select((name,), "plan")
+
+    def _download(self) -> None:
+        if self._drawing is not None:
+            name = f"plan-{self._page.state.commit}.svg"
+            ui.download.content(self._drawing.svg.encode(), name, "image/svg+xml")
+
+    def _print(self) -> None:
+        if self._drawing is not None:
+            sheet = "A4 landscape" if self._drawing.wide_mm > self._drawing.high_mm else "A4 portrait"
+            values = {"sheet": sheet, "wide": self._drawing.wide_mm, "source": _source(self._drawing.svg)}
+            ui.run_javascript(_PRINT % values)
+
+
+def _source(svg: str) -> str:
+    """The picture as an address; what is in a picture cannot run anything."""
+    return f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
+
+
+def _stamp_ns(page: Page) -> int:
+    """When the commit shown was made, as far as that is known from what it changed."""
+    stamps = [e.provenance.stamp_ns for e in page.state.entities.values()]
+    return max(stamps, default=0)

@@ -1,0 +1,129 @@
+"""SPARQL: a query, its answer as a table whose rows select, and what to ask instead of writing one."""
+
+from __future__ import annotations
+
+import time
+from typing import Final
+
+from nicegui import ui
+
+from nodes.extern.cli.output.sparql_formats import text
+from nodes.extern.web.page import Page
+from nodes.extern.web.panels.tables import columns_of, names_of, table
+from nodes.extern.web.views.examples import FIRST, Example, examples
+from nodes.extern.web.views.sparql_rows import rows_of, summary
+from schemas import errors
+from schemas.commands import Sparql
+from schemas.sparql import SparqlResult
+
+_TIMEOUT_S: Final = 5.0
+_ROWS: Final = 10_000
+_DARK: Final = ".body--dark .sparql-editor .cm-editor { filter: invert(0.92) hue-rotate(180deg); }"
+
+
+def sparql(page: Page) -> None:
+    """The editor, its examples, and the answer."""
+    _Sparql(page)
+
+
+class _Sparql:
+    def __init__(self, page: Page) -> None:
+        self._page = page
+        self._examples: dict[str, Example] = {}
+        self._result: SparqlResult | None = None
+        ui.add_css(_DARK)
+        with ui.column().classes("w-full gap-2"):
+            with ui.row().classes("w-full items-center gap-2"):
+                self._choice = ui.select([], label="Examples that fit this map", on_change=self._take_example)
+                self._choice.props("dense outlined options-dense").classes("grow").style("min-width: 14rem")
+                self._choice.mark("sparql-examples")
+                self._inferred = ui.switch("What follows, too").props("dense")
+                self._inferred.tooltip("Also what is inferred, and what is measured of where things are")
+            with ui.element("div").classes("w-full").props('role="group" aria-label="SPARQL query"'):
+                self._editor = ui.codemirror(
+                    FIRST, language="SPARQL", line_wrapping=True, keymap={"Mod-Enter": self._ask}
+                )
+                self._editor.classes("w-full border rounded sparql-editor").style("height: 11rem")
+            with ui.row().classes("w-full items-center gap-2"):
+                self._button = ui.button("Run", icon="play_arrow", on_click=self._ask).props("dense no-caps")
+                self._button.classes("px-3").tooltip("Ctrl+Enter").mark("sparql-run")
+                ui.button("Watch", icon="visibility", on_click=self._watch).props(
+                    "dense no-caps flat"
+                ).tooltip("Keep the rows up to date below, as the map changes")
+                self._limit = ui.number("Time limit [s]", value=_TIMEOUT_S, min=0.1, max=60.0)
+                self._limit.props("dense outlined").style("width: 8rem")
+                self._save = ui.button("CSV", icon="download", on_click=self._download)
+                self._save.props("dense no-caps flat").tooltip("Save the rows as a file")
+                self._said = ui.label().classes("text-caption grow").props('role="status"')
+                self._said.mark("sparql-said")
+            self._error = ui.label().classes("text-negative whitespace-pre-wrap").props('role="alert"')
+            self._error.mark("sparql-error")
+            self._notes = ui.label().classes("text-caption whitespace-pre-wrap")
+            self._table = table("Rows of the answer", [], select=self._select).mark("sparql-rows")
+        self._save.set_enabled(False)
+        self._offer()
+        page.on_change(self._offer)
+
+    def _offer(self) -> None:
+        """The examples that fit the map as it is shown."""
+        classes = {info.name: info for info in self._page.live.classes}
+        found = {e.title: e for e in examples(self._page.state.entities, classes)}
+        if found != self._examples:
+            self._examples = found
+            self._choice.set_options(list(found))
+
+    def _take_example(self) -> None:
+        chosen = self._examples.get(self._choice.value or "")
+        if chosen is not None:
+            self._editor.value = chosen.query
+            self._inferred.value = chosen.inferred
+
+    async def _ask(self) -> None:
+        limit = min(max(float(self._limit.value or _TIMEOUT_S), 0.1), 60.0)
+        began_s = time.perf_counter()
+        self._error.text, self._notes.text, self._said.text = "", "", "asking ..."
+        self._button.set_enabled(False)
+        try:
+            query = Sparql(
+                query=self._editor.value or " ",
+                inferred=bool(self._inferred.value),
+                as_of=None if self._page.moment.is_now else self._page.state.commit,
+                timeout=limit,
+                limit=_ROWS,
+            )
+            result = await self._page.live.ask(query, limit + 30.0)
+        except errors.SemmapError as error:
+            self._error.text, self._said.text = _with_advice(error.text), ""
+            return
+        finally:
+            self._button.set_enabled(True)
+        self._show(result, time.perf_counter() - began_s)
+
+    def _show(self, result: SparqlResult, elapsed_s: float) -> None:
+        found = rows_of(result, self._page.state.entities)
+        self._result = result
+        self._save.set_enabled(result.kind == "select")
+        self._said.text = summary(result, elapsed_s)
+        self._notes.text = "\n".join(result.notes)
+        self._table.columns = columns_of((f"c{i}", name) for i, name in enumerate(found.columns))
+        self._table.rows, self._table.selected = found.rows, []
+
+    def _select(self, rows: list[dict[str, object]]) -> None:
+        names = names_of(rows)
+        if names:
+            self._page.select(names, "sparql")
+
+    def _watch(self) -> None:
+        if self._page.watch is not None and self._editor.value:
+            self._page.watch(self._editor.value, bool(self._inferred.value))
+
+    def _download(self) -> None:
+        if self._result is not None:
+            ui.download.content(text(self._result, "csv"), "rows.csv", "text/csv")
+
+
+def _with_advice(sentence: str) -> str:
+    """Errors speak of commands; here there are panels for them."""
+    if "read-only" in sentence:
+        return f"{sentence} (here: the panels Add and Details)"
+    return sentence

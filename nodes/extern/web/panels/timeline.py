@@ -1,0 +1,209 @@
+"""The time: a slider over the commits, play, step, what is different, and back to now."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any, Final
+
+from nicegui import ui
+
+from nodes.extern.cli.output.lines import touched
+from nodes.extern.phrasing import author, moment
+from nodes.extern.web.differences import Difference, Mark, counted
+from nodes.extern.web.page import Page
+from nodes.runtime import rhythm
+from schemas import errors
+
+_SPEEDS: Final = {0.1: "0.1 ×", 1.0: "1 ×", 10.0: "10 ×", 100.0: "100 ×", 1000.0: "1000 ×"}
+_COMPARED: Final = {"before": "the commit before", "now": "now", "": "nothing"}
+_SMALL: Final = "dense options-dense borderless"
+_AT_MOST: Final[dict[str, Any]] = {"throttle": 0.1, "leading_events": True, "trailing_events": True}
+_DRAWN_S: Final = 0.15
+"""No moment is shown for less while the past is played."""
+_FEW: Final = 12
+COLOURS: Final[dict[Mark, str]] = {
+    "added": "positive",
+    "removed": "negative",
+    "moved": "deep-purple",
+    "changed": "teal",
+}
+"""In which colour of the page's palette a difference is marked."""
+
+
+def timeline(page: Page) -> None:
+    """Draw it where it is called."""
+    _Timeline(page)
+
+
+class _Timeline:
+    """Of one tab."""
+
+    def __init__(self, page: Page) -> None:
+        self._page = page
+        self._is_playing = False
+        self._wanted: int | None = None
+        with ui.column().classes("semmap-bar") as self._bar:
+            self._bar.props('role="group" aria-label="Time"')
+            with ui.row().classes("w-full items-center no-wrap gap-2"):
+                self._back = self._button("skip_previous", "One commit back", lambda: self._step(-1))
+                self._play = self._button("play_arrow", "Play", self._toggle)
+                self._on = self._button("skip_next", "One commit on", lambda: self._step(1))
+                self._slider = ui.slider(min=1, max=1, value=1).classes("col")
+                self._slider.props('label aria-label="Commit"')
+                self._slider.on("update:model-value", self._on_slider, **_AT_MOST)
+                self._when = ui.input(placeholder="commit or time").classes("w-36 gt-sm")
+                self._when.props(f'{_SMALL} aria-label="Go to a commit or a time, such as 12:30"')
+                self._when.on("keydown.enter", self._go_to_when)
+                self._speed = ui.select(_SPEEDS, value=1.0).classes("gt-xs")
+                self._speed.props(f'{_SMALL} aria-label="Speed"')
+                compared = ui.select(_COMPARED, value=page.compared, label="marked against")
+                compared.props(_SMALL).classes("w-40 gt-sm")
+                compared.on_value_change(lambda event: page.compare(event.value))
+                self._now = ui.button("Now", on_click=lambda: self._go(None))
+                self._now.props("dense unelevated color=warning text-color=black padding='2px 10px'")
+                self._now.tooltip("Back to now (Home)")
+            with ui.row().classes("w-full items-center gap-x-2 gap-y-0"):
+                self._caption = ui.label().props('role="status"').classes("ellipsis")
+                self._differences = ui.row().classes("items-center gap-1")
+                self._differences.props('aria-label="What is different"')
+        page.on_moment(self._show)
+        page.on_change(self._show)
+        page.client.on_delete(self._leave)
+        self._stop = page.tape.listen(self._told)
+        page.tape.read()
+        self._show()
+
+    def _button(self, icon: str, label: str, act: Any) -> ui.button:
+        button = ui.button(icon=icon, on_click=act).tooltip(label)
+        return button.props(f'flat round dense color=secondary aria-label="{label}"')
+
+    def _leave(self) -> None:
+        self._is_playing = False
+        self._stop()
+
+    def _told(self) -> None:
+        """More is known of the commits."""
+        with self._page.client:
+            self._show()
+
+    # Where to
+
+    def _go(self, commit: int | None) -> None:
+        self._is_playing = False
+        self._page.go_to(commit)
+
+    @property
+    def _shown(self) -> int:
+        """The commit after which the map is shown."""
+        return self._page.state.commit
+
+    def _step(self, by: int) -> None:
+        to = self._shown + by
+        if to < self._page.tape.first:
+            self._page.tell(f"The history begins with commit {self._page.tape.first}.")
+        elif to >= self._page.live.commit:
+            self._go(None)
+        else:
+            self._go(to)
+
+    def _on_slider(self, event: Any) -> None:
+        """The slider is dragged: the newest place counts, and one at a time is fetched."""
+        commit = int(event.args)
+        self._is_playing = False
+        was, self._wanted = self._wanted, commit
+        if was is None:
+            self._page.later(self._follow_slider())
+
+    async def _follow_slider(self) -> None:
+        try:
+            commit: int | None = None
+            while self._wanted is not None and self._wanted != commit:
+                commit = self._wanted
+                if commit >= self._page.live.commit:
+                    self._page.go_to(None)
+                else:
+                    await self._page.arrive(commit)
+        finally:
+            self._wanted = None
+
+    def _go_to_when(self) -> None:
+        text = str(self._when.value or "").strip()
+        if not text:
+            return
+        try:
+            commit = self._page.tape.seq_at(text)
+        except errors.SemmapError as error:
+            self._page.tell(error.text, "warning")
+            return
+        self._go(None if commit == self._page.live.commit else commit)
+
+    # Playing
+
+    def _toggle(self) -> None:
+        self._is_playing = not self._is_playing
+        if self._is_playing:
+            self._page.later(self._run())
+        self._show()
+
+    async def _run(self) -> None:
+        page = self._page
+        if page.moment.is_now and not await page.arrive(page.tape.first):
+            self._is_playing = False
+        while self._is_playing and not page.moment.is_now:
+            stamps = [row.stamp_ns for row in page.tape.rows]
+            here = self._shown - page.tape.first
+            if not 0 <= here < len(stamps):
+                break
+            place, wait_s = rhythm.ahead(stamps, here, speed=float(self._speed.value), least_s=_DRAWN_S)
+            await asyncio.sleep(wait_s)
+            if not self._is_playing or self._shown - page.tape.first != here:
+                continue
+            if place == here or page.tape.rows[place].seq >= page.live.commit:
+                page.go_to(None)
+            elif not await page.arrive(page.tape.rows[place].seq):
+                break
+        self._is_playing = False
+        self._show()
+
+    # What is shown
+
+    def _show(self) -> None:
+        page, shown = self._page, self._shown
+        last = page.live.commit
+        is_past = not page.moment.is_now
+        self._slider.props["min"], self._slider.props["max"] = page.tape.first, max(last, page.tape.first)
+        if self._wanted is None:
+            self._slider.set_value(shown)
+        self._play.props(f"icon={'pause' if self._is_playing else 'play_arrow'}")
+        self._now.set_visibility(is_past)
+        self._bar.classes(add="is-past" if is_past else "", remove="" if is_past else "is-past")
+        self._on.set_enabled(is_past)
+        self._back.set_enabled(shown > page.tape.first)
+        self._caption.text = self._said(shown, last, is_past=is_past)
+        self._differences.clear()
+        if is_past and page.compared:
+            with self._differences:
+                self._draw_differences()
+
+    def _said(self, shown: int, last: int, *, is_past: bool) -> str:
+        if not is_past:
+            return f"Now: commit {shown}" if shown >= 0 else "No map yet"
+        row = self._page.tape.row(shown)
+        if row is None:
+            return f"The past: commit {shown} of {last}"
+        why = row.reason or touched(row)
+        return f"The past: commit {shown} of {last} · {moment(row.stamp_ns)} · {author(row)}: {why}"
+
+    def _draw_differences(self) -> None:
+        found = self._page.differences
+        against = "since then" if self._page.compared == "now" else "by this commit"
+        ui.label(f"{counted(found)} {against}").classes("text-caption")
+        for name, difference in list(found.items())[:_FEW]:
+            self._chip(name, difference)
+        if len(found) > _FEW:
+            ui.label(f"and {len(found) - _FEW} more").classes("text-caption")
+
+    def _chip(self, name: str, difference: Difference) -> None:
+        chip = ui.chip(name, on_click=lambda: self._page.select((name,), by="timeline"))
+        chip.props(f"dense square color={COLOURS[difference.mark]} text-color=white")
+        chip.tooltip(difference.text)

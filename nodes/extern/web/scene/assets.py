@@ -1,0 +1,88 @@
+"""What all tabs draw with: the surfaces of models and of the world, each asked for once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.drawing.surfaces import Kind, SurfaceCache
+from nodes.extern.web.live import Live
+from nodes.extern.web.moments import State
+from nodes.extern.web.scene.meshes import glb
+from nodes.extern.web.scene.picking import corners_of
+from nodes.extern.web.scene.shown import BOX, Key
+from schemas import errors, keys
+from schemas.entities import Size
+from schemas.scenes import Surface, SurfaceQuery, WorldQuery
+
+_AT_ONCE: Final = 50
+_FAR_M: Final = 100.0
+
+
+class Assets:
+    """Surfaces as the simulator tells them; `changed` is called when there are more."""
+
+    def __init__(self, live: Live, changed: Callable[[], None]) -> None:
+        self._live = live
+        self._changed = changed
+        self._surfaces = SurfaceCache()
+        self._glbs: dict[Key, bytes] = {}
+        self._run = ""
+        self.walls: Surface | None = None
+
+    def surface_of(self, model: str, size_m: Size) -> Surface | None:
+        """What a model looks like at a size, if that is known."""
+        return None if model == BOX else self._surfaces.of_kind(model, size_m)
+
+    def glb(self, key: Key) -> bytes:
+        """The glTF file of a model at a size and with a look; it must be known."""
+        if (known := self._glbs.get(key)) is not None:
+            return known
+        look, model, size_m = key
+        surface = self._surfaces.of_kind(model, size_m)
+        assert surface is not None
+        made = self._glbs[key] = glb(surface, look)
+        return made
+
+    async def fetch(self) -> None:
+        """Ask what bodies look like, as far as that was never told, and the world if it is another one."""
+        scene = self._live.scene
+        if scene is None:
+            return
+        wanted = list(self._surfaces.wanted(scene.bodies).items())
+        news = bool(wanted)
+        for start in range(0, len(wanted), _AT_ONCE):
+            await self._fetch_some(dict(wanted[start : start + _AT_ONCE]))
+        if scene.run != self._run:
+            self._run, news = scene.run, True
+            try:
+                self.walls = await self._live.query(keys.SIM, WorldQuery())
+            except errors.SemmapError:  # an older simulator, or one that this role may not ask
+                self.walls = None
+        if news:
+            self._changed()
+
+    async def _fetch_some(self, kinds: dict[str, Kind]) -> None:
+        try:
+            told = await self._live.query(keys.SIM, SurfaceQuery(names=tuple(kinds)))
+        except errors.SemmapError:
+            self._surfaces.give_up(kinds.values())
+            return
+        for name, surface in told.surfaces.items():
+            self._surfaces.take(kinds[name], surface)
+
+    def extent(self, state: State) -> NDArray[np.float64]:
+        """(N, 3) [m]: points around what there is, for a view of all of it; what is far off is left out."""
+        points = [
+            corners_of(entity.pose, entity.size_m or (0.1, 0.1, 0.1))
+            for entity in state.entities.values()
+            if entity.pose is not None
+        ]
+        if not points:
+            return np.empty((0, 3))
+        found = np.concatenate(points)
+        near = np.abs(found - np.median(found, axis=0)).max(axis=1) < _FAR_M
+        return np.asarray(found[near])

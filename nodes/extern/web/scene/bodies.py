@@ -1,0 +1,132 @@
+"""Bodies in a viser scene: one batched mesh for each model, of which only what has changed is sent."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from itertools import count
+from typing import Any, Final
+
+import numpy as np
+from viser import BatchedGlbHandle, BatchedMeshHandle, SceneApi
+
+from nodes.extern.web.scene.meshes import cube, opacity_of
+from nodes.extern.web.scene.shown import BOX, Batch, Key, Shown, batches
+from schemas.entities import Pose
+
+MODIFIERS: Final = (None, "shift", "cmd/ctrl", "cmd/ctrl+shift")
+_MANY: Final = 400
+"""Of more things, what is far away is drawn coarser, and nothing casts a shadow."""
+
+Handle = BatchedGlbHandle | BatchedMeshHandle
+Pixel = tuple[float, float]
+"""Where on the picture, as shares of its width and height."""
+Clicked = Callable[[str, bool, Pixel], None]
+"""Called on viser's thread, with the name, whether it is to be selected beside others, and where."""
+
+
+class Bodies:
+    """What of the map and the scene has a place, in one tab's view."""
+
+    def __init__(
+        self, scene: SceneApi, glb_of: Callable[[Key], bytes], clicked: Clicked | None, path: str = "/bodies"
+    ) -> None:
+        """`glb_of(key)` is the glTF file of a batch with a model. Without `clicked` nothing is to click."""
+        self._scene = scene
+        self._glb_of = glb_of
+        self._clicked = clicked
+        self._path = path
+        self._batches: dict[Key, Batch] = {}
+        self._handles: dict[Key, Handle] = {}
+        self._rows: dict[str, tuple[Key, int]] = {}
+        self._numbers = count()
+
+    def show(self, things: Mapping[str, Shown]) -> None:
+        """Show these, and nothing else."""
+        wanted = batches(things)
+        for key in self._batches.keys() - wanted.keys():
+            self._handles.pop(key).remove()
+        for key, batch in wanted.items():
+            self._set(key, batch, many=len(things) > _MANY)
+        self._batches = wanted
+        self._rows = {
+            name: (key, row) for key, batch in wanted.items() for row, name in enumerate(batch.names)
+        }
+
+    def move(self, poses: Mapping[str, Pose]) -> None:
+        """Put those that are shown where they are now."""
+        moved: set[Key] = set()
+        for name, pose in poses.items():
+            if (found := self._rows.get(name)) is not None:
+                key, row = found
+                batch = self._batches[key]
+                batch.positions[row] = pose.position_m
+                batch.wxyzs[row] = pose.orientation_wxyz
+                moved.add(key)
+        for key in moved:
+            self._send(self._handles[key], self._batches[key])
+
+    def _set(self, key: Key, batch: Batch, *, many: bool) -> None:
+        before, handle = self._batches.get(key), self._handles.get(key)
+        if before is None or handle is None:
+            self._handles[key] = self._add(key, batch, many=many)
+        elif key[1] == BOX and not _is_like(before, batch):
+            handle.remove()
+            self._handles[key] = self._add(key, batch, many=many)
+        elif before.names != batch.names or not _stands_like(before, batch):
+            self._send(handle, batch)
+
+    @staticmethod
+    def _send(handle: Handle, batch: Batch) -> None:
+        handle.batched_positions = batch.positions
+        handle.batched_wxyzs = batch.wxyzs
+
+    def _add(self, key: Key, batch: Batch, *, many: bool) -> Handle:
+        look, model, _ = key
+        name = f"{self._path}/{next(self._numbers)}"
+        is_clear = opacity_of(look) < 1.0
+        common: dict[str, Any] = {
+            "batched_positions": batch.positions,
+            "batched_wxyzs": batch.wxyzs,
+            "cast_shadow": not (many or is_clear),
+            "receive_shadow": not (many or is_clear),
+        }
+        handle: Handle
+        if model == BOX:
+            points, triangles = cube()
+            handle = self._scene.add_batched_meshes_simple(
+                name,
+                points,
+                triangles,
+                batched_scales=batch.sizes,
+                batched_colors=batch.colours,
+                opacity=opacity_of(look) if is_clear else None,
+                flat_shading=True,
+                lod="off",
+                **common,
+            )
+        else:
+            handle = self._scene.add_batched_glb(
+                name, self._glb_of(key), lod="auto" if many else "off", **common
+            )
+        if self._clicked is not None:
+            self._listen(handle, key, self._clicked)
+        return handle
+
+    def _listen(self, handle: Handle, key: Key, clicked: Clicked) -> None:
+        async def on_click(event: Any) -> None:
+            batch = self._batches.get(key)
+            row = event.instance_index or 0
+            if batch is not None and row < len(batch.names):
+                clicked(batch.names[row], event.modifier is not None, event.screen_pos)
+
+        for modifier in MODIFIERS:
+            handle.on_click(modifier=modifier)(on_click)
+
+
+def _is_like(before: Batch, now: Batch) -> bool:
+    """The same number of boxes, of the same sizes and colours?"""
+    return np.array_equal(before.sizes, now.sizes) and np.array_equal(before.colours, now.colours)
+
+
+def _stands_like(before: Batch, now: Batch) -> bool:
+    return np.array_equal(before.positions, now.positions) and np.array_equal(before.wxyzs, now.wxyzs)

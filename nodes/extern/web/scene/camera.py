@@ -1,0 +1,123 @@
+"""Where a viewer stands: the way from what the map holds to a first view, and from a view to what is seen."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Mapping
+from typing import Final
+
+import numpy as np
+from msgspec import Struct
+from numpy.typing import NDArray
+
+from schemas.entities import Vector
+from schemas.relations import ViewPoint
+
+Floats = NDArray[np.float64]
+
+FOV_RAD: Final = math.radians(40.0)
+"""Of the first view, from top to bottom."""
+_TILT_RAD: Final = math.radians(52.0)
+_MARGIN: Final = 1.06
+_FARTHEST_M: Final = 200.0
+_LABEL_PX: Final = 17.0
+_LETTER_PX: Final = 7.0
+_NEAREST_M: Final = 0.05
+
+
+class View(Struct, frozen=True):
+    """A pinhole: where it is [m], its optical frame (x right, y down, z ahead) as wxyz, and its picture."""
+
+    position_m: Vector
+    wxyz: tuple[float, float, float, float]
+    fov_rad: float
+    width: float
+    height: float
+
+    def project(self, points: Floats) -> Floats:
+        """(N, 3): pixels from the left, pixels from the top, and metres ahead of points (N, 3) [m]."""
+        w, x, y, z = self.wxyz
+        rotation = np.array(
+            [
+                (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+                (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+                (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+            ]
+        )
+        own = (points - np.array(self.position_m)) @ rotation
+        focal = self.height / 2.0 / math.tan(self.fov_rad / 2.0)
+        ahead = np.where(np.abs(own[:, 2]) < 1e-6, 1e-6, own[:, 2])
+        return np.column_stack(
+            [
+                self.width / 2.0 + focal * own[:, 0] / ahead,
+                self.height / 2.0 + focal * own[:, 1] / ahead,
+                own[:, 2],
+            ]
+        )
+
+    @property
+    def viewpoint(self) -> ViewPoint:
+        """Who asks what is left or behind from here: position [m] and heading [rad] about the map's z."""
+        w, x, y, z = self.wxyz
+        ahead = (2 * (x * z + w * y), 2 * (y * z - w * x))
+        up = (-2 * (x * y - w * z), -(1 - 2 * (x * x + z * z)))
+        east, north = ahead if math.hypot(*ahead) > 0.05 else up  # straight down: what is up in the picture
+        px, py, pz = self.position_m
+        return (px, py, pz, math.atan2(north, east))
+
+
+def first_view(points: Floats, aspect: float) -> tuple[Vector, Vector]:
+    """Position and target [m] from which all of `points` (N, 3) is seen, from the south and above.
+
+    `aspect` is how much wider than high the picture is.
+    """
+    if not len(points):
+        points = np.array([(-2.0, -2.0, 0.0), (2.0, 2.0, 1.0)])
+    low, high = points.min(axis=0), points.max(axis=0)
+    middle = (low + high) / 2.0
+    back = np.array((0.0, -math.cos(_TILT_RAD), math.sin(_TILT_RAD)))
+    up = np.array((0.0, math.sin(_TILT_RAD), math.cos(_TILT_RAD)))
+    own = np.array(list(itertools.product(*zip(low, high, strict=True)))) - middle
+    slope = math.tan(FOV_RAD / 2.0)
+    distances = own @ back + np.maximum(np.abs(own @ up) / slope, np.abs(own[:, 0]) / slope / aspect)
+    distance = min(_FARTHEST_M, max(1.5, float(distances.max()) * _MARGIN))
+    eye = middle + distance * back
+    return _vector(eye), _vector(middle)
+
+
+def uncrowded(
+    view: View, labels: Mapping[str, tuple[str, Vector]], first: Iterable[str] = (), most: int = 40
+) -> list[str]:
+    """The keys of those `labels` (a text and its place [m]) that fit into the picture side by side.
+
+    The `first` have precedence in their order, then the nearest; at most so many.
+    """
+    if not labels:
+        return []
+    keys, ranks = list(labels), {key: rank for rank, key in enumerate(first)}
+    chosen: list[str] = []
+    taken: list[tuple[float, float, float, float]] = []
+    at = view.project(np.array([place for _, place in labels.values()], dtype=float))
+    for row in sorted(range(len(keys)), key=lambda row: (ranks.get(keys[row], len(ranks)), at[row, 2])):
+        x, y, ahead = (float(value) for value in at[row])
+        if ahead <= _NEAREST_M or not (0.0 <= x <= view.width and 0.0 <= y <= view.height):
+            continue
+        half = len(labels[keys[row]][0]) * _LETTER_PX / 2.0 + 5.0
+        box = (x - half, y - _LABEL_PX, x + half, y)
+        if any(_overlap(box, other) for other in taken):
+            continue
+        taken.append(box)
+        chosen.append(keys[row])
+        if len(chosen) >= most:
+            break
+    return chosen
+
+
+def _overlap(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> bool:
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+
+
+def _vector(row: Floats) -> Vector:
+    x, y, z = (float(value) for value in row)
+    return (x, y, z)

@@ -1,0 +1,96 @@
+"""Marks in a tab's view: labels, outlines, and lines with something written beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import count
+
+import numpy as np
+from numpy.typing import NDArray
+from viser import LabelHandle, LineSegmentsHandle, SceneApi
+
+from schemas.entities import Vector
+
+Rgb = tuple[int, int, int]
+Segments = NDArray[np.float32]
+Written = tuple[str, Vector]
+"""A text and where it is written [m], map frame."""
+
+
+class Labels:
+    """Texts at points, each under a key; only what has changed is sent."""
+
+    def __init__(self, scene: SceneApi, path: str, *, scale: float = 1.0, depth_test: bool = False) -> None:
+        self._scene, self._path = scene, path
+        self._scale, self._depth_test = scale, depth_test
+        self._drawn: dict[str, tuple[LabelHandle, str]] = {}
+        self._numbers = count()
+
+    def show(self, wanted: Mapping[str, Written]) -> None:
+        """Have these labels, by key the text and the place [m], and no others."""
+        for key in self._drawn.keys() - wanted.keys():
+            self._drawn.pop(key)[0].remove()
+        for key, (text, at) in wanted.items():
+            found = self._drawn.get(key)
+            if found is not None and found[1] == text:
+                if not np.allclose(found[0].position, at, atol=1e-3):
+                    found[0].position = at
+                continue
+            if found is not None:
+                found[0].remove()
+            self._drawn[key] = (self._add(text, at), text)
+
+    def _add(self, text: str, at: Vector) -> LabelHandle:
+        return self._scene.add_label(
+            f"{self._path}/{next(self._numbers)}",
+            text,
+            position=at,
+            font_screen_scale=self._scale,
+            depth_test=self._depth_test,
+            anchor="bottom-center",
+        )
+
+
+class Lines:
+    """Lines of one kind, all in one node."""
+
+    def __init__(self, scene: SceneApi, path: str, *, width: float = 2.0) -> None:
+        self._scene, self._path, self._width = scene, path, width
+        self._handle: LineSegmentsHandle | None = None
+        self._drawn = b""
+
+    def show(self, pieces: Sequence[tuple[Segments, Rgb]]) -> None:
+        """Have these lines, (N, 2, 3) [m] of one colour each, and no others."""
+        segments = joined(piece for piece, _ in pieces)
+        colours = np.concatenate(
+            [np.empty((0, 2, 3), np.uint8), *(np.tile(rgb, (len(piece), 2, 1)) for piece, rgb in pieces)]
+        ).astype(np.uint8)
+        if (now := segments.tobytes() + colours.tobytes()) == self._drawn:
+            return
+        self._drawn = now
+        if not len(segments):
+            if self._handle is not None:
+                self._handle.remove()
+                self._handle = None
+            return
+        self._handle = self._scene.add_line_segments(
+            self._path, segments, colours, thickness=self._width, thickness_units="screen"
+        )
+
+
+def line(a: Vector, b: Vector) -> Segments:
+    """(1, 2, 3): the line from one point to another."""
+    return np.array([(a, b)], dtype=np.float32)
+
+
+def dashed(a: Vector, b: Vector, dash_m: float = 0.08) -> Segments:
+    """(N, 2, 3): the same in dashes."""
+    start, way = np.array(a), np.array(b) - np.array(a)
+    pieces = max(1, min(200, round(float(np.linalg.norm(way)) / dash_m / 2.0)))
+    at = np.arange(pieces)[:, None] / pieces
+    return np.stack([start + at * way, start + (at + 0.5 / pieces) * way], axis=1).astype(np.float32)
+
+
+def joined(outlines: Iterable[Segments]) -> Segments:
+    """All of these as one."""
+    return np.concatenate([np.empty((0, 2, 3), np.float32), *outlines])

@@ -1,0 +1,119 @@
+"""Rooms: a sheet on the floor for each place, its name, and the world's walls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+from viser import BatchedGlbHandle, SceneApi
+
+from nodes.drawing.palette import colour_of
+from nodes.extern.web.scene.marks import Written
+from nodes.extern.web.scene.meshes import cube, glb, linear, srgb
+from schemas.entities import Entity
+from schemas.scenes import Surface
+
+_SHEET_M = 0.01
+_ROOMS_IN_ROOM = 2
+_LIGHT, _DARK = 1.0, 0.03
+"""The background, as linear light."""
+_PALE = 0.6
+"""How much of a room's colour is the background's."""
+
+
+class Rooms:
+    """The places of the map and the walls of the world, in one tab's view."""
+
+    def __init__(self, scene: SceneApi) -> None:
+        self._scene = scene
+        self._paper = _LIGHT
+        self._drawn: tuple[tuple[object, ...], ...] = ()
+        self._places: list[Entity] = []
+        self.names: dict[str, Written] = {}
+        """What the places are called, and where that may be written."""
+        self._walls: BatchedGlbHandle | None = None
+
+    def show(self, entities: Mapping[str, Entity]) -> None:
+        """Draw the places among these; those that have a size as sheets, the smaller on the larger."""
+        places = sorted(
+            (entity for entity in entities.values() if entity.place and entity.pose is not None),
+            key=lambda place: (-_area(place), place.name),
+        )
+        drawn = tuple((p.name, p.class_, p.pose, p.size_m, _called(p)) for p in places)
+        if drawn == self._drawn:
+            return
+        self._drawn, self._places = drawn, places
+        self._sheets([place for place in places if place.size_m is not None])
+        self.names = {place.name: _written(place) for place in places if not _is_around(place, places)}
+
+    def darken(self, dark: bool) -> None:
+        """Let the floors go with a dark background, or a light one."""
+        paper = _DARK if dark else _LIGHT
+        if paper != self._paper:
+            self._paper = paper
+            self._sheets([place for place in self._places if place.size_m is not None])
+
+    def _sheets(self, places: list[Entity]) -> None:
+        if not places:
+            self._scene.remove_by_name("/rooms/floors")
+            return
+        points, triangles = cube()
+        heights = -_SHEET_M * np.arange(len(places), 0, -1)
+        positions = np.array([place.pose.position_m for place in places if place.pose is not None])
+        positions[:, 2] += heights - _SHEET_M
+        sizes = np.array([place.size_m for place in places])
+        sizes[:, 2] = _SHEET_M
+        colours = linear(np.array([colour_of(place.class_) for place in places], dtype=np.uint8))
+        self._scene.add_batched_meshes_simple(
+            "/rooms/floors",
+            points,
+            triangles,
+            batched_positions=positions,
+            batched_wxyzs=np.array([p.pose.orientation_wxyz for p in places if p.pose is not None]),
+            batched_scales=sizes,
+            batched_colors=srgb(colours * (1.0 - _PALE) + self._paper * _PALE),
+            lod="off",
+            cast_shadow=False,
+        )
+
+    def walls(self, surface: Surface | None) -> None:
+        """Draw the walls, seen through; None for none."""
+        if self._walls is not None:
+            self._walls.remove()
+            self._walls = None
+        if surface is not None and surface.triangles:
+            self._walls = self._scene.add_batched_glb(
+                "/rooms/walls",
+                glb(surface, "wall"),
+                batched_positions=np.zeros((1, 3)),
+                batched_wxyzs=np.array([(1.0, 0.0, 0.0, 0.0)]),
+                lod="off",
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+
+
+def _area(place: Entity) -> float:
+    return place.size_m[0] * place.size_m[1] if place.size_m is not None else 0.0
+
+
+def _is_around(place: Entity, places: Iterable[Entity]) -> bool:
+    """Does it have several others in it, so that its name belongs nowhere in particular?"""
+    if place.pose is None or place.size_m is None:
+        return False
+    (x, y, _), (width, depth, _) = place.pose.position_m, place.size_m
+    inner = 0
+    for other in places:
+        if other is not place and other.pose is not None:
+            ox, oy, _ = other.pose.position_m
+            inner += abs(ox - x) <= width / 2.0 and abs(oy - y) <= depth / 2.0
+    return inner > _ROOMS_IN_ROOM
+
+
+def _written(place: Entity) -> Written:
+    assert place.pose is not None
+    return _called(place).upper(), place.pose.position_m
+
+
+def _called(place: Entity) -> str:
+    return place.preferred_reference or place.name

@@ -1,0 +1,112 @@
+"""What a tab shows of each entity and body, and how that is batched: one mesh with many instances a model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Final
+
+import numpy as np
+from msgspec import Struct
+from numpy.typing import NDArray
+
+from nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of
+from nodes.drawing.palette import GREY, colour_of
+from nodes.extern.web.scene.meshes import Look, linear, srgb, veiled
+from schemas.entities import Entity, Pose, Size
+from schemas.scenes import Body, Surface
+
+Floats = NDArray[np.float32]
+
+BOX: Final = "box"
+"""In place of a model: a box of the thing's size."""
+
+SurfaceOf = Callable[[str, Size], Surface | None]
+"""The surface of a model at a size, if it is known."""
+
+
+class Shown(Struct, frozen=True, gc=False):
+    """One thing as it is drawn. `size_m` is along its own axes, from its bottom centre up."""
+
+    look: Look
+    model: str
+    size_m: Size
+    rgb: tuple[int, int, int]
+    pose: Pose
+
+    @property
+    def key(self) -> Key:
+        """Those with the same key are one batch: boxes of all sizes are."""
+        return (self.look, self.model, UNKNOWN_SIZE_M if self.model == BOX else self.size_m)
+
+
+Key = tuple[Look, str, Size]
+
+
+class Batch(Struct, frozen=True):
+    """Things of one key, as rows: positions and sizes (N, 3) [m], wxyzs (N, 4), sRGB colours (N, 3)."""
+
+    names: tuple[str, ...]
+    positions: Floats
+    wxyzs: Floats
+    sizes: Floats
+    colours: NDArray[np.uint8]
+
+
+def shown(
+    entity: Entity | None,
+    body: Body | None,
+    pose: Pose | None,
+    surface_of: SurfaceOf,
+    *,
+    simulated: bool,
+    past: bool = False,
+) -> Shown | None:
+    """How an entity, a body, or an entity with its body is drawn; None for what is a place or nowhere.
+
+    `pose` is where the body stands by now. In the `past` there are entities only.
+    """
+    figure = figure_of(entity, body, simulated=simulated and not past)
+    pose = pose or pose_of(entity, body)
+    if figure is None or pose is None or figure.look == "place":
+        return None
+    model = body.model if body is not None else _model_of(entity)
+    size_m = figure.size_m
+    if not model or surface_of(model, size_m) is None:
+        model = BOX
+    look: Look = "past" if past else _look_of(figure)
+    rgb = GREY if figure.look == "furniture" else colour_of(figure.class_)
+    return Shown(look, model, size_m, rgb, pose)
+
+
+def _look_of(figure: Figure) -> Look:
+    match figure.look:
+        case "ghost":
+            return "ghost"
+        case "believed":
+            return "believed"
+    return "solid"
+
+
+def _model_of(entity: Entity | None) -> str:
+    if entity is None:
+        return ""
+    return entity.body.model if entity.body is not None and entity.body.model else entity.model
+
+
+def batches(things: Mapping[str, Shown]) -> dict[Key, Batch]:
+    """Everything that is shown, by key; the names of a batch are in the order of `things`."""
+    names: dict[Key, list[str]] = {}
+    for name, thing in things.items():
+        names.setdefault(thing.key, []).append(name)
+    return {key: _batch(some, [things[name] for name in some]) for key, some in names.items()}
+
+
+def _batch(names: Iterable[str], things: list[Shown]) -> Batch:
+    rgb = np.array([thing.rgb for thing in things], dtype=np.uint8)
+    return Batch(
+        names=tuple(names),
+        positions=np.array([thing.pose.position_m for thing in things], dtype=np.float32),
+        wxyzs=np.array([thing.pose.orientation_wxyz for thing in things], dtype=np.float32),
+        sizes=np.array([thing.size_m for thing in things], dtype=np.float32),
+        colours=srgb(veiled(linear(rgb), things[0].look)),
+    )

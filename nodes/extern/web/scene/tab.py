@@ -1,0 +1,493 @@
+"""One tab's view of the scene: what is drawn there, and what a person does in it."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Callable, Mapping
+from typing import Any, Final, Literal
+
+from viser import ClientHandle
+
+from nodes.extern.web.differences import Mark
+from nodes.extern.web.page import Page, Place
+from nodes.extern.web.scene.assets import Assets
+from nodes.extern.web.scene.bodies import MODIFIERS, Bodies, Pixel
+from nodes.extern.web.scene.camera import FOV_RAD, View, first_view, uncrowded
+from nodes.extern.web.scene.differences import drawn
+from nodes.extern.web.scene.dragging import Gizmo, Phase, put_down
+from nodes.extern.web.scene.marks import Labels, Lines, Rgb, Written, dashed, joined, line
+from nodes.extern.web.scene.picking import Solid, edges_of, first_hit
+from nodes.extern.web.scene.relation_lines import relation_lines
+from nodes.extern.web.scene.rooms import Rooms
+from nodes.extern.web.scene.seen import Seen
+from nodes.extern.web.scene.shown import Key, Shown, shown
+from schemas import errors
+from schemas.commands import Move, Relations
+from schemas.entities import Entity, Pose, Size, Vector
+from schemas.relations import Relation, ViewPoint
+from schemas.scenes import Body
+
+Switch = Literal["names", "walls", "relations", "from here", "boxes", "observations", "cloud", "cameras"]
+SWITCHES: Final[dict[Switch, str]] = {
+    "names": "What things are called",
+    "walls": "The walls of the world",
+    "relations": "What the selected thing has to do with others, as measured",
+    "from here": "And what is left of it, behind it ..., as seen from here",
+    "boxes": "The boxes of all entities",
+    "observations": "What perception sees",
+    "cloud": "The points that perception sees",
+    "cameras": "The cameras with their pictures",
+}
+_ON: Final[frozenset[Switch]] = frozenset(("names", "walls", "relations"))
+
+_SELECTED: Final[Rgb] = (255, 120, 0)
+_BOX: Final[Rgb] = (120, 130, 150)
+_RELATION: Final[Rgb] = (0, 120, 200)
+_CHANGED: Final[dict[Mark, Rgb]] = {
+    "added": (0, 150, 70),
+    "removed": (215, 40, 40),
+    "moved": (130, 60, 200),
+    "changed": (0, 140, 150),
+}
+_SKY: Final[Rgb] = (255, 255, 255)
+_GROUND: Final[Rgb] = (190, 180, 170)
+_LABELS_S: Final = 0.25
+_CLICK_S: Final = 0.15
+_RENDER_S: Final = (0.3, 1.0, 3.0, 8.0)
+_NAMED: Final = 50
+"""Of so many selected things the names are written, whether or not there is room."""
+
+
+class TabScene:
+    """It belongs to the event loop of the page; viser's thread only hands over."""
+
+    def __init__(self, page: Page, assets: Assets) -> None:
+        self.page = page
+        self.on: set[Switch] = set(_ON)
+        self._assets = assets
+        self._loop = asyncio.get_running_loop()
+        self._client: ClientHandle | None = None
+        self._things: dict[str, Shown] = {}
+        self._known: dict[str, tuple[Entity | None, Body | None, Pose | None, Shown | None]] = {}
+        self._bodies_of: tuple[object, dict[str, Body]] = (None, {})
+        self._relations: tuple[Relation, ...] = ()
+        self._measures: dict[str, Written] = {}
+        """What is written at the lines of relations."""
+        self._asked = 0
+        self._dragging = ""
+        self._picking: asyncio.Future[Place | None] | None = None
+        self._clicked_at: Pixel = (-1.0, -1.0)
+        self._labels_due = False
+        self._camera: tuple[Any, ...] | None = None
+        """The last camera of this tab, for a frame that has to connect again."""
+        page.on_change(self._draw)
+        page.on_poses(self._on_poses)
+        page.on_select(self._on_select)
+        page.on_look(self._on_look)
+        page.pick, page.look = self.pick_place, self.viewpoint
+
+    # A frame comes and goes
+
+    def attach(self, client: ClientHandle) -> None:
+        """Draw everything in a frame that has connected."""
+        self._client, scene = client, client.scene
+        scene.configure_default_lights(cast_shadow=False)
+        scene.configure_environment_map(None)
+        scene.add_light_hemisphere("/sky", sky_color=_SKY, ground_color=_GROUND, intensity=1.6)
+        self._bodies = Bodies(scene, self._glb_of, self._hop(self._on_click))
+        self._rooms = Rooms(scene)
+        self._labels = Labels(scene, "/names", depth_test=False)
+        self._strong_labels = Labels(scene, "/selected/names", scale=1.15)
+        self._line_labels = Labels(scene, "/relations/names", scale=0.95)
+        self._outlines = Lines(scene, "/selected/outlines", width=3.5)
+        self._boxes = Lines(scene, "/boxes", width=1.0)
+        self._relation_lines = Lines(scene, "/relations/lines", width=2.5)
+        self._differences = Lines(scene, "/differences/lines", width=2.5)
+        self._difference_labels = Labels(scene, "/differences/names")
+        self._dragged = Bodies(scene, self._glb_of, None, "/dragged")
+        self._nudge = scene.add_frame("/nudge", show_axes=False)
+        self._gizmo = Gizmo(scene, self._hop(self._on_drag))
+        self._seen = Seen(scene, self.page.live)
+        self._listen(client)
+        self._on_look()
+        self._known.clear()
+        self._look_over(client)
+        self._rooms.walls(self._assets.walls if "walls" in self.on else None)
+        for switch in ("observations", "cloud", "cameras"):
+            self._seen.switch(switch, on=switch in self.on)
+        self._draw()
+        self._on_select()
+
+    def detach(self, client_id: int) -> None:
+        """The frame of this client has gone; what was half done is not done."""
+        if self._client is not None and self._client.client_id == client_id:
+            self._client = None
+            self._dragging = ""
+            self._seen.close()
+            self._end_picking(None)
+
+    def close(self) -> None:
+        """The tab has gone."""
+        if self._client is not None:
+            self.detach(self._client.client_id)
+
+    def _hop(self, function: Callable[..., None]) -> Callable[..., None]:
+        """The same function, called on the page's event loop."""
+
+        def call(*arguments: Any) -> None:
+            with contextlib.suppress(RuntimeError):  # the loop has ended
+                self._loop.call_soon_threadsafe(self._guarded, function, arguments)
+
+        return call
+
+    def _guarded(self, function: Callable[..., None], arguments: tuple[Any, ...]) -> None:
+        if self._client is not None:
+            with self.page.client:
+                function(*arguments)
+
+    def _listen(self, client: ClientHandle) -> None:
+        on_ray, on_camera = self._hop(self._on_ray), self._hop(self._on_camera)
+
+        async def clicked(event: Any) -> None:
+            on_ray(event.ray_origin, event.ray_direction, event.screen_pos)
+
+        for modifier in MODIFIERS:
+            client.scene.on_click(modifier=modifier)(clicked)  # type: ignore[arg-type]
+
+        @client.camera.on_update
+        async def _(_: Any) -> None:
+            on_camera()
+
+    def _look_over(self, client: ClientHandle) -> None:
+        """Let everything be in view, unless the tab was looking somewhere before it had to connect again."""
+        camera = client.camera
+        camera.fov = FOV_RAD
+        if self._camera is not None:
+            camera.position, camera.look_at = self._camera
+        else:
+            self.look_over()
+
+    def look_over(self) -> None:
+        """Look at all that there is, from above."""
+        if self._client is None:
+            return
+        camera = self._client.camera
+        aspect = camera.image_width / max(1, camera.image_height)
+        eye, target = first_view(self._assets.extent(self.page.state), aspect)
+        camera.position, camera.look_at = eye, target
+
+    def _on_look(self) -> None:
+        if self._client is not None:
+            self._client.gui.configure_theme(dark_mode=self.page.dark)
+            self._rooms.darken(self.page.dark)
+
+    # Drawing
+
+    def _glb_of(self, key: Key) -> bytes:
+        return self._assets.glb(key)
+
+    def _bodies_by_name(self) -> dict[str, Body]:
+        scene = self.page.live.scene if self.page.moment.is_now else None
+        if self._bodies_of[0] is not scene:
+            self._bodies_of = (scene, {body.name: body for body in scene.bodies} if scene else {})
+        return self._bodies_of[1]
+
+    def _wanted(self) -> dict[str, Shown]:
+        state, now = self.page.state, self.page.moment.is_now
+        bodies, known = self._bodies_by_name(), self._known
+        simulated = self.page.live.scene is not None
+        wanted, after = {}, {}
+        for name in [*state.entities, *(name for name in bodies if name not in state.entities)]:
+            entity, body, pose = state.entities.get(name), bodies.get(name), state.poses.get(name)
+            before = known.get(name)
+            if before is not None and before[0] is entity and before[1] is body and before[2] is pose:
+                thing = before[3]
+            else:
+                thing = shown(entity, body, pose, self._assets.surface_of, simulated=simulated, past=not now)
+            after[name] = (entity, body, pose, thing)
+            if thing is not None:
+                wanted[name] = thing
+        self._known = after
+        if self._dragging in wanted:
+            thing = wanted[self._dragging]
+            wanted[self._dragging] = Shown("ghost", thing.model, thing.size_m, thing.rgb, thing.pose)
+        return wanted
+
+    def _draw(self) -> None:
+        if self._client is None:
+            return
+        self._things = self._wanted()
+        with self._client.atomic():
+            self._bodies.show(self._things)
+            self._rooms.show(self.page.state.entities)
+            self._mark()
+        self._ask_relations()
+
+    def refresh(self) -> None:
+        """Draw what is known by now of models and walls."""
+        self._known.clear()
+        if self._client is not None:
+            self._rooms.walls(self._assets.walls if "walls" in self.on else None)
+        self._draw()
+
+    def _on_poses(self, names: tuple[str, ...]) -> None:
+        if self._client is None:
+            return
+        poses = self.page.state.poses
+        moved = {name: poses[name] for name in names if name in self._things and name in poses}
+        for name, pose in moved.items():
+            thing = self._things[name]
+            self._things[name] = Shown(thing.look, thing.model, thing.size_m, thing.rgb, pose)
+        self._bodies.move(moved)
+        if not moved.keys().isdisjoint(self.page.selected) or "boxes" in self.on:
+            self._mark()
+        self._label_soon()
+
+    def _mark(self) -> None:
+        """Outlines, the gizmo and labels, as things stand."""
+        selected = {name: self._things[name] for name in self.page.selected if name in self._things}
+        self._outlines.show([(joined(edges_of(t.pose, t.size_m) for t in selected.values()), _SELECTED)])
+        boxes = self._things.values() if "boxes" in self.on else ()
+        self._boxes.show([(joined(edges_of(t.pose, t.size_m) for t in boxes), _BOX)])
+        self._put_gizmo(selected)
+        self._draw_relations()
+        self._draw_differences()
+        self._label()
+
+    def _draw_differences(self) -> None:
+        pieces, labels = [], {}
+        for found in drawn(self.page.differences):
+            rgb, size_m = _CHANGED[found.mark], self._known_size_of(found.name) or found.size_m
+            at = found.then or found.now
+            assert at is not None
+            pieces.append((edges_of(at, size_m), rgb))
+            if found.then is not None and found.now is not None:
+                pieces.append((edges_of(found.now, size_m), rgb))
+                pieces.append((dashed(_middle(found.then, size_m), _middle(found.now, size_m)), rgb))
+            labels[found.name] = (found.text, _top(found.now or at, size_m))
+        self._differences.show(pieces)
+        self._difference_labels.show(dict(list(labels.items())[:40]))
+
+    def _known_size_of(self, name: str) -> Size | None:
+        return self._things[name].size_m if name in self._things else None
+
+    # Labels
+
+    def _on_camera(self) -> None:
+        if self._client is not None:
+            camera = self._client.camera
+            self._camera = (tuple(camera.position), tuple(camera.look_at))
+        self._label_soon()
+
+    def _label_soon(self) -> None:
+        if not self._labels_due:
+            self._labels_due = True
+            self._loop.call_later(_LABELS_S, self._label)
+
+    def _label(self) -> None:
+        self._labels_due = False
+        if self._client is None:
+            return
+        things = {name: self._named(name) for name in self._things if name in self.page.state.entities}
+        selected = {name: things[name] for name in self.page.selected[:_NAMED] if name in things}
+        rooms, others = self._rooms.names, dict[str, Written]()
+        if "names" in self.on:
+            every = {**selected, **rooms, **self._measures, **things}
+            chosen = uncrowded(self._view(self._client), every, (*selected, *self._measures, *rooms))
+            others = {name: every[name] for name in chosen if name in things and name not in selected}
+            rooms = {name: rooms[name] for name in chosen if name in rooms}
+        self._labels.show(others)
+        self._strong_labels.show({**(rooms if "names" in self.on else {}), **selected})
+        for delay_s in _RENDER_S:
+            self._loop.call_later(delay_s, self._render)
+
+    def _render(self) -> None:
+        """Let the browser draw once more: it does so when something has changed, and letters come later."""
+        if self._client is not None:
+            self._nudge.visible = not self._nudge.visible
+
+    def _named(self, name: str) -> Written:
+        thing = self._things[name]
+        return (f"{name}?" if thing.look == "believed" else name, _top(thing.pose, thing.size_m))
+
+    @staticmethod
+    def _view(client: ClientHandle) -> View:
+        camera = client.camera
+        x, y, z = (float(value) for value in camera.position)
+        qw, qx, qy, qz = (float(value) for value in camera.wxyz)
+        return View((x, y, z), (qw, qx, qy, qz), camera.fov, camera.image_width, camera.image_height)
+
+    def viewpoint(self) -> ViewPoint | None:
+        """Whence this tab looks; None while its frame is not there."""
+        return None if self._client is None else self._view(self._client).viewpoint
+
+    # Selecting
+
+    def _on_click(self, name: str, beside: bool, at: Pixel) -> None:
+        self._clicked_at = at
+        if self._picking is not None or self._dragging:
+            return
+        if not beside:
+            self.page.select((name,), by="scene")
+        elif name in self.page.selected:
+            self.page.select((other for other in self.page.selected if other != name), by="scene")
+        else:
+            self.page.select((*self.page.selected, name), by="scene")
+
+    def _on_ray(self, origin: Vector, direction: Vector, at: Pixel) -> None:
+        """A click anywhere. If something is there, the same click is told of that, too."""
+        if self._picking is not None:
+            hit = first_hit(origin, direction, self._solids())
+            self._end_picking(None if hit is None else (*hit.at, 0.0))
+        elif not self._dragging:
+            self._loop.call_later(_CLICK_S, self._deselect, at)
+
+    def _deselect(self, at: Pixel) -> None:
+        """Nothing is there where a person has clicked."""
+        if self._clicked_at != at:
+            with self.page.client:
+                self.page.select((), by="scene")
+
+    def _on_select(self) -> None:
+        if self._client is not None:
+            self._relations = ()
+            self._gizmo.remove()
+            self._mark()
+            self._ask_relations()
+
+    async def pick_place(self) -> Place | None:
+        """Where a person clicks next: x, y, z [m] and yaw [rad]; None if that is nowhere, or not to be."""
+        self._end_picking(None)
+        if self._client is None:
+            return None
+        picking: asyncio.Future[Place | None] = self._loop.create_future()
+        self._picking = picking
+        self.page.tell("Click in the scene where it is to stand.")
+        return await picking
+
+    def _end_picking(self, place: Place | None) -> None:
+        picking, self._picking = self._picking, None
+        if picking is not None and not picking.done():
+            picking.set_result(place)
+
+    def _solids(self, without: str = "") -> list[Solid]:
+        surface_of = self._assets.surface_of
+        return [
+            Solid(name, thing.pose, thing.size_m, surface_of(thing.model, thing.size_m))
+            for name, thing in self._things.items()
+            if name != without
+        ]
+
+    # Dragging
+
+    def _put_gizmo(self, selected: Mapping[str, Shown]) -> None:
+        if self._dragging:
+            return
+        may = self.page.moment.is_now and self.page.may("move") and self._picking is None
+        name = next(iter(selected)) if may and len(selected) == 1 else ""
+        if name in self._bodies_by_name():
+            self._gizmo.put(selected[name].pose, selected[name].size_m)
+        else:
+            self._gizmo.remove()
+
+    def _on_drag(self, phase: Phase, pose: Pose) -> None:
+        if phase == "start":
+            self._begin_drag()
+        if not self._dragging or self._client is None:
+            return
+        if phase == "end":
+            self.page.later(self._move(self._dragging, pose))
+        else:
+            self._copy(pose)
+
+    def _begin_drag(self) -> None:
+        names = [name for name in self.page.selected if name in self._things]
+        if len(names) == 1:
+            self._dragging = names[0]
+            self._draw()
+
+    def _copy(self, pose: Pose) -> None:
+        """The thing as it is dragged; where it stands there is a ghost."""
+        thing = self._things.get(self._dragging)
+        if thing is not None:
+            solid = Shown("solid", thing.model, thing.size_m, thing.rgb, pose)
+            self._dragged.show({self._dragging: solid})
+
+    async def _move(self, name: str, pose: Pose) -> None:
+        """Ask for the body to be put where it was let go; what is refused goes back."""
+        thing = self._things[name]
+        target = put_down(pose, thing.size_m, self._solids(without=name))
+        self._copy(target)
+        await self.page.change(Move(name=name, at=target.position_m, yaw=target.yaw_rad, carry=True))
+        self._dragging = ""
+        if self._client is not None:
+            self._dragged.show({})
+            self._draw()
+
+    # Relations
+
+    def _ask_relations(self) -> None:
+        self._asked += 1
+        one = self.page.selected[0] if len(self.page.selected) == 1 else ""
+        entity = self.page.state.entities.get(one)
+        if "relations" in self.on and entity is not None and not entity.place:
+            self.page.later(self._fetch_relations(one, self._asked))
+        elif self._relations:
+            self._relations = ()
+            self._draw_relations()
+
+    async def _fetch_relations(self, name: str, asked: int) -> None:
+        viewpoint = self.viewpoint() if "from here" in self.on else None
+        command = Relations(name=name, viewpoint=viewpoint, as_of=self.page.moment.commit)
+        try:
+            found = await self.page.live.ask(command)
+        except errors.SemmapError:
+            found = ()  # it has just been removed, say
+        if asked == self._asked and self._client is not None:
+            self._relations = found
+            self._draw_relations()
+
+    def _draw_relations(self) -> None:
+        lines = []
+        if len(self.page.selected) == 1:
+            middles = {name: _middle(thing.pose, thing.size_m) for name, thing in self._things.items()}
+            lines = relation_lines(self.page.selected[0], self._relations, middles)
+        self._relation_lines.show([(line(each.a, each.b), _RELATION) for each in lines])
+        written = {
+            f"{number} of {len(lines)}": (each.text, _between(each.a, each.b))
+            for number, each in enumerate(lines)
+        }
+        chosen = [] if self._client is None else uncrowded(self._view(self._client), written)
+        self._measures = {key: written[key] for key in chosen}
+        self._line_labels.show(self._measures)
+        self._label_soon()
+
+    # Switches
+
+    def switch(self, name: Switch, *, on: bool) -> None:
+        """Show or hide something in this tab."""
+        (self.on.add if on else self.on.discard)(name)
+        if self._client is None:
+            return
+        if name in ("observations", "cloud", "cameras"):
+            self._seen.switch(name, on=on)
+        elif name == "walls":
+            self._rooms.walls(self._assets.walls if on else None)
+        else:
+            self._mark()
+            self._ask_relations()
+
+
+def _middle(pose: Pose, size_m: Size) -> Vector:
+    x, y, z = pose.position_m
+    return (x, y, z + size_m[2] / 2.0)
+
+
+def _top(pose: Pose, size_m: Size) -> Vector:
+    x, y, z = pose.position_m
+    return (x, y, z + size_m[2] + 0.05)
+
+
+def _between(a: Vector, b: Vector) -> Vector:
+    return tuple(p + 0.6 * (q - p) for p, q in zip(a, b, strict=True))  # type: ignore[return-value]

@@ -1,0 +1,128 @@
+"""The states that a thing may have: which properties `set` takes of it, and how each is entered."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import Final, Literal, NamedTuple
+
+from nodes.extern.phrasing import english, labelled
+from schemas.changes import stated_in_words
+from schemas.entities import Entity, PropertyInfo, Stated
+
+Kind = Literal["switch", "number", "choice", "thing", "text"]
+
+_BOOLEANS: Final = frozenset(("boolean",))
+_NUMBERS: Final = frozenset(
+    (
+        *("float", "double", "decimal", "integer", "int", "long", "short", "byte", "nonNegativeInteger"),
+        *("positiveInteger", "nonPositiveInteger", "negativeInteger", "unsignedInt", "unsignedLong"),
+        *("unsignedShort", "unsignedByte"),
+    )
+)
+_UNIT: Final = re.compile(r"^In ([a-z][a-z /]*)\.")
+_OF_THE_STAR: Final = frozenset(("hasReference", "hasPosition", "hasSize"))
+_GEOMETRY: Final = frozenset(
+    (
+        *("isAbove", "isUnder", "isNear", "isNextTo", "touches", "isOn", "supports", "isInside", "holds"),
+        *("isLocatedIn", "contains", "isAttachedTo"),
+    )
+)
+"""What poses tell; it may be stated, but nobody does that by hand."""
+
+
+class State(NamedTuple):
+    """One property of a thing, as it is entered."""
+
+    name: str
+    label: str
+    kind: Kind
+    now: Stated | None
+    """What is stated; None where nothing is."""
+    several: bool
+    """It may have more values than one."""
+    choices: Mapping[str, str]
+    """Individuals that it may be, by name, with what to show for each."""
+    unit: str
+    hint: str
+
+    @property
+    def spoken(self) -> str:
+        """What is stated now, in words; empty for nothing."""
+        if self.now is None:
+            return ""
+        values = self.now if isinstance(self.now, tuple) else (self.now,)
+        return ", ".join(self.choices.get(str(v)) or stated_in_words(v) for v in values)
+
+
+def states(
+    entity: Entity, properties: Iterable[PropertyInfo], things: Mapping[str, Entity]
+) -> tuple[State, ...]:
+    """Those that fit the class of `entity`: what is stated now first, then switches, numbers and choices."""
+    types = {*entity.types, entity.class_}
+    found = [
+        _state(entity, p, things)
+        for p in properties
+        if p.name not in _OF_THE_STAR
+        and (p.name in entity.properties or (_fits(p, types) and p.name not in _GEOMETRY))
+    ]
+    order: list[Kind] = ["switch", "number", "choice", "text", "thing"]
+    return tuple(sorted(found, key=lambda s: (s.now is None, order.index(s.kind), s.label)))
+
+
+def in_common(
+    entities: Iterable[Entity], properties: Iterable[PropertyInfo], things: Mapping[str, Entity]
+) -> tuple[State, ...]:
+    """The states that all of several things may have; `now` is what all of them have."""
+    all_states = [states(entity, properties, things) for entity in entities]
+    if not all_states:
+        return ()
+    by_name = [{state.name: state for state in found} for found in all_states]
+    return tuple(
+        state._replace(
+            now=state.now if all(other[state.name].now == state.now for other in by_name) else None
+        )
+        for state in all_states[0]
+        if all(state.name in other for other in by_name)
+    )
+
+
+def _fits(p: PropertyInfo, types: set[str]) -> bool:
+    """Whether its domain is known to take such a thing; of several classes all must."""
+    return all(class_ in types for class_ in p.domain)
+
+
+def _state(entity: Entity, p: PropertyInfo, things: Mapping[str, Entity]) -> State:
+    kind = _kind(p)
+    choices: Mapping[str, str] = {}
+    if kind == "choice":
+        choices = {
+            name: label or name for name, label in sorted(p.values.items(), key=lambda v: v[1] or v[0])
+        }
+    elif kind == "thing":
+        wanted = set(p.range)
+        choices = {
+            name: labelled(name, other.preferred_reference or "")
+            for name, other in sorted(things.items())
+            if name != entity.name and (not wanted or wanted <= {*other.types, other.class_})
+        }
+    unit = _UNIT.match(p.comment)
+    return State(
+        name=p.name,
+        label=english(p.labels) or p.name,
+        kind=kind,
+        now=entity.properties.get(p.name),
+        several=not p.functional,
+        choices=choices,
+        unit=unit[1] if unit else "",
+        hint=p.comment,
+    )
+
+
+def _kind(p: PropertyInfo) -> Kind:
+    if p.kind == "object":
+        return "choice" if p.values else "thing"
+    ranges = set(p.range)
+    if ranges & _BOOLEANS:
+        return "switch"
+    return "number" if ranges & _NUMBERS else "text"

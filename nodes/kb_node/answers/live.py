@@ -1,0 +1,58 @@
+"""Where tracked entities are just now, for questions about where things are; facts are of committed poses."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from msgspec import structs
+
+from nodes.kb_node.semantic_map import SemanticMap
+from schemas.entities import Entity, Live, distance_m
+from schemas.live import LivePoses
+
+_LOST_S = 3.0
+"""Live poses are told at least once a second while there are any: who tells them is gone after that."""
+_SLIGHT_M = 0.001
+_SLIGHT_TURN = 1e-3
+
+
+class LiveEntities:
+    """The newest live poses; owned by the node's thread."""
+
+    def __init__(self, semantic_map: SemanticMap, clock: Callable[[], float] = time.monotonic) -> None:
+        """None were heard yet."""
+        self._map = semantic_map
+        self._clock = clock
+        self._live: dict[str, Live] = {}
+        self._heard_s = -_LOST_S
+
+    def take(self, message: LivePoses) -> None:
+        """The coordinator tells where all tracked entities are."""
+        self._live, self._heard_s = message.entities, self._clock()
+
+    @contextmanager
+    def supposed(self) -> Iterator[None]:
+        """Within, tracked entities are where they are just now, and everything else where the map says."""
+        elsewhere = list(self._elsewhere())
+        if not elsewhere:
+            yield
+            return
+        with self._map.places.space().supposing(elsewhere):
+            yield
+
+    def _elsewhere(self) -> Iterator[Entity]:
+        if not self._live or self._clock() - self._heard_s > _LOST_S:
+            return
+        for name, live in self._live.items():
+            entity = self._map.find(name)
+            if entity is not None and entity.tracked and _differs(entity, live):
+                yield structs.replace(entity, pose=live.pose)
+
+
+def _differs(entity: Entity, live: Live) -> bool:
+    if entity.pose is None or distance_m(entity.pose, live.pose) > _SLIGHT_M:
+        return True
+    pairs = zip(entity.pose.orientation_wxyz, live.pose.orientation_wxyz, strict=True)
+    return any(abs(a - b) > _SLIGHT_TURN for a, b in pairs)

@@ -1,0 +1,65 @@
+"""The rhythm in which commits of the past come again."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
+from typing import Final
+
+from schemas.errors import BadRequest
+
+LONGEST_S: Final = 3.0
+"""How long one waits for the next commit at most: nobody watches a night pass."""
+
+
+def require_speed(speed: float) -> float:
+    """`speed` if it is one: 1 is as it was, 10 ten times as fast. Raises BadRequest."""
+    if not math.isfinite(speed) or speed <= 0.0:
+        raise BadRequest(
+            f"the speed must be greater than 0, not {speed:g}: 1 is as it was, 10 is ten times that"
+        )
+    return speed
+
+
+def require_longest(longest_s: float) -> float:
+    """`longest_s` if one can wait for so long. Raises BadRequest."""
+    if not math.isfinite(longest_s) or longest_s < 0.0:
+        raise BadRequest(f"the longest wait must be 0 seconds or more, not {longest_s:g}")
+    return longest_s
+
+
+def wait_s(before_ns: int, after_ns: int, *, speed: float = 1.0, longest_s: float = LONGEST_S) -> float:
+    """Seconds from one commit to the next, by their stamps [ns since 1970].
+
+    Where the clock was set back meanwhile there is no wait.
+    """
+    return max(0.0, min((after_ns - before_ns) / 1e9 / speed, longest_s))
+
+
+def waits_s(stamps_ns: Iterable[int], *, speed: float = 1.0, longest_s: float = LONGEST_S) -> Iterator[float]:
+    """The waits between commits with these stamps: one fewer than there are commits."""
+    return (wait_s(*pair, speed=speed, longest_s=longest_s) for pair in pairwise(stamps_ns))
+
+
+def ahead(
+    stamps_ns: Sequence[int],
+    at: int,
+    *,
+    speed: float = 1.0,
+    longest_s: float = LONGEST_S,
+    least_s: float = 0.0,
+) -> tuple[int, float]:
+    """Where to be next when one shows the commits one after another, and in how many seconds.
+
+    That is the next commit or, where many come within `least_s` seconds, the last of those: who draws them
+    need not draw faster. `at` and what is returned are places in `stamps_ns`; at the end one stays there.
+    """
+    waited_s, place = 0.0, at
+    while place + 1 < len(stamps_ns):
+        next_s = wait_s(stamps_ns[place], stamps_ns[place + 1], speed=speed, longest_s=longest_s)
+        if place > at and waited_s + next_s > least_s:
+            break
+        waited_s += next_s
+        place += 1
+    return place, max(waited_s, least_s)

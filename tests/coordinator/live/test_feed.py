@@ -1,0 +1,125 @@
+"""Live poses through a whole system: put by a program, told by get, list and status."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import pytest
+
+from schemas import errors, keys
+from schemas.entities import orientation_from_yaw
+from tests.conftest import running, until
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    with running(tmp_path_factory.mktemp("live"), "--no-record", "--stale", "3") as system:
+        yield system
+
+
+def test_a_robot_is_tracked_while_it_drives_and_committed_where_it_stops(system):
+    with system.client() as client:
+        client.add("Robot", "robot1", at=(7.0, 2.0, 0.0))
+        assert "tracked from a stream" in client.track("robot1").text
+        commits = client.status().commit
+
+        def drive(x: float) -> bool:
+            client.publish_pose("robot1", (x, 2.0, 0.0), yaw=0.5)
+            live = client.get("robot1").live
+            return live is not None and live.pose.position_m[0] == x
+
+        for i in range(20):
+            until(lambda i=i: drive(7.0 + 0.05 * i), "the pose that was published")
+        entity = client.get("robot1")
+        assert entity.live.source == "stream"
+        assert entity.live.pose.orientation_wxyz == pytest.approx(orientation_from_yaw(0.5), abs=1e-5)
+        assert entity.pose.position_m == (7.0, 2.0, 0.0)
+        assert client.status().commit == commits
+        near = until(
+            lambda: [e.name for e in client.list(near="robot1", within=0.6)], "somebody near it, live"
+        )
+        assert near
+        until(lambda: client.get("robot1").pose.position_m[0] == 7.95, "the commit of where it stopped")
+        assert client.status().commit == commits + 1
+        (last,) = client.history(limit=1)
+        assert (last.source, last.reason) == ("perception", "robot1 stopped")
+
+
+def test_silence_is_stale_and_said(system):
+    with system.client() as client:
+        client.add("Robot", "robot2", at=(1.0, 4.0, 0.0), track="stream")
+        assert any("no live pose has come yet" in problem for problem in client.status().problems)
+        client.publish_pose("robot2", (1.0, 4.5, 0.0))
+        until(lambda: client.get("robot2").live, "the pose")
+        until(lambda: client.get("robot2").live.stale, "that it is stale")
+        assert any(
+            problem.startswith("robot2: its live pose is stale") for problem in client.status().problems
+        )
+        assert "(stale)" in system.cli("get", "robot2")
+
+
+def test_what_is_no_pose_of_a_tracked_entity_is_said(system):
+    with system.client() as client:
+        for key, payload in (
+            ("semmap/live/nobody1", b'{"at": [1, 2, 0]}'),
+            ("semmap/live/fridge1", b'{"at": [1, 2, 0]}'),
+            ("semmap/live/robot1", b'{"at": [1, NaN, 0]}'),
+            ("semmap/live/robot1", b"\xc1"),
+        ):
+            client.session.put(key, payload)
+
+        def ignored() -> list[str]:
+            return [problem for problem in client.status().problems if "ignored" in problem]
+
+        until(lambda: len(ignored()) == 3, "three that are ignored")
+        said = ignored()
+        assert any("no entity is named 'nobody1'" in problem for problem in said)
+        assert any("fridge1 is not tracked" in problem for problem in said)
+        with pytest.raises(errors.BadRequest, match="yaw or orientation"):
+            client.publish_pose("robot1", (1.0, 2.0, 0.0), yaw=1.0, orientation=(1.0, 0.0, 0.0, 0.0))
+
+
+def test_tracking_survives_the_coordinator(system):
+    pid = system.pid("coordinator")
+    os.kill(pid, signal.SIGKILL)
+
+    def drive() -> bool:
+        try:
+            with system.client() as client:
+                client.publish_pose("robot1", (8.5, 2.0, 0.0))
+                live = client.get("robot1").live
+                return live is not None and live.pose.position_m[0] == 8.5
+        except errors.NoAnswer:
+            return False
+
+    until(drive, "the pose, after a restart")
+    assert system.pid("coordinator") != pid
+
+
+def test_the_simulator_tells_where_a_body_is(system):
+    with system.client() as client:
+        client.add("Ball", "ball1", at=(2.0, 2.0, 1.5), track="sim")
+        live = until(lambda: client.get("ball1").live, "the simulator's pose")
+        assert live.source == "sim"
+        until(lambda: client.get("ball1").pose.position_m[2] < 1.0, "that it has fallen and rests")
+
+
+def test_the_command_line_tracks_and_refuses(system):
+    assert "unchanged: fridge1 is not tracked" in system.cli("track", "fridge1", "--off")
+    assert "is a place" in system.cli("track", "kitchen1", status=1)
+    assert "no entity is named" in system.cli("track", "nobody1", status=1)
+    system.cli("track", "robot1", "--from", "lidar", status=2)
+    assert "would be" in system.cli("track", "fridge1", "--dry-run")
+    assert "no longer tracked" in system.cli("track", "robot1", "--off")
+    assert "semmap track robot1" in system.cli("set", "robot1", "trackedFrom", "sim", status=2)
+
+
+def test_all_live_poses_are_published_together(system):
+    heard = []
+    with system.client() as client:
+        subscriber = client.session.declare_subscriber(keys.LIVE_POSES.key, heard.append)
+        client.track("robot2")
+        client.publish_pose("robot2", (1.0, 5.0, 0.0))
+        until(lambda: heard, "where all are")
+        subscriber.undeclare()

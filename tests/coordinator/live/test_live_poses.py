@@ -1,0 +1,150 @@
+"""The newest pose of what is tracked, what of it is committed, and what is said of what is amiss."""
+
+from __future__ import annotations
+
+import pytest
+from msgspec import structs
+
+from nodes.coordinator.config import LiveRules, Thresholds
+from nodes.coordinator.live.live_poses import LivePoses
+from schemas import errors
+from schemas.entities import Entity, Pose
+from tests.coordinator.scene.test_reconcile import at, entity
+
+SECOND = 1_000_000_000
+
+
+def tracked(name: str = "robot1", pose: Pose | None = None, source: str = "stream") -> dict[str, Entity]:
+    return {name: structs.replace(entity(name, pose or at(0.0)), tracked=source)}
+
+
+@pytest.fixture
+def poses() -> LivePoses:
+    return LivePoses(LiveRules(), Thresholds())
+
+
+def drive(poses: LivePoses, entities: dict[str, Entity], seconds: float, start_s: float = 0.0) -> list[str]:
+    """50 poses a second, at half a metre a second; why what came to be due at 10 Hz is so."""
+    due: list[str] = []
+    for i in range(int(50 * seconds)):
+        now_s = start_s + 0.02 * i
+        poses.take("robot1", at(0.5 * now_s), int(now_s * SECOND), now_s, "stream")
+        if i % 5 == 0:
+            due += [d.reason for d in poses.due(entities, now_s)]
+    return due
+
+
+def test_the_newest_pose_wins_and_has_an_age(poses):
+    poses.take("robot1", at(1.0), 1 * SECOND, 100.0, "stream")
+    poses.take("robot1", at(2.0), 2 * SECOND, 101.0, "stream")
+    live = poses.live("robot1", 101.5)
+    assert (live.pose, live.age_s, live.stale, live.source) == (at(2.0), 0.5, False, "stream")
+
+
+def test_what_comes_late_is_passed_over_and_a_clock_that_was_set_is_followed(poses):
+    poses.take("robot1", at(1.0), 100 * SECOND, 0.0, "stream")
+    poses.take("robot1", at(9.0), 99 * SECOND, 0.1, "stream")
+    assert poses.live("robot1", 0.1).pose == at(1.0)
+    poses.take("robot1", at(2.0), 50 * SECOND, 0.2, "stream")
+    assert poses.live("robot1", 0.2).pose == at(2.0)
+
+
+def test_what_moves_is_not_committed_and_where_it_stops_is_once(poses):
+    entities = tracked()
+    assert drive(poses, entities, 10.0) == []
+    stopped = poses.live("robot1", 10.0).pose
+    for i in range(100):
+        poses.take("robot1", stopped, (11 * SECOND) + i, 10.0 + 0.02 * i, "stream")
+    due = list(poses.due(entities, 12.0))
+    assert [(d.reason, d.pose) for d in due] == [("robot1 stopped", stopped)]
+    assert not list(poses.due(tracked(pose=stopped), 12.0))
+
+
+def test_it_is_committed_on_its_way_if_that_is_wanted():
+    poses = LivePoses(LiveRules(journal_every_s=2.0), Thresholds())
+    entities = tracked()
+    reasons: list[str] = []
+    for i in range(500):
+        now_s = 0.02 * i
+        poses.take("robot1", at(0.5 * now_s), int(now_s * SECOND), now_s, "stream")
+        for due in poses.due(entities, now_s):
+            reasons.append(due.reason)
+            entities = tracked(pose=due.pose)
+            poses.journalled("robot1", now_s, refused=False)
+    assert reasons == ["robot1 is on its way"] * 4
+
+
+def test_a_stream_that_ends_leaves_it_where_it_was_and_is_said(poses):
+    drive(poses, tracked(), 2.0)
+    last = poses.live("robot1", 2.0).pose
+    assert poses.live("robot1", 30.0).stale
+    assert poses.current(30.0) == {}
+    (due,) = poses.due(tracked(), 30.0)
+    assert (due.pose, due.reason) == (last, "robot1: its live poses stopped coming")
+    assert list(poses.problems(tracked(), 30.0)) == [
+        "robot1: its live pose is stale: nothing has come for 28 s"
+    ]
+
+
+def test_a_refused_commit_is_tried_again_after_a_while_only(poses):
+    poses.take("robot1", at(3.0), SECOND, 0.0, "stream")
+    assert len(list(poses.due(tracked(), 1.5))) == 1
+    poses.journalled("robot1", 1.5, refused=True)
+    assert not list(poses.due(tracked(), 1.6))
+    assert len(list(poses.due(tracked(), 7.0))) == 1
+
+
+def test_a_jump_is_taken_and_said(poses):
+    poses.take("robot1", at(0.0), SECOND, 0.0, "stream")
+    poses.take("robot1", at(4.0), 2 * SECOND, 0.1, "stream")
+    assert poses.live("robot1", 0.1).pose == at(4.0)
+    (said,) = poses.problems(tracked(pose=at(4.0)), 1.1)
+    assert said == "robot1: its live pose jumped 4.00 m within 0.1 s, 1 s ago"
+
+
+def test_driving_is_no_jump(poses):
+    drive(poses, tracked(), 3.0)
+    assert list(poses.problems(tracked(), 3.0)) == []
+
+
+def malformed():
+    raise errors.BadRequest("at must be 3 numbers")
+
+
+@pytest.mark.parametrize(
+    ("name", "read", "said"),
+    [
+        ("robto1", lambda: (at(1.0), 1), "no entity is named 'robto1'; did you mean robot"),
+        ("chair1", lambda: (at(1.0), 1), "chair1 is not tracked; to have it follow"),
+        ("robot2", lambda: (at(1.0), 1), "robot2 is tracked from the simulator; to"),
+        ("robot1", malformed, "at must be 3 numbers"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_taken_is_said(poses, name, read, said):
+    entities = {**tracked(), **tracked("robot2", source="sim"), "chair1": entity("chair1", at(0.0))}
+    for now_s in (0.0, 0.1):
+        poses.read(name, read, entities, now_s)
+    told = [text for text in poses.problems({}, 1.0) if said in text]
+    assert len(told) == 1
+    assert told[0].startswith(f"semmap/live/{name}: ignored (2 times): ")
+    assert list(poses.problems({}, 100.0)) == []
+    assert name == "robot1" or poses.live(name, 0.1) is None
+
+
+def test_many_wrong_names_are_not_all_remembered(poses):
+    for i in range(1000):
+        poses.read(f"ghost{i}", lambda: (at(0.0), 1), {}, 0.0)
+    assert len(list(poses.problems({}, 1.0))) == 50
+
+
+def test_tracked_and_nothing_heard_is_said(poses):
+    assert "no live pose has come yet; publish them on semmap/live/robot1" in next(
+        poses.problems(tracked(), 0.0)
+    )
+    assert "the simulator has no body of it" in next(poses.problems(tracked(source="sim"), 0.0))
+
+
+def test_what_is_not_tracked_any_more_is_forgotten(poses):
+    poses.take("robot1", at(1.0), 1, 0.0, "stream")
+    poses.forget(tracked(source="sim"))
+    assert poses.live("robot1", 0.0) is None

@@ -1,0 +1,118 @@
+"""Joints are kept like poses: whoever changed last wins, and a second look finds nothing to do."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from msgspec import structs
+
+from nodes.coordinator.scene.reconcile import Actions, order
+from nodes.coordinator.scene.settled import Settled, statements
+from schemas.entities import Entity
+from schemas.joints import Joint, openness
+from schemas.scenes import Body
+from tests.coordinator.scene.test_reconcile import at, body, entity, look, provenance
+
+DOOR = Joint(name="door", kind="hinge", lower=0.0, upper=1.6, closed=0.0)
+
+
+def fridge(commit: int = 1, source: str = "operator", **said) -> Entity:
+    known = entity("chair1", at(0.0))
+    return structs.replace(
+        known, properties=said, joint_provenance=provenance(commit, source) if said else None
+    )
+
+
+def standing(share: float, *, joint_commit: int = 1, resting: bool = True) -> Body:
+    door = structs.replace(DOOR, position=DOOR.position_at(share))
+    known = body("chair1", at(0.0), resting=resting)
+    return structs.replace(known, joints=(door,), joint_commit=joint_commit)
+
+
+def test_of_a_door_that_nobody_spoke_of_nothing_is_said_while_it_is_shut():
+    assert look([fridge()], [standing(0.0)]) == Actions()
+
+
+def test_the_map_follows_a_door_that_somebody_opened():
+    assert look([fridge()], [standing(0.4)]).opened == ("chair1",)
+    assert look([fridge(isOpen=False)], [standing(0.4)]).opened == ("chair1",)
+    assert look([fridge(openness=0.1, isOpen=True)], [standing(0.4)]).opened == ("chair1",)
+
+
+def test_it_does_not_follow_one_that_still_moves():
+    assert look([fridge()], [standing(0.4, resting=False)]) == Actions()
+
+
+def test_the_map_orders_what_was_said_of_it_since():
+    (wanted,) = look([fridge(2, isOpen=True)], [standing(0.0)]).joints
+    assert (wanted.name, wanted.positions, wanted.commit) == ("chair1", {"door": 1.6}, 2)
+
+
+def test_what_is_said_and_so_already_is_ordered_without_moving_anything():
+    """Else a hand that opens it later would be taken for earlier than the word."""
+    (wanted,) = look([fridge(2, isOpen=True)], [standing(0.4)]).joints
+    assert (wanted.positions, wanted.commit) == ({}, 2)
+
+
+def test_once_ordered_whatever_stopped_it_counts():
+    assert look([fridge(2, isOpen=True)], [standing(0.0, joint_commit=2)]).opened == ("chair1",)
+
+
+def test_what_the_scene_said_is_no_order():
+    said = fridge(5, "scene", isOpen=True, openness=0.4, jointPositions="door=0.64")
+    assert look([said], [standing(0.4)]) == Actions()
+    assert look([said], [standing(0.0)]).opened == ("chair1",)
+
+
+def test_positions_say_more_than_openness():
+    said = fridge(1, isOpen=True, openness=0.4, jointPositions="door=1.6")
+    assert look([said], [standing(1.0)]) == Actions()
+
+
+def test_under_truth_scene_the_map_follows_whoever_said_what():
+    assert look([fridge(9, isOpen=False)], [standing(1.0)], "scene").opened == ("chair1",)
+
+
+def test_a_body_is_ordered_as_open_as_the_map_says():
+    said = fridge(3, isOpen=True, openness=0.4, hasColor=("red",))
+    ordered = order(said, at(0.0))
+    assert ordered.properties == {"isOpen": True, "openness": 0.4}
+    assert ordered.commit == 3
+
+
+@given(st.floats(0.0, 1.0))
+def test_once_the_map_has_followed_it_agrees(share):
+    there = standing(share)
+    settled = Settled.of({"chair1": fridge()}, {}, {"chair1": there.joints})
+    (edit,) = settled.edits({"chair1": fridge()})
+    said = {one.property: _value(one.values[0]) for one in edit.set}
+    assert look([fridge(2, "scene", **said)], [there]) == Actions()
+    assert said["isOpen"] is (openness(there.joints) > 0.05)
+
+
+def test_what_was_said_meanwhile_is_not_overwritten():
+    settled = Settled.of({"chair1": fridge()}, {}, {"chair1": standing(1.0).joints})
+    assert settled.edits({"chair1": fridge(4, isOpen=False)}) == []
+    assert settled.edits({}) == []
+
+
+def test_of_a_joint_that_opens_nothing_only_the_position_is_stated():
+    (said,) = statements((Joint(name="knob", kind="hinge", position=0.5),))
+    assert (said.property, said.values) == ("jointPositions", ("knob=0.5",))
+
+
+def _value(text: str) -> bool | float | str:
+    if text in ("true", "false"):
+        return text == "true"
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_a_reset_puts_joints_where_the_map_says(share):
+    from nodes.coordinator.scene.reconcile import joint_order
+    from tests.coordinator.scene.test_reconcile import THRESHOLDS
+
+    wanted = joint_order(fridge(2, openness=share), standing(0.25), THRESHOLDS)
+    assert wanted.positions == {"door": pytest.approx(1.6 * share)}

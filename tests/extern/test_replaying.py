@@ -1,0 +1,77 @@
+"""A map's past, run again as a system of its own while that of the map itself runs; and recordings of it."""
+
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+from nodes.extern.client import connect
+from nodes.extern.testing import free_endpoint
+from tests.conftest import running, until
+
+_BIN = Path(sys.executable).parent
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    """A system with a little history: 5 commits or more."""
+    with running(tmp_path_factory.mktemp("past") / "data") as system:
+        system.cli("add", "Cup", "mug7", "--at", "8", "2.3", "0.77", "--wait", "--ref", "mug")
+        system.cli("remove", "mug7")
+        system.cli("undo")
+        system.cli("update", "mug7", "--at", "2", "2", "0")
+        yield system
+
+
+def test_map_and_scene_are_run_again_beside_the_running_system(system):
+    with system.client() as client:
+        last = client.status().commit
+        then, now = client.list(as_of=2), client.list(as_of=last)
+    endpoint = free_endpoint()
+    options = ("--listen", endpoint, "--speed", "100", "--no-record")
+    command = [_BIN / "semmap", "replay", str(system.data), *options]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    said: list[str] = []
+    assert process.stdout is not None
+    reader = threading.Thread(target=lambda: said.extend(process.stdout), daemon=True)
+    reader.start()
+    try:
+        until(lambda: any(line.startswith("stop ") for line in said), "the replay is ready")
+        with connect(endpoint) as client:
+            until(lambda: client.status().commit == last, "all is replayed")
+            assert [(e.name, e.pose, e.provenance) for e in client.list()] == [
+                (e.name, e.pose, e.provenance) for e in now
+            ]
+            assert [(e.name, e.pose) for e in client.list(as_of=2)] == [(e.name, e.pose) for e in then]
+            until(lambda: client.status().in_agreement, "the scene is as the map says")
+            with pytest.raises(Exception, match="a replay of the past, and cannot be changed"):
+                client.add("Cup")
+            with pytest.raises(Exception, match="nothing in it can be moved by hand"):
+                client.move("chair1", at=(1.0, 1.0, 1.0))
+            assert client.status().commit == last
+    finally:
+        process.send_signal(2)
+        assert process.wait(30) == 0
+        reader.join(30)
+        process.stdout.close()
+    folder = next(line.split()[1] for line in said if line.startswith("data "))
+    assert not Path(folder).exists()
+    with system.client() as client:
+        assert client.status().commit == last
+
+
+def test_a_recording_is_compared_with_the_map_that_it_is_of(system, tmp_path):
+    with system.client() as client:
+        last = client.status().commit
+    (recording,) = (system.data / "recordings").glob("*.rrd")
+    check = ("replay", recording, "--check")
+    until(lambda: f"1 to {last}" in system.cli(*check), "the recorder has written all")
+    with running(tmp_path / "other", "--no-sim", "--no-record") as other:  # begun as the other one was
+        said = other.cli(*check, status=1)
+        assert f"{recording} is not a recording of this map: commit 2 is not in the journal" in said
+        other.cli("add", "Cup", "mug8", "--at", "2", "2", "0")
+        said = other.cli(*check, status=1)
+        assert f"{recording} is not a recording of this map: commit 2 is another one: id is '" in said
+        assert "commits are as in the journal" in other.cli(*check, "--data", system.data)

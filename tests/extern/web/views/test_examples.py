@@ -1,0 +1,41 @@
+import pyoxigraph as ox
+
+from nodes.extern.web.views.examples import examples
+from ontology import vocabulary as v
+from schemas.entities import ClassInfo
+from tests.recorder.messages import entity
+
+PREFIXES = "".join(
+    f"PREFIX {p}: <{iri}>\n" for p, iri in {**v.PREFIXES, "rdf": v.RDF, "rdfs": v.RDFS}.items()
+)
+
+
+def class_info(name):
+    return ClassInfo(
+        name=name, iri=v.bare(v.dm(name)), parents=(), ancestors=(), labels={}, spatial=True, place=False,
+        fixed=False, model="",
+    )  # fmt: skip
+
+
+def test_examples_speak_of_what_is_in_the_map():
+    entities = {
+        "cup1": entity("cup1", "Cup"),
+        "kitchen1": entity("kitchen1", "Kitchen", place=True, preferred_reference="kitchen"),
+    }
+    titles = [example.title for example in examples(entities, {"Cup": class_info("Cup")})]
+    assert titles[0] == "Everything with its class"
+    assert "What is in kitchen" in titles
+    assert "All that is said of cup1" in titles
+
+
+def test_every_example_is_a_query():
+    entities = {
+        "cup1": entity("cup1", "Cup"),
+        "kitchen1": entity("kitchen1", "Kitchen", place=True, preferred_reference='"}<script>'),
+    }
+    for example in examples(entities, {"Cup": class_info("Cup")}):
+        ox.Store().query(PREFIXES + example.query)
+
+
+def test_an_empty_map_has_an_example():
+    assert len(examples({}, {})) == 1

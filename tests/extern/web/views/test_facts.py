@@ -1,0 +1,82 @@
+from nodes.extern.web.views.facts import Question, asserted, facts
+from nodes.extern.web.views.steps import words_of
+from ontology import vocabulary as v
+from schemas.entities import PropertyInfo
+from schemas.relations import Relation
+from tests.extern.web.views.worlds import class_, fact, thing
+
+COLOR = PropertyInfo(
+    name="hasColor", iri=f"{v.TBOX}hasColor", kind="object", functional=False, domain=(), range=(),
+    labels={"en": "has color"}, values={"color_red": "red"}
+)  # fmt: skip
+OPEN = PropertyInfo(
+    name="isOpen", iri=f"{v.TBOX}isOpen", kind="data", functional=True, domain=(), range=("boolean",),
+    labels={"en": "is open"}, values={}
+)  # fmt: skip
+PROPERTIES = {p.name: p for p in (COLOR, OPEN)}
+WORDS = words_of([class_("Drink", labels={"en": "drink"})], PROPERTIES.values())
+MILK = thing("milk1", "Milk", properties={"hasColor": ("color_red",), "isOpen": False})
+
+
+def is_a(name, class_name):
+    return (v.entity_iri(name), v.RDF_TYPE, v.dm(class_name))
+
+
+def on(subject, other, text):
+    return Relation(relation="isOn", subject=subject, object=other, text=text)
+
+
+def test_what_was_said_is_told_with_labels_and_can_be_taken_back():
+    class_fact, color, open_ = asserted(MILK, PROPERTIES)
+    assert (class_fact.text, class_fact.why) == ("class: Milk", Question("milk1", "type", "Milk"))
+    assert (color.text, color.taken_back) == ("has color: red", ("hasColor", "color_red"))
+    assert color.why == Question("milk1", "hasColor", "color_red")
+    assert (open_.text, open_.taken_back) == ("is open: false", ("isOpen", False))
+
+
+def test_a_property_that_nobody_declared_is_told_by_its_name():
+    (_, odd) = asserted(thing("a", properties={"odd": 3}), {})
+    assert odd.text == "odd: 3"
+
+
+def test_what_follows_and_what_is_measured_are_apart():
+    follows = [
+        is_a("milk1", "Drink"),
+        fact("milk1", "isOn", "counter1"),
+        fact("milk1", "isLocatedIn", "flat1"),
+        fact("milk1", "isLocatedIn", "kitchen1"),
+        fact("milk1", "touches", "counter1"),
+        fact("milk1", "hasReference", "ref1"),
+        fact("counter1", "supports", "milk1"),
+    ]
+    relations = [
+        on("milk1", "counter1", "milk1 is on counter1: its bottom is level"),
+        Relation(
+            relation="isLocatedIn", subject="milk1", object="kitchen1", text="milk1 is in kitchen1: 100%"
+        ),
+    ]
+    found = facts(MILK, PROPERTIES, follows, relations, WORDS)
+    assert [f.text for f in found.inferred] == ["is a drink", "is located in flat1"]
+    assert found.inferred[0].why == Question("milk1", "type", "Drink")
+    assert [(f.text, f.measured) for f in found.computed] == [
+        ("is on counter1", "its bottom is level"),
+        ("is in kitchen1", "100%"),
+        ("touches counter1", ""),
+    ]
+    assert [f.other for f in found.computed] == ["counter1", "kitchen1", "counter1"]
+
+
+def test_what_a_thing_bears_is_told_of_the_other():
+    found = facts(thing("table1"), {}, [], [on("cup1", "table1", "cup1 is on table1: level")], WORDS)
+    (borne,) = found.computed
+    assert (borne.text, borne.other) == ("cup1 is on table1", "cup1")
+    assert borne.why == Question("cup1", "isOn", "table1")
+
+
+def test_what_does_not_hold_or_depends_on_who_looks_is_not_asked_why():
+    nothing = Relation(
+        relation="isOn", subject="milk1", object="", holds=False, text="milk1 is on nothing: 40 cm"
+    )
+    left = Relation(relation="isLeftOf", subject="milk1", object="cup1", text="milk1 is left of cup1: 3 cm")
+    found = facts(MILK, PROPERTIES, [], [nothing, left], WORDS)
+    assert [f.why for f in found.computed] == [None, None]

@@ -1,0 +1,61 @@
+from msgspec import structs
+
+from nodes.extern.web.views.findings import findings, names_in, verdict
+from ontology import vocabulary as v
+from schemas.entities import BodyState
+from schemas.explanations import Explanation, Step
+from schemas.relations import Relation
+from schemas.replies import Checked
+from tests.recorder.messages import SINCE, entity
+
+SOUND = Checked(
+    consistent=True, engine="semmap", triples=4846, elapsed_s=0.0312, text="the map is consistent"
+)
+CUP, TABLE = entity("cup1", "Cup"), entity("table1", "Table")
+
+
+def test_a_sound_map_has_nothing_to_look_at():
+    assert findings(SOUND, [CUP]) == ()
+    assert verdict(SOUND) == "the map is consistent (4,846 triples, 31 ms, semmap)"
+
+
+def test_a_contradiction_comes_first_with_its_steps():
+    fact = (v.entity_iri("cup1"), v.RDF_TYPE, v.dm("Cup"))
+    explanation = Explanation(
+        conclusion=None, support=(fact,), steps=(Step(rule="cax-dw", premises=(fact,), conclusion=None),),
+        text="cup1 cannot be a Cup and a Table",
+    )  # fmt: skip
+    bad = structs.replace(
+        SOUND, consistent=False, text="inconsistent", explanation=explanation, withheld=("x",)
+    )
+    first, second = findings(bad, [CUP])
+    assert (first.gravity, first.names) == ("contradiction", ("cup1",))
+    assert first.why[0] == "these cannot all be (cannot be)"
+    assert first.why[1].strip() == "cup1 is a Cup (asserted)"
+    assert second.gravity == "withheld"
+
+
+def test_what_is_withheld_and_denied_names_its_entities():
+    denied = Relation(
+        relation="isOn", subject="cup1", object="table1", holds=False, text="cup1 is not on table1"
+    )
+    checked = structs.replace(SOUND, withheld=("table1 would be inside cup1.",), denied=(denied,))
+    assert [f.names for f in findings(checked, [CUP, TABLE])] == [("table1", "cup1"), ("cup1", "table1")]
+
+
+def test_doubts_and_bodies_that_are_not_as_they_should_be():
+    doubted = entity("cup2", "Cup", conflict="a bowl")
+    unsure = structs.replace(CUP, provenance=structs.replace(SINCE, source="perception", confidence=0.3))
+    ghost = structs.replace(TABLE, body=BodyState(status="ghost"))
+    texts = [f.text for f in findings(SOUND, [doubted, unsure, ghost])]
+    assert texts == [
+        "cup1: perception is only 30% sure of it",
+        "cup2: perception sees a bowl",
+        "table1 is a ghost, because something else fills its place",
+    ]
+
+
+def test_names_are_found_as_whole_words():
+    known = {"cup1", "cup10", "café.2"}
+    assert names_in("cup10 is on café.2. cup1!", known) == ("cup10", "café.2", "cup1")
+    assert names_in("cup100 and cup", known) == ()

@@ -1,0 +1,133 @@
+import math
+
+import pytest
+from msgspec import structs
+
+from nodes.extern.web.views import forms
+from nodes.extern.web.views.forms import Filled
+from nodes.extern.web.views.states import State
+from schemas import codec, errors
+from schemas.commands import Add, Set, Unset, Update
+from tests.extern.web.views.worlds import class_, thing
+
+CUP = thing(
+    "cup1",
+    at=(1.0, 2.0, 0.75),
+    size_m=(0.1, 0.1, 0.12),
+    preferred_reference="cup",
+    alternative_references=("mug",),
+)
+
+
+def state(kind="number", now=None, several=False):
+    return State(name="p", label="label", kind=kind, now=now, several=several, choices={}, unit="", hint="")
+
+
+def test_a_class_alone_is_enough_to_add_something():
+    assert forms.add(Filled(class_=" Chair ")) == Add(class_="Chair", default=True)
+
+
+def test_all_that_is_filled_in_is_in_the_command():
+    filled = Filled(
+        class_="Cup",
+        name="cup9",
+        at=(1, 2.5, 0.0),
+        yaw_deg=90.0,
+        size=(0.1, 0.1, 0.2),
+        ref=" red cup ",
+        alt="a\n\n b\na",
+    )
+    made = forms.add(filled)
+    assert made.at == (1.0, 2.5, 0.0)
+    assert made.yaw == pytest.approx(math.pi / 2)
+    assert (made.ref, made.alt, made.default) == ("red cup", ("a", "b"), False)
+    codec.convert({"verb": "add", "class": made.class_, "name": made.name, "at": list(made.at)}, Add)
+
+
+@pytest.mark.parametrize(
+    ("filled", "said"),
+    [
+        (Filled(), "say what it is"),
+        (Filled(class_="Cup", name="1cup"), "'1cup' is no name"),
+        (Filled(class_="Cup", name="<script>"), "'<script>' is no name"),
+        (Filled(class_="Cup", at=(1.0, None, 0.0)), "the position takes all of x, y and z"),
+        (Filled(class_="Cup", size=(1.0, 0.0, 1.0)), "lengths above 0"),
+    ],
+)
+def test_what_is_wrong_with_a_form_is_said(filled, said):
+    with pytest.raises(errors.BadRequest, match=said):
+        forms.add(filled)
+
+
+def test_an_untouched_form_changes_nothing():
+    assert forms.edit(CUP, forms.filled_from(CUP)) is None
+
+
+@pytest.mark.parametrize(
+    ("changed", "command"),
+    [
+        ({"ref": "my cup"}, Update(name="cup1", ref="my cup")),
+        ({"alt": ""}, Update(name="cup1", alt=())),
+        ({"alt": "mug\nbeaker"}, Update(name="cup1", alt=("mug", "beaker"))),
+        ({"class_": "Mug"}, Update(name="cup1", class_="Mug")),
+        ({"at": (1.0, 3.0, 0.75)}, Update(name="cup1", at=(1.0, 3.0, 0.75))),
+        ({"size": (0.2, 0.1, 0.12)}, Update(name="cup1", size=(0.2, 0.1, 0.12))),
+        ({"yaw_deg": 0.0, "ref": "x"}, Update(name="cup1", ref="x")),
+    ],
+)
+def test_only_what_was_changed_is_sent(changed, command):
+    assert forms.edit(CUP, structs.replace(forms.filled_from(CUP), **changed)) == command
+
+
+@pytest.mark.parametrize(
+    "emptied", [{"class_": " "}, {"ref": ""}, {"at": (None, None, None)}, {"size": (None, None, None)}]
+)
+def test_what_cannot_be_emptied_is_said(emptied):
+    with pytest.raises(errors.BadRequest):
+        forms.edit(CUP, structs.replace(forms.filled_from(CUP), **emptied))
+
+
+def test_several_are_moved_by_the_same():
+    bare = thing("idea1", at=None)
+    assert forms.offset([CUP, bare], (0.5, None, -0.25)) == (Update(name="cup1", at=(1.5, 2.0, 0.5)),)
+    with pytest.raises(errors.BadRequest, match="how far"):
+        forms.offset([CUP], (None, 0.0, None))
+
+
+@pytest.mark.parametrize(
+    ("state", "entered", "command"),
+    [
+        (state("switch", False), True, Set(name="a", property="p", values=(True,))),
+        (state("switch", True), True, None),
+        (state("switch", True), None, Unset(name="a", property="p")),
+        (state("number", 2.0), "2.5", Set(name="a", property="p", values=(2.5,))),
+        (state("number", 2.0), "", Unset(name="a", property="p")),
+        (state("text"), "x", Set(name="a", property="p", values=("x",))),
+        (state("choice", ("red",), True), ["red", "blue"], Set(name="a", property="p", values=("blue",))),
+        (state("choice", ("red", "blue"), True), ["red"], Unset(name="a", property="p", value="blue")),
+        (
+            state("choice", ("red", "blue"), True),
+            ["red", "green"],
+            Update(name="a", unset=("p",), set=("p=red", "p=green")),
+        ),
+        (state("choice", ("red",), True), [], Unset(name="a", property="p")),
+        (state("choice", "red"), "blue", Set(name="a", property="p", values=("blue",))),
+    ],
+)
+def test_a_state_is_set_or_unset_by_what_is_entered(state, entered, command):
+    assert forms.state("a", state, entered) == command
+
+
+def test_a_number_that_is_none_is_said():
+    with pytest.raises(errors.BadRequest, match="takes a number, not 'heavy'"):
+        forms.state("a", state("number"), "heavy")
+
+
+def test_classes_are_found_by_everything_they_are_called():
+    choices = forms.class_choices(
+        [
+            class_("Cup", labels={"en": "cup", "it": "tazza"}, also=("mug",)),
+            class_("Chair", labels={"en": "Chair"}),
+        ]
+    )
+    assert choices == {"Chair": "Chair", "Cup": "Cup · cup, tazza, mug"}

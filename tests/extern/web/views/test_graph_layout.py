@@ -1,0 +1,44 @@
+import itertools
+import math
+
+from nodes.drawing.neighbourhood import around
+from nodes.extern.web.views.graph_layout import arranged
+from tests.recorder.messages import entity
+
+ENTITIES = {f"book{i:02}": entity(f"book{i:02}", "Book") for i in range(40)} | {
+    "shelf1": entity("shelf1", "Shelf")
+}
+RELATIONS = {name: (("isOn", "shelf1"),) for name in ENTITIES if name != "shelf1"}
+
+
+def test_the_same_graph_is_always_arranged_alike():
+    graph = around(["shelf1"], ENTITIES, RELATIONS)
+    assert arranged(graph, {}) == arranged(graph, {})
+
+
+def test_names_do_not_overlap():
+    for unfolded in ([], ["shelf1"]):
+        graph = around(["shelf1"], ENTITIES, RELATIONS, unfolded=unfolded)
+        at = arranged(graph, {})
+        labels = {knot.id: knot.label for knot in graph.knots}
+        for a, b in itertools.combinations(at, 2):
+            (ax, ay), (bx, by) = at[a], at[b]
+            wide = 7.0 * (len(labels[a]) + len(labels[b])) / 2.0
+            assert abs(ax - bx) >= wide or abs(ay - by) >= 25.0, (a, b)
+
+
+def test_what_was_there_stays_about_where_it_was():
+    few = around(["book01"], ENTITIES, RELATIONS)
+    before = arranged(few, {})
+    more = around(["book01"], ENTITIES, RELATIONS, unfolded=["shelf1"])
+    after = arranged(more, before)
+    assert len(after) > len(before)
+    anew = arranged(more, {})
+    assert sum(math.dist(before[n], after[n]) for n in before) < sum(
+        math.dist(before[n], anew[n]) for n in before
+    )
+
+
+def test_nothing_and_one_alone():
+    assert arranged(around([], {}, {}), {}) == {}
+    assert len(arranged(around(["shelf1"], ENTITIES, {}), {})) == 2

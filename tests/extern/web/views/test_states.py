@@ -1,0 +1,54 @@
+from nodes.extern.web.views.states import in_common, states
+from schemas.entities import PropertyInfo
+from tests.extern.web.views.worlds import by_name, thing
+
+
+def prop(name, kind="data", *, range_=(), domain=("Object",), functional=True, **fields):
+    return PropertyInfo(
+        name=name, iri=f"http://x/{name}", kind=kind, functional=functional, domain=domain, range=range_,
+        labels=fields.pop("labels", {}), values=fields.pop("values", {}), **fields
+    )  # fmt: skip
+
+
+OPEN = prop("isOpen", range_=("boolean",), labels={"en": "is open"})
+MASS = prop("mass", range_=("float",), comment="In kilograms.")
+COLOR = prop("hasColor", "object", range_=("Color",), values={"color_red": "red"}, functional=False)
+OWNER = prop("isOwnedBy", "object", range_=("Person",), functional=False)
+SERIAL = prop("serialNumber", range_=("string",), domain=("Device",))
+ALL = (SERIAL, OWNER, COLOR, MASS, OPEN)
+DOOR = thing("door1", "Door", types=("Object",), properties={"hasColor": ("color_red",)})
+ANNA = thing("anna", "Person", types=("Object",), preferred_reference="Anna")
+THINGS = by_name(DOOR, ANNA)
+
+
+def test_what_fits_the_class_may_be_set_and_what_is_stated_comes_first():
+    found = states(DOOR, ALL, THINGS)
+    assert [(s.name, s.kind) for s in found] == [
+        ("hasColor", "choice"),
+        ("isOpen", "switch"),
+        ("mass", "number"),
+        ("isOwnedBy", "thing"),
+    ]
+
+
+def test_a_state_says_what_it_is_and_in_which_unit():
+    color, open_, mass, owner = states(DOOR, ALL, THINGS)
+    assert (color.now, color.spoken, color.choices) == (("color_red",), "red", {"color_red": "red"})
+    assert (open_.label, open_.now, open_.spoken) == ("is open", None, "")
+    assert mass.unit == "kilograms"
+    assert owner.choices == {"anna": "anna (Anna)"}
+
+
+def test_relations_that_poses_tell_are_no_states_unless_somebody_stated_them():
+    on = prop("isOn", "object", range_=("Object",), functional=False)
+    assert [s.name for s in states(thing("a", types=("Object",)), (on,), {})] == []
+    stated = thing("a", types=("Object",), properties={"isOn": ("b",)})
+    assert [s.name for s in states(stated, (on,), {})] == ["isOn"]
+
+
+def test_of_several_things_the_states_are_those_of_all():
+    device = thing("lamp1", "Lamp", types=("Object", "Device"), properties={"isOpen": True, "mass": 2.0})
+    other = thing("lamp2", "Lamp", types=("Object",), properties={"isOpen": True, "mass": 3.0})
+    found = {s.name: s.now for s in in_common([device, other], ALL, THINGS)}
+    assert found == {"isOpen": True, "mass": None, "hasColor": None, "isOwnedBy": None}
+    assert in_common([], ALL, THINGS) == ()

@@ -1,0 +1,77 @@
+from nodes.extern.web.views.trees import class_tree, place_tree
+from nodes.extern.web.views.whereabouts import Whereabouts
+from tests.extern.web.views.worlds import by_name, class_, fact, place, thing
+
+CLASSES = (
+    class_("Thing"),
+    class_("Dishware", "Thing"),
+    class_("Graspable", "Thing"),
+    class_("Cup", "Dishware", "Graspable", labels={"en": "cup"}),
+    class_("Mug", "Cup", labels={"en": "large cup"}),
+    class_("Chair", "Thing"),
+)
+
+
+def labels(nodes):
+    return {node["label"]: labels(node["children"]) for node in nodes}
+
+
+def known(*facts):
+    whereabouts = Whereabouts()
+    whereabouts.begin(facts)
+    return whereabouts
+
+
+def test_counts_are_by_inference_and_those_said_so_beside_them():
+    tree = class_tree(
+        CLASSES,
+        [
+            thing("cup1", types=("Dishware", "Thing")),
+            thing("mug1", "Mug", types=("Cup", "Dishware", "Thing")),
+        ],
+    )
+    assert labels(tree) == {
+        "Thing · 2": {"Dishware · 2": {"Cup · 2 (1 said so)": {"Mug (large cup) · 1": {}}}}
+    }
+
+
+def test_a_class_with_two_parents_is_below_each_with_an_id_of_its_own():
+    tree = class_tree(CLASSES, [], with_empty=True)
+    (root,) = tree
+    ids = [grandchild["id"] for child in root["children"] for grandchild in child["children"]]
+    assert ids == ["Thing/Dishware/Cup", "Thing/Graspable/Cup"]
+    assert len(labels(tree)["Thing"]) == 3
+
+
+def test_classes_that_are_each_others_parents_end():
+    circle = (class_("Root"), class_("A", "B", "Root"), class_("B", "A"))
+    assert labels(class_tree(circle, [], with_empty=True)) == {"Root": {"A": {"B": {}}}}
+
+
+def test_a_class_whose_parent_is_not_known_is_at_the_top():
+    assert labels(class_tree([class_("A", "Nowhere")], [], with_empty=True)) == {"A": {}}
+
+
+def test_places_are_below_those_they_are_said_to_be_a_part_of():
+    entities = by_name(
+        place("flat1", (10.0, 8.0, 2.5), properties={"hasSubLocation": ("kitchen1",)}),
+        place("kitchen1", preferred_reference="the kitchen"),
+        place("corner1", (1.0, 1.0, 2.0)),
+        thing("cup1"),
+    )
+    facts = (
+        fact("cup1", "isLocatedIn", "kitchen1"),
+        fact("cup1", "isLocatedIn", "flat1"),
+        fact("corner1", "isLocatedIn", "kitchen1"),
+        fact("corner1", "isLocatedIn", "flat1"),
+    )
+    assert labels(place_tree(entities, known(*facts))) == {
+        "flat1 · 1": {"kitchen1 (the kitchen) · 1": {"corner1": {}}}
+    }
+
+
+def test_places_that_are_parts_of_each_other_are_shown_nevertheless():
+    entities = by_name(
+        place("a", properties={"hasSubLocation": ("b",)}), place("b", properties={"hasSubLocation": ("a",)})
+    )
+    assert set(labels(place_tree(entities, known()))) == {"a", "b"}

@@ -1,0 +1,132 @@
+"""A running system, the page, and tabs of Chromium: one of each for all tests of a process, for speed.
+
+So a test names what it adds as nobody else does, and says nothing of how many commits or entities there are.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shutil
+import subprocess
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+
+from tests.conftest import _BIN, PATIENCE_S, System, _await_end, running
+
+_ARGUMENTS = (
+    *("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-sync"),
+    *("--disable-background-networking", "--disable-component-update", "--disable-default-apps"),
+)
+_NAMES = ("chromium", "chromium-browser", "google-chrome")
+_HARMLESS = re.compile("GPU stall|THREE|Software WebGL|WebGL|net::ERR_CONNECTION")
+START_MS = 30_000
+
+
+def _chromium() -> str | None:
+    return os.environ.get("SEMMAP_CHROMIUM") or next(filter(None, map(shutil.which, _NAMES)), None)
+
+
+class Web:
+    """A running `semmap web`."""
+
+    def __init__(self, url: str, process: subprocess.Popen[str]) -> None:
+        self.url = url
+        """The address with its token, as it was printed."""
+        self.process = process
+
+    @property
+    def origin(self) -> str:
+        """`http://host:port`."""
+        parts = urlsplit(self.url)
+        return f"{parts.scheme}://{parts.netloc}"
+
+    @property
+    def port(self) -> int:
+        return int(urlsplit(self.url).port or 0)
+
+
+@contextlib.contextmanager
+def serving(endpoint: str, *words: str) -> Iterator[Web]:
+    """`semmap web` for the system at `endpoint`, on a free port; ended with Ctrl-C."""
+    command = [_BIN / "semmap", "web", "--port", "0", *words]
+    environment = {**os.environ, "SEMMAP_CONNECT": endpoint}
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        try:
+            line = process.stdout.readline()
+            assert line.startswith("http"), line
+            threading.Thread(target=process.stdout.read, daemon=True).start()
+            yield Web(line.strip(), process)
+        finally:
+            process.send_signal(2)
+            _await_end(process)
+
+
+@pytest.fixture(scope="session")
+def chromium():
+    """Debian's Chromium, headless."""
+    playwright = pytest.importorskip("playwright.sync_api", reason="Playwright for Python is not installed")
+    if (path := _chromium()) is None:
+        pytest.skip("there is no Chromium: sudo apt-get install chromium")
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=path, args=[*_ARGUMENTS])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="session")
+def system(tmp_path_factory) -> Iterator[System]:
+    """The demo flat with its simulator, without a recorder."""
+    with running(Path(tmp_path_factory.mktemp("page")), "--no-record") as system:
+        yield system
+
+
+@pytest.fixture(scope="session")
+def web(system) -> Iterator[Web]:
+    """The page of `system`."""
+    with serving(system.endpoint) as web:
+        yield web
+
+
+@pytest.fixture
+def open_tab(chromium):
+    """A function that opens the page in a tab of its own: `open_tab(web)`, `open_tab(web, width=390)`.
+
+    No tab may ask anything of another machine, nor report an error; that is looked at in the end.
+    """
+    contexts, asked, complained = [], [], []
+
+    def open_(web: Web, *, width: int = 1280, height: int = 800, dark: bool = False):
+        context = chromium.new_context(
+            viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light"
+        )
+        contexts.append(context)
+        context.set_default_timeout(PATIENCE_S * 1000)
+        tab = context.new_page()
+        tab.on("request", lambda request: asked.append(request.url))
+        tab.on("websocket", lambda socket: asked.append(socket.url))
+        tab.on("pageerror", lambda error: complained.append(str(error)))
+        tab.on("console", lambda said: said.type == "error" and complained.append(said.text))
+        tab.goto(web.url, timeout=START_MS)
+        tab.wait_for_selector("body.semmap-ready", timeout=START_MS)
+        return tab
+
+    yield open_
+    for context in contexts:
+        context.close()
+    elsewhere = [url for url in asked if urlsplit(url).hostname not in ("127.0.0.1", None)]
+    assert not elsewhere, elsewhere
+    amiss = [text for text in complained if not _HARMLESS.search(text)]
+    assert not amiss, amiss
+
+
+@pytest.fixture
+def tab(open_tab, web):
+    """The page in a tab, of a laptop's size."""
+    return open_tab(web)

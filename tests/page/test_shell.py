@@ -1,0 +1,104 @@
+"""The shell of the page in a browser: keys, looks, the phone, two tabs, and a system that goes and comes."""
+
+from __future__ import annotations
+
+import uuid
+
+import pytest
+
+from semmap.commands import Add, Remove
+from tests.conftest import running, until
+from tests.page.conftest import serving
+
+
+def fresh(stem: str) -> str:
+    return f"{stem}_{uuid.uuid4().hex[:8]}"
+
+
+def commit_of(tab) -> int:
+    """What the tab says in its header."""
+    said = tab.locator(".semmap-state").inner_text().split()
+    return int(said[said.index("commit") + 1].replace(",", ""))
+
+
+def test_it_opens_with_the_map_and_the_token_is_gone_from_the_address(tab, web, system):
+    assert tab.url == f"{web.origin}/"
+    with system.client() as client:
+        until(lambda: commit_of(tab) == client.status().commit, "the page is at the newest commit")
+    assert tab.locator("iframe").get_attribute("title") == "Scene"
+
+
+def test_two_tabs_agree_on_a_change_from_elsewhere(open_tab, web, system):
+    one, two = open_tab(web), open_tab(web)
+    with system.client() as client:
+        done = client.send(Add(class_="Cup", name=fresh("cup"), at=(2.0, 3.0, 1.0)))
+    for tab in (one, two):
+        until(lambda tab=tab: commit_of(tab) >= done.commit, "the commit shows")
+    assert one.locator(".semmap-state").inner_text() == two.locator(".semmap-state").inner_text()
+
+
+def test_u_undoes_and_a_question_mark_shows_the_keys(tab, system):
+    name = fresh("cup")
+    with system.client() as client:
+        done = client.send(Add(class_="Cup", name=name, at=(2.0, 3.0, 1.0)))
+        until(lambda: commit_of(tab) >= done.commit, "the commit shows")
+        tab.keyboard.press("u")
+        until(lambda: name not in {e.name for e in client.list()}, "it is undone")
+    tab.keyboard.press("?")
+    tab.get_by_role("dialog", name="Keys").get_by_text("undo the last change").wait_for()
+    tab.keyboard.press("Escape")
+    tab.get_by_role("dialog", name="Keys").wait_for(state="detached")
+
+
+def test_it_fits_a_phone(open_tab, web):
+    tab = open_tab(web, width=390, height=800)
+    assert tab.evaluate("document.documentElement.scrollWidth") <= 390
+    tab.get_by_role("tab", name="Scene").wait_for()
+    assert not tab.get_by_role("tab", name="Entities").is_visible()
+    tab.get_by_role("button", name="Show or hide the lists").click()
+    tab.get_by_role("tab", name="Entities").wait_for()
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_it_looks_as_the_browser_does_until_it_is_told(open_tab, web, dark):
+    tab = open_tab(web, dark=dark)
+    assert ("body--dark" in tab.locator("body").get_attribute("class")) is dark
+    tab.get_by_role("button", name="Dark or light").click()
+    tab.wait_for_selector("body:not(.body--dark)" if dark else "body.body--dark")
+
+
+def test_a_system_that_ends_is_said_to_be_away_and_another_map_is_begun_anew(chromium, open_tab, tmp_path):
+    words = ("--no-record", "--no-sim")
+    with running(tmp_path / "one", *words) as first:
+        endpoint = first.endpoint
+        with serving(endpoint) as web:
+            tab = open_tab(web)
+            until(lambda: "78 entities" in tab.locator(".semmap-state").inner_text(), "the flat shows")
+            first.stop()
+            tab.get_by_text("The knowledge base does not answer").wait_for()
+            with running(tmp_path / "two", "--abox", "none", *words, endpoint=endpoint):
+                tab.get_by_text("Another map is behind this address now").wait_for()
+                until(lambda: "78" not in tab.locator(".semmap-entities").inner_text(), "it is empty")
+                assert not tab.locator(".semmap-away").is_visible()
+
+
+def test_a_page_that_is_stopped_blocks_no_node(web, tab, system):
+    """SIGSTOP: it reads nothing any more, and the system does not notice."""
+    import signal
+    import time
+
+    name = fresh("cup")
+    web.process.send_signal(signal.SIGSTOP)
+    try:
+        with system.client() as client:
+            slowest_s = 0.0
+            for i in range(60):
+                began = time.monotonic()
+                client.send(Add(class_="Cup", name=f"{name}_{i}", at=(2.0, 3.0, 1.0 + i / 10)))
+                slowest_s = max(slowest_s, time.monotonic() - began)
+            client.send(Remove(names=tuple(f"{name}_{i}" for i in range(60))))
+    finally:
+        web.process.send_signal(signal.SIGCONT)
+    assert slowest_s < 2.0
+    with system.client() as client:
+        until(lambda: commit_of(tab) == client.status().commit, "the page catches up")

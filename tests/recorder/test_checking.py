@@ -1,0 +1,75 @@
+"""A recording's commits beside the journal's."""
+
+import pytest
+from msgspec import structs
+
+from nodes.recorder.checking import check
+from nodes.recorder.recorded_commits import RecordedCommit
+from tests.recorder.messages import commit, entity, relation
+
+A, B = relation("cup1", "isOn", "table1"), relation("cup1", "isOn", "desk1")
+JOURNAL = {
+    1: commit(1, entity("cup1"), inserted=(A,)),
+    2: commit(2, entity("cup1"), inserted=(B,), retracted=(A,)),
+    3: commit(3, removed=("cup1",), retracted=(B,)),
+    4: commit(4, entity("cup2"), inserted=(A,)),
+}
+
+
+def recorded(seq, **others):
+    one = structs.replace(JOURNAL[seq], **others)
+    return RecordedCommit(
+        seq=one.seq,
+        stamp_ns=one.stamp_ns,
+        id=one.id,
+        source=one.source,
+        agent=one.agent,
+        reason=one.reason,
+        inserted=one.inserted,
+        retracted=one.retracted,
+        changed=tuple(e.name for e in one.changed),
+        removed=tuple(gone.name for gone in one.removed),
+    )
+
+
+def checked(*commits, first=1, last=4):
+    return check(commits, JOURNAL.__getitem__, first=first, last=last)
+
+
+def test_what_is_the_same_is_said_to_be():
+    assert checked(*map(recorded, (1, 2, 3, 4))) == (True, "4 commits are as in the journal: 1 to 4")
+    assert checked(recorded(3)) == (True, "1 commit is as in the journal: 3")
+    assert checked() == (True, "there are no commits in the recording")
+
+
+def test_what_lacks_in_between_and_what_was_compacted_is_said():
+    verdict = checked(*map(recorded, (1, 2, 4)))
+    assert verdict == (True, "3 commits are as in the journal: 1 to 4; not recorded between them: 3")
+    verdict = checked(*map(recorded, (1, 2, 3, 4)), first=3)
+    assert verdict.is_same
+    assert "2 commits before commit 3 cannot be compared, because the journal was compacted" in verdict.text
+
+
+@pytest.mark.parametrize(
+    ("others", "said"),
+    [
+        ({"id": "x"}, "commit 2 is another one: id is 'x' in the recording, and 'id-2' in the journal"),
+        ({"reason": "why"}, "reason is 'why' in the recording, and '' in the journal"),
+        ({"inserted": (A, B)}, "of its inserted triples <"),
+        ({"retracted": ()}, "of its retracted triples <"),
+        ({"changed": ()}, "of its changed entities 'cup1' is not in the recording"),
+        ({"inserted": (), "retracted": (), "changed": ()}, "the recording lacks what it changes"),
+    ],
+)
+def test_the_first_difference_is_named(others, said):
+    verdict = checked(recorded(1), recorded(2, **others), recorded(3, id="later"))
+    assert not verdict.is_same
+    assert verdict.text.startswith("commit 2 is another one: ")
+    assert said in verdict.text
+
+
+def test_a_commit_that_the_journal_does_not_have_is_named():
+    verdict = checked(*map(recorded, (1, 2, 3, 4)), last=3)
+    assert verdict == (False, "commit 4 is not in the journal, whose last one is 3")
+    verdict = checked(recorded(1), recorded(2), recorded(2))
+    assert verdict == (False, "commit 2 is recorded twice, and not the same")

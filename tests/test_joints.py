@@ -1,0 +1,87 @@
+"""Doors over the wire: hands, words and the map agree on how far open a thing is."""
+
+import pytest
+
+from nodes import bus
+from schemas import errors, keys
+from schemas.scenes import JointOrder, JointsMoving, MoveJoints
+from tests.conftest import running, until
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    with running(tmp_path_factory.mktemp("joints"), "--abox", "none", "--world", "empty") as system:
+        with system.client() as client:
+            client.add("Fridge", "fridge1", at=(0.0, 0.0, 0.0), wait=True)
+            client.add("Cup", "cup1", at=(2.0, 0.0, 0.0), wait=True)
+        yield system
+
+
+@pytest.fixture
+def client(system):
+    with system.client() as client:
+        yield client
+
+
+def said(client):
+    properties = client.get("fridge1").properties
+    return {name: properties.get(name) for name in ("isOpen", "openness", "jointPositions")}
+
+
+def test_a_hand_opens_it_and_the_map_follows(client):
+    reply = client.open("fridge1", to=0.5, joint="door", wait=True)
+    assert reply.text == "fridge1: door open to 50% (0.873 rad)"
+    assert said(client) == {"isOpen": True, "openness": 0.5, "jointPositions": "door=0.873 freezer=0"}
+    entity = client.get("fridge1")
+    assert entity.body.openness == pytest.approx(0.5, abs=0.01)
+    assert entity.joint_provenance.source == "scene"
+    newest = client.history(limit=1)[-1]
+    assert (newest.verb, newest.reason) == ("open", "fridge1 was opened by hand")
+    assert client.close("fridge1", wait=True).text == "fridge1: door closed (0 rad), freezer closed (0 rad)"
+    assert said(client) == {"isOpen": False, "openness": 0.0, "jointPositions": "door=0 freezer=0"}
+
+
+def test_what_the_map_says_is_done_in_the_scene(client):
+    client.set("fridge1", "isOpen", True)
+    assert said(client)["jointPositions"] is None
+
+    def is_open():
+        body = client.get("fridge1").body
+        return body if body.openness > 0.99 and client.status().in_agreement else None
+
+    until(is_open, "the doors open")
+    client.set("fridge1", "openness", 0.25)
+    assert said(client)["isOpen"] is True
+    until(lambda: abs(client.get("fridge1").body.openness - 0.25) < 0.01, "the doors close a little")
+    client.set("fridge1", "isOpen", False)
+    until(lambda: client.get("fridge1").body.openness < 0.01, "the doors close")
+    client.undo()
+    until(lambda: abs(client.get("fridge1").body.openness - 0.25) < 0.01, "they stand as before")
+
+
+def test_a_robot_that_opens_it_changes_the_map(client):
+    client.set("fridge1", "isOpen", False)
+    until(lambda: client.get("fridge1").body.openness < 0.01, "the doors close")
+    asked = MoveJoints(orders=(JointOrder(name="fridge1", joint="freezer", openness=1.0),))
+    assert bus.ask(client.session, keys.SIM, "move-joints", asked, JointsMoving).failed == {}
+    until(lambda: said(client)["openness"] == 1.0, "the map follows")
+    assert client.history(limit=1)[-1].reason == "fridge1 was opened to 100% in the scene"
+    rows = client.sparql("SELECT ?x { ?x dm:isOpen true ; dm:openness ?o FILTER(?o > 0.9) }").rows
+    assert len(rows) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [("cup1", "cup1 has no door, lid or drawer to open"), ("fridge2", "no entity is named 'fridge2'")],
+)
+def test_what_does_not_open_is_refused(client, name, why):
+    with pytest.raises(errors.Refused, match=why):
+        client.open(name)
+
+
+def test_on_the_command_line(system):
+    assert "door open to 30% (0.524 rad)" in system.cli(
+        "open", "fridge1", "--to", "0.3", "--joint", "door", "--wait"
+    )
+    assert "isOpen" in system.cli("get", "fridge1")
+    assert "door closed" in system.cli("close", "fridge1", "--wait")
