@@ -19,6 +19,8 @@ from nodes.runtime.loop import Node
 from nodes.runtime.map_replica import MapReplica
 from schemas import keys
 from schemas.commits import Effects
+from schemas.entities import Pose
+from schemas.live import LivePoses
 from schemas.scenes import Poses, Scene, SceneQuery, Surface, SurfaceQuery, Surfaces
 
 _TICK_S: Final = 0.05
@@ -68,6 +70,7 @@ class Bridge:
         self._map = MapReplica[Effects]()
         self._scene = SceneState()
         self._fetching = False
+        self._live: dict[str, Pose] = {}
         self._surfaces: SurfaceCache | None = SurfaceCache() if meshes else None
         self._things: dict[str, Thing] = {}
         self._is_stale = True
@@ -79,6 +82,7 @@ class Bridge:
         self._topics = of
         Follower(node, self._map, keys.EFFECTS, heard=lambda _, __: self._stir(), begun=self._begun)
         node.follow_newest(keys.POSES, self._on_poses)
+        node.follow_newest(keys.LIVE_POSES, self._on_live)
         ros.when_subscribed(of.planning_scene, lambda: node.soon(self._greet))
         node.every(_TICK_S, self._tick)
 
@@ -97,6 +101,10 @@ class Bridge:
             self._fetch_scene()
         elif any(self._scene.follow(poses)):
             self._stir()
+
+    def _on_live(self, live: LivePoses) -> None:
+        self._live = {name: said.pose for name, said in live.entities.items()}
+        self._stir()
 
     def _fetch_scene(self) -> None:
         if self._fetching:
@@ -143,7 +151,7 @@ class Bridge:
             return
         if self._is_stale:
             self._is_stale = False
-            self._things = things_of(self._map.entities.values(), self._scene.bodies)
+            self._things = things_of(self._map.entities.values(), self._scene.bodies, self._live)
         at = Moment(self._frame, time.time_ns())
         if self._is_due("transforms", self._period_s):
             self._transform(at)

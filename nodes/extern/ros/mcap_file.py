@@ -53,13 +53,13 @@ def _states(client: Client, seqs: list[int], began_ns: int) -> Iterator[State]:
     first = seqs[0]
     before = client.list(as_of=str(first - 1)) if first > 1 else ()
     entities = {entity.name: entity for entity in before}
-    yield State(first - 1, began_ns, things_of(entities.values(), {}))
+    yield State(first - 1, began_ns, things_of(entities.values(), {}, {}))
     for commit in _recalled(client, seqs):
         if commit.abridged is not None or commit.tbox:
             entities = {entity.name: entity for entity in client.list(as_of=str(commit.seq))}
         else:
             _follow(entities, commit)
-        yield State(commit.seq, commit.stamp_ns, things_of(entities.values(), {}))
+        yield State(commit.seq, commit.stamp_ns, things_of(entities.values(), {}, {}))
 
 
 def _follow(entities: dict[str, Entity], commit: Commit) -> None:

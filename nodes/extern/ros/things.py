@@ -16,7 +16,7 @@ _STILL: Final = 1e-3
 
 
 class Thing(NamedTuple):
-    """An entity that is somewhere: `pose` is that of its body where there is one, else what the map says."""
+    """An entity that is somewhere: `pose` is the live one, else that of its body, else what the map says."""
 
     name: str
     class_: str
@@ -38,12 +38,14 @@ class Thing(NamedTuple):
         )
 
 
-def things_of(entities: Iterable[Entity], bodies: Mapping[str, Body]) -> dict[str, Thing]:
-    """All entities that are somewhere, by name."""
+def things_of(
+    entities: Iterable[Entity], bodies: Mapping[str, Body], live: Mapping[str, Pose]
+) -> dict[str, Thing]:
+    """All entities that are somewhere, by name; of what is tracked the `live` pose counts."""
     found = {}
     for entity in entities:
         body = bodies.get(entity.name)
-        pose = body.pose if body is not None else entity.pose
+        pose = live.get(entity.name) or (body.pose if body is not None else entity.pose)
         if pose is None:
             continue
         said = entity.pose_provenance.confidence
