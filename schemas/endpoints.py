@@ -14,6 +14,8 @@ CONFIG_VARIABLE: Final = "SEMMAP_ZENOH_CONFIG"
 """The environment variable with a Zenoh configuration file, for a system that was started with its own."""
 IDENTITY_VARIABLE: Final = "SEMMAP_IDENTITY"
 """The environment variable with who somebody is."""
+WEB_TOKEN_VARIABLE: Final = "SEMMAP_WEB_TOKEN"
+"""The environment variable with the token that opens the page; without it one is made up."""
 NAMESPACE_VARIABLE: Final = "SEMMAP_NAMESPACE"
 """The environment variable with which robot is meant, where several share a network."""
 

@@ -38,6 +38,9 @@ PERCEPTION = f"{ROOT}/perception"
 NODES = ("kb_node", "coordinator", "sim_node", "perception_node", "recorder")
 """The nodes that `semmap up` can start."""
 
+WEB = "web"
+"""The page, which `semmap up --web` starts beside the nodes; it is a client like any other."""
+
 ROUTER = "router"
 """The process that everybody, nodes included, is connected to under `semmap up --secure`."""
 
@@ -67,6 +70,8 @@ LIVE_POSES = Topic(f"{ROOT}/live", LivePoses, "newest")
 """Of all tracked entities, by the coordinator."""
 OBSERVATIONS = Topic(f"{PERCEPTION}/observations", Observations, "newest")
 CLOUD = Topic(f"{PERCEPTION}/cloud", SegmentedCloud, "newest")
+DETECTIONS = Topic(f"{PERCEPTION}/detections", Observations, "newest")
+"""What a detector of one's own has seen: perception compares it with the map as it does with what it sees."""
 HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 
 TOPICS = (
@@ -81,6 +86,7 @@ TOPICS = (
     CAMERA,
     OBSERVATIONS,
     CLOUD,
+    DETECTIONS,
     HEALTH,
 )
 

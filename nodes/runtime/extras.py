@@ -22,6 +22,7 @@ MODULES: Mapping[str, tuple[str, ...]] = {
     "mcp": ("anyio", "mcp", "uvicorn"),
     "web": ("fastapi", "nicegui", "numpy", "psutil", "uvicorn", "viser", "websockets"),
     "movie": ("av", "numpy"),
+    "ros": ("mcap", "numpy", "rosbags"),
 }
 """What each extra installs, as it is imported."""
 
@@ -32,8 +33,9 @@ OF_NODE: Mapping[str, str] = {
     "sim_node": "sim",
     "perception_node": "perception",
     "recorder": "record",
+    "web": "web",
 }
-"""What a node needs."""
+"""What a node, and the page beside them, needs."""
 
 _OPTIONS = {"sim": "--no-sim", "record": "--no-record"}
 """How `semmap up` does without one."""

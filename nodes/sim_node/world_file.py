@@ -19,6 +19,7 @@ from nodes.sim_node.robots.robot import put
 from nodes.sim_node.vision.view import View, look_at, pinhole
 from nodes.sim_node.world import World
 from schemas import codec, scene_files
+from schemas.entities import free_name
 from schemas.errors import BadFile, UnknownClass
 from schemas.scenes import BodyOrder
 
@@ -29,6 +30,13 @@ _PICTURE = (4, 3)
 def is_scene(path: Path | None) -> bool:
     """Whether a world file is a scene in JSON, whose bodies are named by class. Raises BadFile."""
     return path is not None and (path.suffix == ".json" or codec.looks_like_json(_read(path)))
+
+
+def names_classes(path: Path | None) -> bool:
+    """Whether it depends on the names of classes what bodies the world of a file has. Raises BadFile."""
+    if path is None:
+        return False
+    return is_scene(path) or base_scene.names_classes(base_scene.read_mjcf(path, compiles=False))
 
 
 def open_world(
@@ -49,7 +57,9 @@ def open_world(
         return _world(base_scene.bare_floor(), robot, models=models, meanwhile=meanwhile)
     if not is_scene(path):
         ground = base_scene.read_mjcf(path)
-        return _world(ground, robot, name=path.name, models=models, meanwhile=meanwhile)
+        known = classes or ClassNames()
+        how = {"name": path.name, "models": models, "meanwhile": meanwhile, "is_class": known.has}
+        return _world(ground, robot, **how)
     scene = scene_files.read(_read(path), path.name)
     views = (
         None if scene.cameras is None else [(camera.name or "", _view(camera)) for camera in scene.cameras]
@@ -86,10 +96,10 @@ def _view(camera: scene_files.Camera) -> View:
 
 
 def _orders(described: Iterable[scene_files.Described], classes: ClassNames) -> list[BodyOrder]:
-    taken = {item.name for item in described}
+    taken = {item.name for item in described if item.name}
     orders = []
-    for i, item in enumerate(described, start=1):
-        name = item.name or next(n for k in range(i, 10**9) if (n := f"{item.class_}_{k}") not in taken)
+    for item in described:
+        name = item.name or free_name(item.class_, taken)
         taken.add(name)
         model, fixed = _shape(item.class_, classes)
         orders.append(

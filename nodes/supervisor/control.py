@@ -25,6 +25,7 @@ from nodes.supervisor import orphans, registry
 from nodes.supervisor.privacy import UMASK, make_private
 from nodes.supervisor.settings import SETTINGS, Settings
 from schemas import codec, errors
+from schemas.endpoints import WEB_TOKEN_VARIABLE
 
 GROUP = "semmap"
 _SOCKET = f"semmap-{os.getuid()}-{{}}{{}}"
@@ -70,13 +71,15 @@ class Supervisor:
         """What it was started with."""
         return codec.decode(self._settings_path.read_bytes(), Settings)
 
-    def start(self, settings: Settings) -> subprocess.Popen[bytes]:
-        """Start it and, through it, the nodes."""
+    def start(self, settings: Settings, *, web_token: str = "") -> subprocess.Popen[bytes]:
+        """Start it and, through it, the nodes; `web_token` opens the page, and is on no disk."""
         self.logs.mkdir(parents=True, exist_ok=True)
         self._settings_path.write_bytes(codec.encode_json(settings))
         self._conf_path.write_text(self._conf(settings))
         command = [sys.executable, "-P", "-m", "nodes.supervisor.daemon", "-n", "-c", str(self._conf_path)]
         environment = {**os.environ, NOTIFY_VARIABLE: str(self.notices)}
+        if web_token:
+            environment[WEB_TOKEN_VARIABLE] = web_token
         with (self.logs / "supervisord.out").open("wb") as out:
             make_private(self.data)
             return subprocess.Popen(

@@ -21,7 +21,8 @@ from nodes.supervisor.settings import Settings
 from ontology import EMPTY_WORLD, FLAT_WORLD
 from ontology.model_shapes import add_own
 from schemas import codec, errors
-from schemas.keys import ROUTER
+from schemas.endpoints import WEB_TOKEN_VARIABLE
+from schemas.keys import ROUTER, WEB
 
 if TYPE_CHECKING:
     from nodes.sim_node.config import RobotConfig
@@ -173,6 +174,18 @@ def _recorder(settings: Settings) -> None:
         os.execv(sys.executable, sys.orig_argv)
 
 
+def _web(settings: Settings) -> None:
+    from nodes.extern.web.server import WebConfig, run
+
+    token = os.environ.get(WEB_TOKEN_VARIABLE, "")
+    run(WebConfig(network=settings.network(WEB), port=settings.web_port, token=token), tell=_log_address)
+
+
+def _log_address(address: str) -> None:
+    """The address without its token: logs are read by more people than a terminal is."""
+    print(f"web: serving {address.partition('?')[0]}", flush=True)
+
+
 def _router(settings: Settings) -> None:
     from nodes.router.config import RouterConfig
     from nodes.router.node import run
@@ -188,6 +201,7 @@ _LAUNCHERS: dict[str, Callable[[Settings], None]] = {
     "sim_node": _sim_node,
     "perception_node": _perception_node,
     "recorder": _recorder,
+    WEB: _web,
 }
 
 

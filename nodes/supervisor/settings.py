@@ -15,7 +15,7 @@ from nodes.identity import Identity
 from schemas.endpoints import ALL_ROBOTS, robot_name
 from schemas.entities import Angle, Metres, Name
 from schemas.errors import BadRequest
-from schemas.keys import ROUTER
+from schemas.keys import ROUTER, WEB
 
 _LIMIT = re.compile("[1-9][0-9]{0,5}(h|d|MB|GB)")
 ANY_PORT = "tcp/127.0.0.1:0"
@@ -91,6 +91,11 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     perception: bool = False
     when_gone: Literal["remove", "mark"] = "remove"
     """What becomes of an entity that perception brought in and no longer sees."""
+    web: bool = False
+    """The page runs beside the nodes."""
+    web_port: Annotated[int, Meta(ge=0, le=65_535)] = 8080
+    web_as: str = ""
+    """With `secure`: the name of the certificate under whose role the page acts."""
     live_view: str | None = None
     """Where the recorder streams to Rerun viewers, `host:port`."""
     secure: str | None = None
@@ -135,13 +140,14 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def nodes(self) -> tuple[str, ...]:
-        """The nodes to run, in the order of starting."""
+        """The nodes to run, in the order of starting, and the page after them."""
         optional = {"sim_node": self.sim, "recorder": self.record, "perception_node": self.perception}
         order = ("coordinator", "kb_node", "sim_node", "recorder", "perception_node")
         router = (ROUTER,) if self.has_router else ()
+        page = (WEB,) if self.web else ()
         if self.only:
-            return router + tuple(node for node in order if node in self.only)
-        return router + tuple(node for node in order if optional.get(node, True))
+            return router + tuple(node for node in order if node in self.only) + page
+        return router + tuple(node for node in order if optional.get(node, True)) + page
 
     @property
     def has_router(self) -> bool:
@@ -167,15 +173,21 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return structs.replace(self._place(node), namespace=namespace, own_config=self.zenoh_config)
 
     def _place(self, node: str) -> Network:
-        identity = None if self.secure is None else Identity.read(Path(self.secure) / node)
+        identity = None if self.secure is None else self.identity_of(node)
         if node == ROUTER:
             return Network(mode="router", listen=(self.listen,), connect=self.connect, identity=identity)
         if self.has_router:
             where = self.connect if self.single and self.connect else (self.reachable,)
             return Network(connect=where, identity=identity, patience_s=FOREVER_S)
+        if node == WEB:  # which nobody's messages are to go through, and which must hold up nobody
+            return Network(connect=(self.reachable,), patience_s=FOREVER_S)
         if node == "coordinator":
             return Network(mode="peer", listen=(self.listen,), connect=self.connect)
         return Network(mode="peer", listen=(ANY_PORT,), connect=(self.reachable, *self.connect))
+
+    def identity_of(self, node: str) -> Identity:
+        """The certificate that a node shows; the page shows that of whom it acts for. Raises BadFile."""
+        return Identity.read(Path(self.secure or "") / ((self.web_as or WEB) if node == WEB else node))
 
     @property
     def reachable(self) -> str:

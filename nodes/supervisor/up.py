@@ -6,6 +6,7 @@ import contextlib
 import fcntl
 import os
 import re
+import secrets
 import shlex
 import signal
 import socket
@@ -55,11 +56,14 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
         _require_free(settings.listen)
         if settings.record and settings.secure is None:  # anybody on this machine may look at a live view
             settings = structs.replace(settings, live_view=_live_view())
+        token = secrets.token_urlsafe(24) if settings.web else ""
+        if settings.web:
+            settings = structs.replace(settings, web_port=_web_port(settings.web_port))
         with presence.announced(settings.reachable):
             if seeded := supervisor.seed(settings):
                 say(f"{'map':<{_COLUMN}} {seeded}")
             notices = Notices(supervisor.notices)
-            process = supervisor.start(settings)
+            process = supervisor.start(settings, web_token=token)
             try:
                 with registry.entered(
                     data=supervisor.data,
@@ -68,7 +72,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
                     pid=process.pid,
                     namespace=settings.namespace,
                 ):
-                    _Foreground(supervisor, settings, process, notices, say).run()
+                    _Foreground(supervisor, settings, process, notices, say, token).run()
             finally:
                 _stop(process)
                 supervisor.end_leftovers()
@@ -110,7 +114,9 @@ class _Foreground:
         process: subprocess.Popen[bytes],
         notices: Notices,
         say: Callable[[str], None],
+        web_token: str = "",
     ) -> None:
+        self._web_token = web_token
         self._supervisor = supervisor
         self._settings = settings
         self._process = process
@@ -244,7 +250,7 @@ class _Foreground:
                 status = bus.ask(session, keys.CMD, Status.VERB, Status(), reply_type(Status))
                 known = {node.pid for node in status.nodes if node.state == "ready"}
                 stands = status.in_agreement or status.truth == "perceived" or "sim_node" not in self._pids
-                if stands and known >= {*self._pids.values()}:
+                if stands and known >= {pid for node, pid in self._pids.items() if node != keys.WEB}:
                     break
                 time.sleep(0.05)
             self._tell_of_truth(status.truth)
@@ -283,6 +289,8 @@ class _Foreground:
             lines["recording"] = f"{self._settings.data}/recordings"
         if self._settings.live_view is not None:
             lines["live view"] = f"rerun --connect rerun+http://{self._settings.live_view}/proxy"
+        if self._settings.web:
+            lines["page"] = f"http://127.0.0.1:{self._settings.web_port}/?token={self._web_token}"
         lines |= {"try": f"semmap list{connect}", "stop": "Ctrl-C"}
         self._say("")
         for what, value in lines.items():
@@ -303,6 +311,20 @@ def _require_free(endpoint: str) -> None:
             raise errors.Refused(
                 f"cannot listen on {endpoint}: {error.strerror}; choose another with --listen"
             ) from None
+
+
+def _web_port(port: int) -> int:
+    """The port of the page: this one, if it is free, or for 0 any that is. Raises Refused."""
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(("127.0.0.1", port))
+        except OSError as error:
+            raise errors.Refused(
+                f"the page cannot listen on 127.0.0.1:{port}: {error.strerror}; choose another with"
+                " --web-port, or --web-port 0 for any that is free"
+            ) from None
+        return int(probe.getsockname()[1])
 
 
 def _ending(status: int) -> str:

@@ -14,7 +14,7 @@ import pytest
 
 from nodes.runtime import extras
 from schemas import errors
-from schemas.keys import NODES, ROUTER
+from schemas.keys import NODES, ROUTER, WEB
 from tests.conftest import free_endpoint
 
 ROOT = Path(__file__).parents[2]
@@ -87,8 +87,8 @@ def test_all_is_every_extra():
 
 
 def test_every_node_has_an_extra():
-    assert set(extras.OF_NODE) == {*NODES, ROUTER}
-    assert set(extras.OF_NODE.values()) == set(extras.MODULES) - {"keys", "mcp", "movie", "web"}
+    assert set(extras.OF_NODE) == {*NODES, ROUTER, WEB}
+    assert set(extras.OF_NODE.values()) == set(extras.MODULES) - {"keys", "mcp", "movie", "ros"}
 
 
 def test_with_everything_nothing_is_missing():

@@ -5,7 +5,9 @@ Everything that is served is behind this: pages, assets, WebSockets, the scene.
 
 from __future__ import annotations
 
+import hmac
 import ipaddress
+import re
 import secrets
 import socket
 from collections.abc import Awaitable, Callable, MutableMapping
@@ -13,12 +15,17 @@ from http.cookies import CookieError, SimpleCookie
 from typing import Any, Final
 from urllib.parse import parse_qs, urlsplit
 
+from schemas import errors
+from schemas.endpoints import WEB_TOKEN_VARIABLE
+
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 TOKEN: Final = "token"
+SHORTEST_TOKEN: Final = 16
+_HTTP: Final = 80
 _LOOPBACK: Final = frozenset(("127.0.0.1", "localhost", "::1"))
 _POLICY: Final = (
     "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; frame-ancestors 'self'; form-action 'self'"
@@ -31,19 +38,28 @@ _HEADERS: Final = (
 )
 
 
+def new_token(said: str = "") -> str:
+    """The token that somebody chose, or one that nobody can guess. Raises BadRequest for one too short."""
+    if not said:
+        return secrets.token_urlsafe(24)
+    if len(said) < SHORTEST_TOKEN or not re.fullmatch(r"[A-Za-z0-9_.~-]*", said):
+        raise errors.BadRequest(
+            f"{WEB_TOKEN_VARIABLE} must have at least {SHORTEST_TOKEN} letters, digits, '-', '_', '.' or '~'"
+        )
+    return said
+
+
 class Access:
     """An ASGI application that lets in who knows the token, or has the cookie that it was exchanged for."""
 
-    def __init__(self, app: App, host: str, port: int, *, scheme: str = "http") -> None:
-        """`host` and `port` are where the page listens."""
+    def __init__(self, app: App, host: str, port: int, token: str) -> None:
+        """`host` and `port` are where the page listens. `token` is valid as long as this process lives."""
         self._app = app
         self._port = port
-        self._scheme = scheme
         self._hosts = _LOOPBACK | {host.lower(), socket.gethostname().lower()}
         self._any_address = _is_any(host)
-        self.token = secrets.token_urlsafe(24)
-        """Valid as long as this process lives."""
-        self._cookie = secrets.token_urlsafe(24)
+        self._token = token.encode()
+        self._cookie = hmac.digest(self._token, b"cookie", "sha256").hex()
         self._cookie_name = f"semmap-{port}"
         """A browser sends the cookies of a host to all its ports."""
 
@@ -73,31 +89,29 @@ class Access:
             host, port = (parts.hostname or "").lower(), parts.port
         except ValueError:
             return False
-        if (port or _usual_port(self._scheme)) != self._port:
+        if (port or _HTTP) != self._port:
             return False
         return host in self._hosts or (self._any_address and _is_address(host))
 
     def _is_own_origin(self, headers: dict[str, str]) -> bool:
         """A browser says from which origin a page asks; a program that is none need not say."""
         origin = headers.get("origin")
-        return origin is None or origin.lower() == f"{self._scheme}://{headers['host']}".lower()
+        return origin is None or origin.lower() == f"http://{headers['host']}".lower()
 
     def _is_known(self, headers: dict[str, str]) -> bool:
         try:
             cookie = SimpleCookie(headers.get("cookie", "")).get(self._cookie_name)
         except CookieError:
             return False
-        return cookie is not None and secrets.compare_digest(cookie.value.encode(), self._cookie.encode())
+        return cookie is not None and hmac.compare_digest(cookie.value.encode(), self._cookie.encode())
 
     def _has_token(self, scope: Scope) -> bool:
         said = parse_qs(scope["query_string"].decode("latin-1")).get(TOKEN, [])
-        return len(said) == 1 and secrets.compare_digest(said[0].encode(), self.token.encode())
+        return len(said) == 1 and hmac.compare_digest(said[0].encode(), self._token)
 
     async def _exchange(self, scope: Scope, send: Send) -> None:
         """Give the cookie, and go on without the token: it stays neither in the address nor in a log."""
         cookie = f"{self._cookie_name}={self._cookie}; Path=/; HttpOnly; SameSite=Strict"
-        if self._scheme == "https":
-            cookie += "; Secure"
         headers = [
             (b"content-type", b"text/html; charset=utf-8"),
             (b"cache-control", b"no-store"),
@@ -140,10 +154,6 @@ def _with_headers(send: Send) -> Send:
         await send(message)
 
     return sending
-
-
-def _usual_port(scheme: str) -> int:
-    return 443 if scheme == "https" else 80
 
 
 def _is_any(host: str) -> bool:

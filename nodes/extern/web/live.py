@@ -112,6 +112,10 @@ class Live:
         self._loop = asyncio.get_running_loop()
         self._thread.start()
 
+    def ready(self, detail: str) -> None:
+        """Tell whoever has started this process that the page can be opened."""
+        self._node.soon(lambda: self._node.ready(detail))
+
     def stop(self) -> None:
         """Follow no more, and wait for nobody."""
         self._loop = None

@@ -15,6 +15,7 @@ from fastapi import FastAPI
 from msgspec import Struct
 
 from nodes import bus
+from nodes.extern.web.access import TOKEN, Access, new_token
 from nodes.identity import Identity
 from schemas import errors
 
@@ -31,6 +32,8 @@ class WebConfig(Struct, frozen=True, kw_only=True):
     host: str = HOST
     port: int = PORT
     """0 is any port that is free."""
+    token: str = ""
+    """What opens the page; one is made up where none is given."""
 
     @property
     def identity(self) -> Identity | None:
@@ -41,21 +44,25 @@ class WebConfig(Struct, frozen=True, kw_only=True):
 def run(config: WebConfig, tell: Callable[[str], None]) -> None:
     """Serve the page until SIGINT or SIGTERM; `tell` is given its address when it can be opened.
 
-    Raises BadRequest for a port that is taken, or an address that is not this machine's.
+    Raises BadRequest for a port that is taken, an address that is not this machine's, or a bad token.
     """
+    token = new_token(config.token)
     with contextlib.closing(_listen(config.host, config.port)) as listening, _own_storage():
         bus.read_links_apart()
         with bus.open_session(config.network) as session:
-            _serve(config, session, listening, tell)
+            _serve(config, token, session, listening, tell)
 
 
 def _serve(
-    config: WebConfig, session: bus.Session, listening: socket.socket, tell: Callable[[str], None]
+    config: WebConfig,
+    token: str,
+    session: bus.Session,
+    listening: socket.socket,
+    tell: Callable[[str], None],
 ) -> None:
     from nicegui import Client, ui  # after its storage has a place
 
     from nodes.extern.web import proxy
-    from nodes.extern.web.access import TOKEN, Access
     from nodes.extern.web.layout import layout
     from nodes.extern.web.live import Live
     from nodes.extern.web.page import Page
@@ -69,7 +76,9 @@ def _serve(
     @contextlib.asynccontextmanager
     async def living(_: FastAPI) -> AsyncIterator[None]:
         live.start()
-        tell(f"http://{_written(config.host)}:{port}/?{TOKEN}={access.token}")
+        address = f"http://{_written(config.host)}:{port}/"
+        live.ready(address)
+        tell(f"{address}?{TOKEN}={token}")
         try:
             yield
         finally:
@@ -87,9 +96,7 @@ def _serve(
         layout(page)
 
     ui.run_with(app, title="semmap", dark=None, show_welcome_message=False, reconnect_timeout=10.0)
-    access = Access(app, config.host, port)
-    server = uvicorn.Server(_uvicorn(access))
-    server.run(sockets=[listening])
+    uvicorn.Server(_uvicorn(Access(app, config.host, port, token))).run(sockets=[listening])
 
 
 def _uvicorn(app: Any) -> uvicorn.Config:
@@ -98,6 +105,7 @@ def _uvicorn(app: Any) -> uvicorn.Config:
         log_level="warning",
         access_log=False,
         server_header=False,
+        proxy_headers=False,
         ws="websockets-sansio",
         ws_max_size=_LARGEST_MESSAGE,
         ws_per_message_deflate=False,

@@ -32,6 +32,7 @@ def put(ground: mujoco.MjSpec, robot: RobotConfig) -> None:
         root.add_freejoint()
     own = [*spec.bodies[1:], *spec.joints, *spec.cameras, *spec.sites, *spec.actuators]
     names = [(element, element.name) for element in own]
+    said = [(text.name, text.data) for text in spec.texts]
     frame = ground.worldbody.add_frame(
         pos=list(robot.at_m), quat=[math.cos(robot.yaw_rad / 2), 0.0, 0.0, math.sin(robot.yaw_rad / 2)]
     )
@@ -39,6 +40,10 @@ def put(ground: mujoco.MjSpec, robot: RobotConfig) -> None:
     ground.attach(spec, prefix=prefix, frame=frame)
     for element, name in names:
         element.name = robot.name if element is names[0][0] else f"{prefix}{name}" if name else ""
+    for name, class_ in said:  # which of its parts are entities
+        head, colon, part = name.partition(":")
+        if colon and head == "semmap":
+            ground.add_text(name=f"semmap:{prefix}{part}", data=class_)
     root = ground.body(robot.name)
     root.sleep = mujoco.mjtSleepPolicy.mjSLEEP_ALLOWED  # else what has actuators never does
 

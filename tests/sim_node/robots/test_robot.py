@@ -35,20 +35,23 @@ def until_it_ends(world, most_s: float = 60.0) -> str:
 
 
 def test_it_stands_where_it_is_put_and_sleeps(world):
-    (body,) = world.scene().bodies
+    body, gripper = world.scene().bodies
+    assert (gripper.name, gripper.class_, gripper.part_of) == ("robot1_gripper", "Device", "robot1")
+    assert gripper.robot
+    assert not any(joint.opens for joint in (*body.joints, *gripper.joints))
     assert (body.name, body.class_, body.robot, body.ghost) == ("robot1", "robot", True, False)
     assert body.pose.position_m == pytest.approx(AT, abs=1e-3)
     assert body.pose.yaw_rad == pytest.approx(1.0, abs=1e-3)
     world.step(3.0)
     assert world.asleep
-    assert world.poses().resting == (True,)
+    assert world.poses().resting == (True, True)
     assert world.pose("robot1").position_m == pytest.approx(AT, abs=2e-3)
 
 
 def test_it_drives_through_points_and_faces_where_it_is_to(world):
     world.drive(DriveBase(name="robot1", to=((8.5, 2.0), (8.5, 2.8)), yaw=0.0))
     world.step(1.0)
-    assert world.poses().resting == (False,)
+    assert world.poses().resting[0] is False
     assert until_it_ends(world) == "there"
     pose = world.pose("robot1")
     assert pose.position_m == pytest.approx((8.5, 2.8, 0.0), abs=0.02)

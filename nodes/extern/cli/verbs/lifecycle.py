@@ -17,7 +17,7 @@ from nodes import bus
 from nodes.extern.cli.calling import complain
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
 from nodes.extern.cli.output.printable import say
-from nodes.identity import SUPERVISOR, Identity
+from nodes.identity import SUPERVISOR
 from nodes.identity.register import Register
 from nodes.runtime import extras
 from nodes.supervisor.parts import nodes_of
@@ -49,7 +49,8 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     @spatial_root_option
     @click.option(
         "--abox",
-        help="ABox file, or none for an empty map. Default: the flat; none if perceived or with --tbox.",
+        help="ABox file, or none for an empty map. Default: the flat; none if perceived, with --tbox, or with"
+        " --truth scene and a --world.",
     )
     @click.option(
         "--world", help="MJCF file, JSON scene, or the word empty. Default: as before, else the flat's."
@@ -176,6 +177,15 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         default=None,
         help="Delete recordings older than 12h or 7d, or beyond 500MB or 20GB. Default: keep all.",
     )
+    @click.option("--web", is_flag=True, help="Start the page, too: the map in a browser.")
+    @click.option(
+        "--web-port",
+        type=click.IntRange(0, 65_535),
+        default=None,
+        metavar="N",
+        help="Port of the page; 0 is any free one. Default: 8080.",
+    )
+    @click.option("--web-as", metavar="NAME", help="With --secure: whose certificate the page acts under.")
     @functools.wraps(function)
     def with_settings(name: str | None = None, **options: Any) -> None:
         own = {} if name is None else {"name": name}
@@ -190,7 +200,7 @@ def up(settings: Settings) -> None:
     """Start the system in the foreground; Ctrl-C stops it."""
     if settings.secure is not None:
         for name in (SUPERVISOR, *settings.nodes):
-            Identity.read(Path(settings.secure) / name).require_valid()
+            settings.identity_of(name).require_valid()
     extras.require_nodes(settings.nodes, named=bool(settings.only))
     from nodes.supervisor.up import up as run_up
 
@@ -264,6 +274,7 @@ def _settings(
     camera_size: tuple[int, int], camera_noise: bool, perception: bool, when_gone: str, no_sim: bool,
     no_record: bool, record_keep: str | None, only: str | None, single: bool, secure: Path | None,
     zenoh_config: Path | None, insecure: bool, namespace: str,
+    web: bool, web_port: int | None, web_as: str | None,
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
     folder = (data or default_data()).resolve()
@@ -276,6 +287,7 @@ def _settings(
             "sim_node" not in nodes,
             "recorder" not in nodes,
         )
+    _require_for_web(web=web, port=web_port, name=web_as, secure=secure, single=single)
     before = None if fresh else _settings_before(folder)
     if abox is not None and (folder / JOURNAL).exists() and not fresh:
         complain(f"--abox is ignored: there is a map in {folder}; --fresh starts a new one")
@@ -291,7 +303,8 @@ def _settings(
         truth = before.truth if before is not None else "map"
     world = str(EMPTY_WORLD) if world in ("empty", "none") else world
     if abox is None:
-        abox = str(FLAT_TTL) if of_the_flat and truth != "perceived" else "none"
+        of_its_world = truth == "scene" and world != str(FLAT_WORLD)
+        abox = "none" if truth == "perceived" or of_its_world or not of_the_flat else str(FLAT_TTL)
     values = {
         "data": str(folder),
         "tbox": tuple(_existing(path, or_folder=True) for path in tbox or (HOUSEHOLD_TTL,)),
@@ -322,6 +335,9 @@ def _settings(
         "sim": not no_sim,
         "record": not no_record,
         "record_keep": record_keep,
+        "web": web,
+        "web_port": 8080 if web_port is None else web_port,
+        "web_as": web_as or "",
         "fresh": fresh,
         "secure": None if secure is None else _folder(secure),
         "namespace": namespace if single else checked_namespace(namespace),
@@ -349,6 +365,27 @@ def _part(only: str, *, single: bool, without: dict[str, bool]) -> tuple[str, ..
         if is_given:
             raise errors.BadRequest(f"--only names the nodes to run; leave out {option}")
     return nodes_of(only)
+
+
+def _require_for_web(
+    *, web: bool, port: int | None, name: str | None, secure: Path | None, single: bool
+) -> None:
+    """Raises BadRequest for options of the page that do not go together."""
+    if not web:
+        if port is not None or name is not None:
+            raise errors.BadRequest(
+                f"{'--web-as' if port is None else '--web-port'} is of the page: add --web"
+            )
+        return
+    if single:
+        raise errors.BadRequest("semmap node runs one node; --web is for semmap up, or use: semmap web")
+    if secure is None and name is not None:
+        raise errors.BadRequest("--web-as names a certificate; it goes with --secure")
+    if secure is not None and name is None:
+        raise errors.BadRequest(
+            "say under whose certificate the page acts: --web-as NAME (to make one:"
+            f" semmap keys add NAME --role operator --dir {shlex.quote(str(secure))})"
+        )
 
 
 def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
