@@ -107,7 +107,7 @@ def test_a_click_selects_and_one_beside_things_selects_nothing(tab, system, chai
         frame = tab.locator("iframe").bounding_box()
 
         def click_beside() -> bool:
-            tab.mouse.click(frame["x"] + frame["width"] - 6, frame["y"] + 0.5 * frame["height"])
+            tab.mouse.click(frame["x"] + frame["width"] - 60, frame["y"] + 0.5 * frame["height"])
             tab.wait_for_timeout(1000)
             return selected(tab) == ""
 
