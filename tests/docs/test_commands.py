@@ -36,6 +36,7 @@ PARSED = {
     "restore",
     "fleet",
     "mcp",
+    "web",
 }
 """Verbs that start, stop or need something else than one running system."""
 BUSY_S = 300.0
