@@ -28,6 +28,7 @@ PARSED = {
     "node",
     "repair",
     "replay",
+    "movie",
     "completion",
     "watch",
     "perceive",
@@ -37,6 +38,8 @@ PARSED = {
     "fleet",
     "mcp",
     "web",
+    "ros",
+    "mcap",
 }
 """Verbs that start, stop or need something else than one running system."""
 BUSY_S = 300.0

@@ -23,7 +23,7 @@ from nodes.extern.files import read_file
 from schemas import codec, commands, errors, replies
 
 _BY_THEMSELVES = frozenset(
-    ("up", "down", "node", "repair", "restore", "replay", "run", "watch", "completion")
+    ("up", "down", "node", "repair", "restore", "replay", "movie", "run", "watch", "completion")
 )
 
 

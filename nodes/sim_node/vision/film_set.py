@@ -1,0 +1,128 @@
+"""A scene for a film: bodies stand exactly where they are put, without physics, and are seen by one view."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from nodes.sim_node import orders
+from nodes.sim_node.bodies import Floats
+from nodes.sim_node.models.sources import Models
+from nodes.sim_node.physics import base_scene
+from nodes.sim_node.physics.engine import Engine
+from nodes.sim_node.vision.camera import Eye
+from nodes.sim_node.vision.labels import projected, written
+from nodes.sim_node.vision.view import FROM_ABOVE, View, bulk, camera_view, overview
+from nodes.sim_node.world_file import is_scene
+from schemas.entities import Pose, Vector
+from schemas.scenes import BodyOrder
+
+Rgb = NDArray[np.uint8]
+
+
+class FilmSet:
+    """The world of a file, with bodies that come, go and are put elsewhere. Bound to one thread."""
+
+    def __init__(
+        self,
+        world: Path | None,
+        *,
+        models: Path | None = None,
+        data: Path | None = None,
+        graphics: bool = True,
+    ) -> None:
+        """Of a world in JSON, whose bodies are entities, the floor alone is taken; so it is without a file.
+
+        `models` is a folder of model files, `data` the map's data folder, where some may be, too. Where
+        OpenGL is not to be had, or without `graphics`, rays are cast. Raises BadFile.
+        """
+        bare = world is None or is_scene(world)
+        ground = base_scene.bare_floor() if bare or world is None else base_scene.read_mjcf(world)
+        self._models = Models(models, data)
+        self._engine = Engine(ground, lambda: None)
+        self._eye = Eye(graphics=graphics)
+
+    @property
+    def has_graphics(self) -> bool:
+        """Does OpenGL draw? Else rays are cast, with flat colours."""
+        return self._eye.has_graphics
+
+    def __contains__(self, name: object) -> bool:
+        """Is there a body of this name?"""
+        return name in self._engine.records
+
+    def add(self, ordered: Iterable[BodyOrder]) -> Mapping[str, str]:
+        """Make bodies, each where it is ordered to be; why some cannot be made, by name."""
+        made, failed = orders.newcomers(list(ordered), self._models, self._engine.has)
+        if made:
+            self._engine.add(list(made.values()))
+        return failed
+
+    def remove(self, names: Iterable[str]) -> None:
+        """Take bodies away; names that are not there are passed over."""
+        there = [name for name in names if name in self._engine.records]
+        if there:
+            self._engine.remove(there)
+
+    def put(self, poses: Mapping[str, Pose]) -> None:
+        """Put bodies elsewhere, whatever is there already; names that are not there are passed over."""
+        there = {name: pose for name, pose in poses.items() if name in self._engine.records}
+        static = {name for name in there if self._engine.records[name].static}
+        self._engine.hold({name: there[name] for name in static})
+        self._engine.put({name: pose for name, pose in there.items() if name not in static})
+
+    def extent(self) -> tuple[Floats, Floats]:
+        """Lowest and highest corner, each (3,) [m], of the box around all bodies but those far off."""
+        stage = self._engine.stage()
+        felt = np.isfinite(stage.body_low).all(axis=1)
+        return bulk(stage.body_low[felt], stage.body_high[felt])
+
+    def view(
+        self, width: int, height: int, *, camera: str = "", box: tuple[Vector, Vector] | None = None
+    ) -> View:
+        """That of a camera of the world; of a box (lowest and highest corner [m]) from above; or of all.
+
+        Raises BadRequest for a camera that the world does not have.
+        """
+        if camera:
+            return camera_view(self._engine.model, self._engine.data, camera, width, height)
+        if box is not None:
+            return overview(np.array(box[0]), np.array(box[1]), width, height, back=FROM_ABOVE)
+        return overview(*self.extent(), width, height)
+
+    def picture(self, view: View, labels: Mapping[str, str]) -> Rgb:
+        """(H, W, 3) what the view sees; `labels` are written beside the bodies of these names."""
+        model, data = self._engine.model, self._engine.data
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_camlight(model, data)
+        scale = 2 if self.has_graphics else 1  # smooth edges, where they cost little
+        fine = View(
+            scale * view.width,
+            scale * view.height,
+            np.diag([float(scale), float(scale), 1.0]) @ view.intrinsics,
+            view.map_from_camera,
+        )
+        rgb, _ = self._eye.see(model, data, fine)
+        image = Image.fromarray(rgb)
+        if scale > 1:
+            image = image.resize((view.width, view.height), Image.Resampling.BOX)
+        if labels:
+            tops = {labels[name]: top for name, top in self._tops(labels).items()}
+            image = written(image, projected(view, tops))
+        return np.asarray(image)
+
+    def _tops(self, names: Iterable[str]) -> dict[str, Floats]:
+        """The middle of the top (3,) [m] of each of these bodies."""
+        stage, found = self._engine.stage(), {}
+        for name in names:
+            if (row := self._engine.index.row.get(name)) is not None:
+                low, high = stage.body_low[row], stage.body_high[row]
+                if np.isfinite(low).all() and np.isfinite(high).all():
+                    middle = (low + high) / 2.0
+                    found[name] = np.array([middle[0], middle[1], high[2]])
+        return found
