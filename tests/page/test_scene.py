@@ -41,8 +41,8 @@ def tab(seeing, web):
     complained = []
     page.on("pageerror", lambda error: complained.append(str(error)))
     page.on("console", lambda said: said.type == "error" and complained.append(said.text))
-    page.goto(web.url, timeout=START_MS)
-    page.wait_for_selector("body.semmap-ready", timeout=START_MS)
+    page.goto(web.url, timeout=2 * START_MS)
+    page.wait_for_selector("body.semmap-ready", timeout=2 * START_MS)
     yield page
     page.close()
     assert not complained
