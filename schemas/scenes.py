@@ -40,6 +40,7 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     `shape_commit` is the commit it was made for. `entity` tells bodies made from the map from the
     world's own furniture. `size_m` is what it really measures. `joints` are those that move parts of it, and
     `joint_commit` is the commit whose positions these were last ordered to take. It rests when these do, too.
+    `part_of` names the body that carries it, as a kitchen does its oven in an MJCF world.
     """
 
     name: str
@@ -55,6 +56,7 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     shape_commit: int
     joints: tuple[Joint, ...] = ()
     joint_commit: int = 0
+    part_of: str = ""
 
 
 class Spawned(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -234,6 +236,8 @@ class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     sim_time_s: float
     world: str
     bodies: tuple[Body, ...]
+    left_out: tuple[str, ...] = ()
+    """The named bodies of the world that are none of these, but only parts of them."""
 
 
 class SceneQuery(Call[Scene], frozen=True, kw_only=True, forbid_unknown_fields=True):

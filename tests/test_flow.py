@@ -230,7 +230,8 @@ def test_nobody_there_is_no_answer_and_never_an_empty_list():
         pass
 
 
-SCENE = """<mujoco><custom><text name="semmap:mug" data="Cup"/><text name="semmap:seat" data="Seat"/></custom>
+SCENE = """<mujoco><custom><text name="semmap:mug" data="Cup"/><text name="semmap:seat" data="Seat"/>
+<text name="semmap:stool_9" data="Stool"/></custom>
 <worldbody><geom type="plane" size="5 5 .1"/><light pos="0 0 3"/>
 <body name="chair_3" pos="1 1 .25"><freejoint/><geom type="box" size=".2 .2 .25" mass="5"/>
 <body name="seat"><geom type="box" size=".1 .1 .01" mass=".1"/></body></body>
@@ -244,11 +245,13 @@ def test_in_mode_scene_the_map_follows_what_stands_in_the_simulator(tmp_path):
     world.write_text(SCENE)
     words = ("--abox", "none", "--world", world, "--truth", "scene", "--no-record")
     with running(tmp_path / "data", *words) as system, system.client() as client:
-        until(lambda: {e.name for e in client.list()} == {"chair_3", "mug"}, "bodies become entities")
-        assert {e.class_ for e in client.list()} == {"Chair", "Cup"}
+        names = {"chair_3", "seat", "mug"}
+        until(lambda: {e.name for e in client.list()} == names, "bodies become entities")
+        assert {e.class_ for e in client.list()} == {"Chair", "Seat", "Cup"}
+        assert client.get("seat").properties["isDirectPartOf"] == "chair_3"
         assert client.get("mug").provenance.source == "scene"
         assert any("gizmo_1" in problem for problem in client.status().problems)
-        ignored = "declared but ignored: seat (part of another body)"
+        ignored = "declared but ignored: stool_9 (no such body)"
         assert any(ignored in line for line in system.said)
         assert any(ignored in node.detail for node in client.status().nodes)
         client.move("mug", (2.0, -1.0, 0.1))

@@ -39,6 +39,13 @@ class ClassNames:
             raise UnknownClass(f"unknown class '{word}'{self._index.did_you_mean(word)}")
         return self.by_name[name]
 
+    def has(self, word: str) -> bool:
+        """Whether a word means one class of things in space."""
+        try:
+            return self.find(word).spatial
+        except UnknownClass:
+            return False
+
     def spatial(self, word: str) -> ClassInfo:
         """The class of a thing in space that `word` means. Raises UnknownClass."""
         found = self.find(word)

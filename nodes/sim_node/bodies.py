@@ -44,6 +44,10 @@ class BodyRecord:
     joints: tuple[Joint, ...] = ()
     joint_names: tuple[str, ...] = ()
     joint_commit: int = 0
+    part_of: str = ""
+    """The body of a world that it is part of, which carries it."""
+    anchored: bool = False
+    """Held by a joint or by what it is part of: nobody can put it elsewhere."""
 
     @property
     def static(self) -> bool:
@@ -69,6 +73,7 @@ class BodyRecord:
                 for joint, position in zip(self.joints, positions, strict=True)
             ),
             joint_commit=self.joint_commit,
+            part_of=self.part_of,
         )
 
 

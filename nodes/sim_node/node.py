@@ -17,7 +17,7 @@ from nodes.sim_node.models.sources import Models
 from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import FROM_ABOVE, View, camera_view, overview
 from nodes.sim_node.window import Window
-from nodes.sim_node.world_file import is_scene, open_world
+from nodes.sim_node.world_file import names_classes, open_world
 from schemas import codec, errors, keys, wording
 from schemas.calls import by_verb
 from schemas.commands import Classes, Pause, Reset, StepOnce
@@ -98,7 +98,7 @@ class Simulator:
 
     def _classes(self, config: SimConfig) -> ClassNames:
         """What the TBox says of classes, if the world is a file that names bodies by class."""
-        if not is_scene(config.world):
+        if not names_classes(config.world):
             return ClassNames()
         self._node.describe("waiting for the knowledge base")
         try:

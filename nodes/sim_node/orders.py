@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 from msgspec import structs
@@ -123,7 +123,9 @@ def _targets(order: JointOrder, joints: Sequence[Joint]) -> dict[str, float]:
     return {joint.name: joint.position_at(share) for joint in opening}
 
 
-def moves(placements: Iterable[Placement], there: Collection[str]) -> tuple[list[Placement], dict[str, str]]:
+def moves(
+    placements: Iterable[Placement], there: Mapping[str, BodyRecord]
+) -> tuple[list[Placement], dict[str, str]]:
     """What is to be moved, and why the rest, by name, cannot be."""
     accepted: list[Placement] = []
     failed: dict[str, str] = {}
@@ -131,6 +133,9 @@ def moves(placements: Iterable[Placement], there: Collection[str]) -> tuple[list
         try:
             if placement.name not in there:
                 raise ModelError(f"the scene has no body named {placement.name}")
+            if (record := there[placement.name]).anchored:
+                holder = record.part_of or "its joint"
+                raise ModelError(f"{placement.name} is held by {holder}; only its joints move it")
             _check_reach(placement.pose)
             accepted.append(placement)
         except ModelError as error:

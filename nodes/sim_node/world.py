@@ -49,16 +49,20 @@ class World:
         name: str = "empty",
         models: ModelSource = library_model,
         meanwhile: Callable[[], None] = lambda: None,
+        is_class: Callable[[str], bool] = lambda word: False,
     ) -> None:
         """Start from a scene that compiles (`groundwork`), or from a bare floor.
 
         `meanwhile` is called again and again while models are read and compiled. It may let time pass
-        (`step`), and ask for `poses` and a `snapshot`: newcomers are not yet there.
+        (`step`), and ask for `poses` and a `snapshot`: newcomers are not yet there. `is_class` tells words
+        that name classes: a part of one of the world's bodies that is called so is a body of its own.
         """
         ground = ground or base_scene.bare_floor()
         self.ignored = base_scene.ignored(ground)
-        """Bodies whose class the world declares in vain, each with the reason."""
-        self._engine = Engine(ground, meanwhile)
+        """What the world declares in vain, each with the reason."""
+        self._engine = Engine(ground, meanwhile, is_class)
+        self.left_out = base_scene.left_out(ground, self._engine.records)
+        """The named bodies of the world that are only parts of others."""
         self._settling = Settling(self._engine)
         self._models, self._meanwhile = models, meanwhile
         self.name = name
@@ -106,10 +110,13 @@ class World:
     def move(self, placements: Sequence[Placement]) -> BodiesMoved:
         """Put bodies elsewhere as a hand would: there at once, with no speed, then left to physics."""
         accepted, failed = orders.moves(placements, self._engine.records)
+        records = self._engine.records
+        for placement in placements:
+            if placement.commit is not None and placement.name in records:
+                records[placement.name].commit = placement.commit
         for placement in accepted:
             if placement.commit is not None:
-                record = self._engine.records[placement.name]
-                record.commit, record.ordered = placement.commit, placement.pose
+                records[placement.name].ordered = placement.pose
         moved = {placement.name: placement.pose for placement in accepted}
         self._settling.put(moved)
         return BodiesMoved(bodies=self._bodies(moved), failed=failed)
@@ -131,7 +138,9 @@ class World:
     def reset(self) -> int:
         """Back to the map: each body goes where it was last ordered to be; answers how many there are."""
         self._engine.set_joints([name for name, record in self._engine.records.items() if record.joints])
-        self._settling.put({name: record.ordered for name, record in self._engine.records.items()})
+        self._settling.put(
+            {name: record.ordered for name, record in self._engine.records.items() if not record.anchored}
+        )
         return len(self)
 
     def look_over(self) -> None:
@@ -189,6 +198,7 @@ class World:
             sim_time_s=float(self.data.time),
             world=self.name,
             bodies=self._bodies(self._engine.records),
+            left_out=self.left_out,
         )
 
     def surfaces(self, names: Iterable[str]) -> Surfaces:
@@ -215,7 +225,9 @@ class World:
         """For each of these bodies of `model` the name of the body that it is, or is a part of, or ""."""
         names = np.full(self.model.nbody, "", dtype=object)
         names[self._engine.index.body] = self._engine.index.names
-        return names[self.model.body_rootid[numbers]].tolist()  # type: ignore[no-any-return]
+        for body in np.flatnonzero(names == ""):  # wholes have lower numbers than their parts
+            names[body] = names[self.model.body_parentid[body]]
+        return names[numbers].tolist()  # type: ignore[no-any-return]
 
     def _bodies(self, names: Iterable[str]) -> tuple[Body, ...]:
         engine = self._engine

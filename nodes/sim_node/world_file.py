@@ -15,6 +15,7 @@ from nodes.sim_node.physics import base_scene
 from nodes.sim_node.vision.view import View, look_at, pinhole
 from nodes.sim_node.world import World
 from schemas import codec, scene_files
+from schemas.entities import free_name
 from schemas.errors import BadFile, UnknownClass
 from schemas.scenes import BodyOrder
 
@@ -25,6 +26,13 @@ _PICTURE = (4, 3)
 def is_scene(path: Path | None) -> bool:
     """Whether a world file is a scene in JSON, whose bodies are named by class. Raises BadFile."""
     return path is not None and (path.suffix == ".json" or codec.looks_like_json(_read(path)))
+
+
+def names_classes(path: Path | None) -> bool:
+    """Whether it depends on the names of classes what bodies the world of a file has. Raises BadFile."""
+    if path is None:
+        return False
+    return is_scene(path) or base_scene.names_classes(base_scene.read_mjcf(path, compiles=False))
 
 
 def open_world(
@@ -43,7 +51,9 @@ def open_world(
     if path is None:
         return World(models=models, meanwhile=meanwhile)
     if not is_scene(path):
-        return World(base_scene.read_mjcf(path), name=path.name, models=models, meanwhile=meanwhile)
+        ground = base_scene.read_mjcf(path)
+        known = classes or ClassNames()
+        return World(ground, name=path.name, models=models, meanwhile=meanwhile, is_class=known.has)
     scene = scene_files.read(_read(path), path.name)
     views = (
         None if scene.cameras is None else [(camera.name or "", _view(camera)) for camera in scene.cameras]
@@ -69,10 +79,10 @@ def _view(camera: scene_files.Camera) -> View:
 
 
 def _orders(described: Iterable[scene_files.Described], classes: ClassNames) -> list[BodyOrder]:
-    taken = {item.name for item in described}
+    taken = {item.name for item in described if item.name}
     orders = []
-    for i, item in enumerate(described, start=1):
-        name = item.name or next(n for k in range(i, 10**9) if (n := f"{item.class_}_{k}") not in taken)
+    for item in described:
+        name = item.name or free_name(item.class_, taken)
         taken.add(name)
         model, fixed = _shape(item.class_, classes)
         orders.append(

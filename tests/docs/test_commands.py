@@ -37,6 +37,8 @@ PARSED = {
     "restore",
     "fleet",
     "mcp",
+    "ros",
+    "mcap",
 }
 """Verbs that start, stop or need something else than one running system."""
 BUSY_S = 300.0

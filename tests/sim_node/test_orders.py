@@ -34,9 +34,10 @@ def test_with_commit_0_a_body_is_the_worlds_own():
 
 def test_what_cannot_be_moved_has_a_reason():
     first, last = hand("cup1", pose(1, 0)), Placement(name="cup1", pose=pose(2, 0), commit=3)
-    accepted, failed = moves(
-        [first, hand("x", pose(0, 0)), hand("can1", pose(0, 2000)), last], {"cup1", "can1"}
-    )
+    ordered = [order(name, "cup", pose(0, 0)) for name in ("cup1", "can1")]
+    made, _ = newcomers(ordered, library_model, taken=lambda name: False)
+    there = {name: record for name, (record, _) in made.items()}
+    accepted, failed = moves([first, hand("x", pose(0, 0)), hand("can1", pose(0, 2000)), last], there)
     assert accepted == [first, last]
     assert "no body named x" in failed["x"]
     assert "too far" in failed["can1"]

@@ -353,6 +353,9 @@ DECLARED = """<mujoco><custom>
 
 def test_bodies_that_are_declared_in_vain_are_named():
     world = World(mujoco.MjSpec.from_string(DECLARED))
-    assert world.ignored == ["drawer (part of another body)", "tabel_2 (no such body)"]
-    assert [body.name for body in world.scene().bodies] == ["table_1"]
+    assert world.ignored == ["tabel_2 (no such body)"]
+    assert [(body.name, body.part_of) for body in world.scene().bodies] == [
+        ("table_1", ""),
+        ("drawer", "table_1"),
+    ]
     assert World().ignored == []

@@ -19,7 +19,7 @@ def test_a_scene_in_json_is_a_world_with_furniture_of_its_own(tmp_path):
     path = tmp_path / "world.json"
     path.write_text(json.dumps(SCENE))
     bodies = {body.name: body for body in open_world(path, Models()).scene().bodies}
-    assert {name: body.class_ for name, body in bodies.items()} == {"chair9": "Chair", "Cup_2": "Cup"}
+    assert {name: body.class_ for name, body in bodies.items()} == {"chair9": "Chair", "cup1": "Cup"}
     assert not any(body.entity for body in bodies.values())
     assert bodies["chair9"].model == "chair"
     assert bodies["chair9"].pose.position_m[:2] == pytest.approx((1.0, 2.0))

@@ -43,6 +43,7 @@ from schemas.scenes import (
 log = logging.getLogger(__name__)
 
 T = TypeVar("T")
+_PART_OF = "isDirectPartOf"
 GHOSTLY = "overlaps another body, so it does not collide until there is room"
 
 
@@ -220,7 +221,17 @@ class Keeping:
         )
         seen = sorted(f"{e.name}: perception: {e.conflict}" for e in entities if e.conflict)
         foreign = sorted((name, why) for name, why in self._foreign.items() if name in self.scene.bodies)
-        return amiss + seen + [f"{name}: {why}" for name, why in foreign]
+        return amiss + seen + [f"{name}: {why}" for name, why in foreign] + self._of_the_world()
+
+    def _of_the_world(self) -> list[str]:
+        """Which bodies of the world are no entities, though the scene is the truth."""
+        names = self.scene.left_out if self._config.truth == "scene" else ()
+        if not names:
+            return []
+        return [
+            f"{wording.bodies(len(names))} of the world are only parts of others: {', '.join(names)}"
+            ' (to have one, add <text name="semmap:BODY" data="CLASS"/>)'
+        ]
 
     def _orders(self, actions: Actions, refused: list[Placement], shut: list[JointOrder]) -> list[Step[Any]]:
         steps: list[Step[Any]] = []
@@ -271,12 +282,16 @@ class Keeping:
             log.warning("%s has no body: %s", name, reason)  # `problems` says so as long as it is true
 
     def _placed(self, reply: BodiesMoved) -> None:
-        """A body that cannot be put where the map says is made anew there, or there is a reason why not."""
-        entities = self._door.map.entities
+        """A body that cannot be put where the map says is made anew there, or there is a reason why not.
+
+        The world's own are not: what these are held by does not let them go, and the map follows them.
+        """
+        entities, bodies = self._door.map.entities, self.scene.bodies
         anew = tuple(
             order(entity, entity.pose)
             for name in reply.failed
             if (entity := entities.get(name)) is not None and entity.pose is not None
+            if name not in bodies or bodies[name].entity
         )
         if anew:
             gone = Delete(names=tuple(order.name for order in anew))
@@ -341,6 +356,9 @@ class Keeping:
         name = body.name
         if name in self._foreign or name in self._following or not body.resting:
             return
+        whole = self._whole_of(body)
+        if whole in self.scene.bodies and whole not in self._door.map.entities:
+            return  # what it is part of comes first
 
         def adopted(error: BaseException) -> None:
             if isinstance(error, (errors.Refused, errors.BadRequest)):
@@ -366,8 +384,16 @@ class Keeping:
             at=(x, y, z),
             orientation=pose.orientation_wxyz,
             size=body.size_m,
+            set=(f"{_PART_OF}={whole}",) if whole else (),
         )
         self._change_about((name,), add, adopted)
+
+    def _whole_of(self, body: Body) -> str:
+        """The nearest body that it is part of and that is an entity or may become one; "" for none."""
+        whole = body.part_of
+        while whole in self._foreign and whole in self.scene.bodies:
+            whole = self.scene.bodies[whole].part_of
+        return whole
 
     def _change_about(
         self, names: Collection[str], change: Add | Settled, failed: Callable[[BaseException], None]

@@ -20,6 +20,8 @@ class SceneView:
     def __init__(self) -> None:
         self.known = False
         self.bodies: dict[str, Body] = {}
+        self.left_out: tuple[str, ...] = ()
+        """The named bodies of the world that are only parts of others."""
         self._run = ""
         self._version = -1
         self._stamp_ns = 0
@@ -30,6 +32,7 @@ class SceneView:
             return
         self.known = True
         self.bodies = {body.name: body for body in scene.bodies}
+        self.left_out = scene.left_out
         self._run, self._version, self._stamp_ns = scene.run, scene.version, scene.stamp_ns
 
     def add(self, bodies: Iterable[Body]) -> None:
@@ -88,7 +91,7 @@ class SceneView:
     def forget(self) -> None:
         """The simulator is gone."""
         self.known = False
-        self.bodies = {}
+        self.bodies, self.left_out = {}, ()
         self._run, self._version, self._stamp_ns = "", -1, 0
 
 

@@ -30,6 +30,7 @@ _MODULES = {
     "keys": ("keys",),
     "fleet": ("fleet",),
     "mcp": ("mcp",),
+    "ros": ("ros", "mcap"),
     "web": ("web",),
     "approve": ("approve",),
     "completion": ("completion",),

@@ -5,10 +5,10 @@ from __future__ import annotations
 import logging
 import math
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import mujoco
 import numpy as np
@@ -19,13 +19,20 @@ from nodes.sim_node.physics.build import FELT_GROUP, IMPEDANCE
 from nodes.sim_node.vision.view import OPTICAL, View, look_at
 from schemas.entities import NAME_PATTERN
 from schemas.errors import BadFile
+from schemas.joints import Joint
 
 # else MuJoCo writes a file into the working directory
 mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
 
 _TIMESTEP_S = 0.002
 _EXTENT_M = 10.0
-_CLASS_TEXT = "semmap:"
+_CLASS_TEXT, _CLOSED_TEXT = "semmap:", "semmap-closed:"
+_ENDS = ("lower", "upper")
+_KINDS: dict[int, Literal["hinge", "slide", "ball"]] = {
+    int(mujoco.mjtJoint.mjJNT_HINGE): "hinge",
+    int(mujoco.mjtJoint.mjJNT_SLIDE): "slide",
+    int(mujoco.mjtJoint.mjJNT_BALL): "ball",
+}
 _DEFAULT_IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
 
 OVERVIEW = "overview"
@@ -61,11 +68,12 @@ def aim(camera: mujoco.MjsCamera, view: View) -> None:
     mujoco.mju_mat2Quat(camera.quat, (view.map_from_camera[:3, :3] @ OPTICAL).ravel())
 
 
-def read_mjcf(path: Path) -> mujoco.MjSpec:
-    """A scene from a file. Raises BadFile if it is missing or does not compile."""
+def read_mjcf(path: Path, *, compiles: bool = True) -> mujoco.MjSpec:
+    """A scene from a file. Raises BadFile if it is missing or, where that is asked for, does not compile."""
     try:
         spec = mujoco.MjSpec.from_file(str(path))
-        spec.copy().compile()
+        if compiles:
+            spec.copy().compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
         raise BadFile(
             f"the world file {path} is not an MJCF scene that compiles: {_one_line(error)}"
@@ -133,34 +141,114 @@ def _compiled(spec: mujoco.MjSpec) -> tuple[mujoco.MjModel, mujoco.MjData]:
     return model, data
 
 
-def bodies_of(spec: mujoco.MjSpec) -> dict[str, BodyRecord]:
-    """The world's own bodies: every named one on the top level, and every one that can move."""
+def bodies_of(
+    spec: mujoco.MjSpec, is_class: Callable[[str], bool] = lambda word: False
+) -> dict[str, BodyRecord]:
+    """The world's own bodies: every named one on the top level, and of those within others every `_is_body`.
+
+    A joint is of the body that it moves or, if that is none of these, of the nearest one that it is part of.
+    """
     model, data = _compiled(spec)
     classes = _declared(spec)
-    records = {}
-    for body in spec.worldbody.bodies:
-        if body.name:
-            records[body.name] = _record(
-                model, data, body, classes.get(body.name) or class_from_name(body.name)
-            )
+    closed = _closed_ends(spec)
+    records: dict[str, BodyRecord] = {}
+    owner = [""] * model.nbody
+    for number in range(1, model.nbody):  # wholes have lower numbers than their parts
+        name, whole = model.body(number).name, int(model.body_parentid[number])
+        if name and (whole == 0 or _is_body(name, classes, is_class)):
+            class_ = classes.get(name) or class_from_name(name)
+            records[name] = _record(model, data, spec.body(name), class_, owner[whole])
+        owner[number] = name if name in records else owner[whole]
+        if owner[number] and model.body_jntnum[number]:
+            _give_joints(records[owner[number]], model, number, closed)
     return records
 
 
+def _is_body(name: str, classes: Mapping[str, str], is_class: Callable[[str], bool]) -> bool:
+    """Is a part of another body one of its own: by a text, or by a name like that of a class?"""
+    if not re.match(NAME_PATTERN, name):
+        return False
+    word = class_from_name(name)
+    return name in classes or (word is not None and is_class(word))
+
+
 def ignored(spec: mujoco.MjSpec) -> list[str]:
-    """The bodies whose class a text declares in vain, each with the reason, in the order of the texts."""
-    top = {body.name for body in spec.worldbody.bodies}
-    nested = {body.name for body in spec.bodies} - top
-    return [
-        f"{name} (part of another body)" if name in nested else f"{name} (no such body)"
-        for name in _declared(spec)
-        if name not in top
-    ]
+    """What texts declare in vain, each with the reason, in the order of the texts."""
+    if not any(text.name.startswith((_CLASS_TEXT, _CLOSED_TEXT)) for text in spec.texts):
+        return []
+    model, _ = _compiled(spec)  # to ask a large specification takes longer than to compile it
+    named = {model.body(number).name for number in range(1, model.nbody)}
+    joints = {model.joint(number).name for number in range(model.njnt)}
+    told = []
+    for name in _declared(spec):
+        if name not in named:
+            told.append(f"{name} (no such body)")
+        elif not re.match(NAME_PATTERN, name):
+            told.append(f"{name} (no entity can have this name)")
+    for name, end in _texts(spec, _CLOSED_TEXT).items():
+        if name not in joints:
+            told.append(f"{name} (no such joint)")
+        elif end not in _ENDS:
+            told.append(f"{name} (closed at '{end}'; say lower or upper)")
+    return told
+
+
+def left_out(spec: mujoco.MjSpec, records: Collection[str]) -> tuple[str, ...]:
+    """The named bodies of a world that are none of `records`, but only parts of what is above them."""
+    model, _ = _compiled(spec)
+    names = (model.body(number).name for number in range(1, model.nbody))
+    return tuple(name for name in names if name and name not in records)
+
+
+def names_classes(spec: mujoco.MjSpec) -> bool:
+    """Does it depend on the classes' names what is a body here?"""
+    known = {*_declared(spec), *(body.name for body in spec.worldbody.bodies), ""}
+    return any(body.name not in known for body in spec.bodies[1:])
 
 
 def _declared(spec: mujoco.MjSpec) -> dict[str, str]:
     """The classes that the world's texts declare, by name of the body."""
+    return _texts(spec, _CLASS_TEXT)
+
+
+def _texts(spec: mujoco.MjSpec, prefix: str) -> dict[str, str]:
+    """The world's texts whose names begin so, by the rest of the name."""
     texts = ((text.name, text.data) for text in spec.texts)
-    return {name.removeprefix(_CLASS_TEXT): data for name, data in texts if name.startswith(_CLASS_TEXT)}
+    return {name.removeprefix(prefix): data for name, data in texts if name.startswith(prefix)}
+
+
+def _closed_ends(spec: mujoco.MjSpec) -> dict[str, str]:
+    """Which end of a joint is the closed one, where a text says so: `lower` or `upper`."""
+    return {name: end for name, end in _texts(spec, _CLOSED_TEXT).items() if end in _ENDS}
+
+
+def _give_joints(record: BodyRecord, model: mujoco.MjModel, body: int, closed: Mapping[str, str]) -> None:
+    """Add the joints that move a body to a record."""
+    first = int(model.body_jntadr[body])
+    joints = range(first, first + int(model.body_jntnum[body]))
+    names = [model.joint(joint).name for joint in joints if int(model.jnt_type[joint]) in _KINDS]
+    record.joints += tuple(_joint(model, name, closed.get(name)) for name in names)
+    record.joint_names += tuple(names)
+
+
+def _joint(model: mujoco.MjModel, name: str, closed_end: str | None) -> Joint:
+    """A joint of the world as it stands at first; it opens something if it has limits.
+
+    Without a word on it, it is closed at the limit that is nearest to where it stands.
+    """
+    number = model.joint(name).id
+    kind = _KINDS[int(model.jnt_type[number])]
+    if kind == "ball":
+        return Joint(name=name, kind=kind)
+    initial = float(model.qpos0[model.jnt_qposadr[number]])
+    if not model.jnt_limited[number]:
+        return Joint(name=name, kind=kind, position=initial, initial=initial)
+    lower, upper = (float(limit) for limit in model.jnt_range[number])
+    nearest = "lower" if initial - lower <= upper - initial else "upper"
+    closed = lower if (closed_end or nearest) == "lower" else upper
+    return Joint(
+        name=name, kind=kind, position=initial, lower=lower, upper=upper, closed=closed, initial=initial
+    )
 
 
 def class_from_name(name: str) -> str | None:
@@ -169,10 +257,10 @@ def class_from_name(name: str) -> str | None:
 
 
 def _record(
-    model: mujoco.MjModel, data: mujoco.MjData, body: mujoco.MjsBody, class_: str | None
+    model: mujoco.MjModel, data: mujoco.MjData, body: mujoco.MjsBody, class_: str | None, part_of: str
 ) -> BodyRecord:
     number = model.body(body.name).id
-    geoms = np.flatnonzero(model.body_rootid[model.geom_bodyid] == number)
+    geoms = np.flatnonzero(_within(model, number)[model.geom_bodyid])
     low, high = _extents(model, data, geoms, number)
     middle = (low + high) / 2.0
     origin = (float(middle[0]), float(middle[1]), float(low[2]))
@@ -188,7 +276,20 @@ def _record(
         fixed=not (joints and joints[0].type == mujoco.mjtJoint.mjJNT_FREE),
         entity=False,
         masks=[(geom.contype, geom.conaffinity) for geom in body.geoms],
+        part_of=part_of,
+        anchored=bool(part_of or (joints and joints[0].type != mujoco.mjtJoint.mjJNT_FREE)),
     )
+
+
+def _within(model: mujoco.MjModel, body: int) -> NDArray[np.bool_]:
+    """(nbody,) which bodies are this one or parts of it; parts have higher numbers than their wholes."""
+    within = np.zeros(model.nbody, dtype=bool)
+    within[body] = True
+    for part in range(body + 1, model.nbody):
+        within[part] = within[model.body_parentid[part]]
+        if not within[part] and model.body_parentid[part] < body:
+            break  # the parts of a body follow it without a gap
+    return within
 
 
 def _extents(

@@ -28,15 +28,23 @@ class Engine:
     every change of the model; while the next is made (`compiling`) bodies are asked about and stepped only.
     """
 
-    def __init__(self, ground: mujoco.MjSpec, meanwhile: Callable[[], None]) -> None:
-        """A world of nothing but its ground yet; `meanwhile` is called while it compiles, and may `step`."""
+    def __init__(
+        self,
+        ground: mujoco.MjSpec,
+        meanwhile: Callable[[], None],
+        is_class: Callable[[str], bool] = lambda word: False,
+    ) -> None:
+        """A world of nothing but its ground yet; `meanwhile` is called while it compiles, and may `step`.
+
+        `is_class` tells the names of classes, by which parts of the world's bodies are bodies of their own.
+        """
         base_scene.prepare(ground)
         self._meanwhile = meanwhile
         self._ground = ground
         self._shapes: dict[str, Model] = {}
         self._berths: dict[str, Berth] = {}
         self._vacant: list[Berth] = []
-        self.records = base_scene.bodies_of(ground)
+        self.records = base_scene.bodies_of(ground, is_class)
         self.revision = 0
         self.compiling = False
         self.model: mujoco.MjModel
@@ -87,7 +95,8 @@ class Engine:
             self._shapes.pop(name, None)
             del self.records[name]
         for name in own:
-            self._ground.delete(self._ground.body(name))
+            if (body := self._ground.body(name)) is not None:  # else it went with what it was part of
+                self._ground.delete(body)
         if own or jointed:
             self._recompile({})
         else:
@@ -215,7 +224,7 @@ class Engine:
         build.add_bodies(spec, made)
         spares = build.add_spares(spec, body_slots.spare_parts(len(made)))
         for name, record in self.records.items():
-            if record.static and name not in self._shapes:
+            if record.static and not record.anchored and name not in self._shapes:
                 build.set_standing(spec, record, poses[name])
         build.set_memory(spec, len(self.records) + len(spares))
         return spec.compile(), spares

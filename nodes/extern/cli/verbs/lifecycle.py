@@ -46,7 +46,8 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     @spatial_root_option
     @click.option(
         "--abox",
-        help="ABox file, or none for an empty map. Default: the flat; none if perceived or with --tbox.",
+        help="ABox file, or none for an empty map. Default: the flat; none if perceived, with --tbox, or with"
+        " --truth scene and a --world.",
     )
     @click.option(
         "--world", help="MJCF file, JSON scene, or the word empty. Default: as before, else the flat's."
@@ -282,7 +283,8 @@ def _settings(
         truth = before.truth if before is not None else "map"
     world = str(EMPTY_WORLD) if world in ("empty", "none") else world
     if abox is None:
-        abox = str(FLAT_TTL) if of_the_flat and truth != "perceived" else "none"
+        of_its_world = truth == "scene" and world != str(FLAT_WORLD)
+        abox = "none" if truth == "perceived" or of_its_world or not of_the_flat else str(FLAT_TTL)
     values = {
         "data": str(folder),
         "tbox": tuple(_existing(path, or_folder=True) for path in tbox or (HOUSEHOLD_TTL,)),
