@@ -37,6 +37,7 @@ PARSED = {
     "restore",
     "fleet",
     "mcp",
+    "web",
     "ros",
     "mcap",
 }
