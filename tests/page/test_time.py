@@ -68,7 +68,7 @@ def test_the_past_is_compared_with_now_and_cannot_be_changed(tab, cup, system):
     assert name in chips(tab)
     with system.client() as client:
         before = client.status().commit
-        tab.locator("body").press("u")
+        tab.keyboard.press("u")
         tab.get_by_text("This is the past, which does not change").wait_for()
         assert client.status().commit == before
 
@@ -98,7 +98,7 @@ def test_the_history_of_what_is_selected_goes_to_its_commits(tab, cup):
     until(lambda: name in chips(tab), "what it added is marked")
     tab.get_by_label("What is different").get_by_text(name).click()
     tab.get_by_role("tab", name="History").click()
-    tab.get_by_label("Only commits of what is selected").check()
+    tab.get_by_role("checkbox", name="Only commits of what is selected").click()
     table = tab.get_by_label("Commits").locator("tbody")
     until(
         lambda: table.locator("tr:not(.q-virtual-scroll__padding *)").count() >= 3, "its commits are listed"
