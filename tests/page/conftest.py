@@ -28,7 +28,8 @@ _HARMLESS = re.compile("GPU stall|THREE|Software WebGL|WebGL|net::ERR_CONNECTION
 START_MS = 30_000
 
 
-def _chromium() -> str | None:
+def chromium_path() -> str | None:
+    """Where Chromium is."""
     return os.environ.get("SEMMAP_CHROMIUM") or next(filter(None, map(shutil.which, _NAMES)), None)
 
 
@@ -72,7 +73,7 @@ def serving(endpoint: str, *words: str) -> Iterator[Web]:
 def chromium():
     """Debian's Chromium, headless."""
     playwright = pytest.importorskip("playwright.sync_api", reason="Playwright for Python is not installed")
-    if (path := _chromium()) is None:
+    if (path := chromium_path()) is None:
         pytest.skip("there is no Chromium: sudo apt-get install chromium")
     with playwright.sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=path, args=[*_ARGUMENTS])

@@ -19,6 +19,7 @@ _STEP_UP_M: Final = 0.5
 _SMALL_M: Final = 0.45
 """What is no larger is put on what it is dragged over, if that is no more than a step up."""
 _CLEAR_M: Final = 0.003
+_EVEN_M: Final = 0.001
 
 
 class Gizmo:
@@ -42,7 +43,7 @@ class Gizmo:
             return
         self._pose = upright
         if not self._handles:
-            scale = min(1.4, max(0.45, 0.9 * max(size_m)))
+            scale = arm_m(size_m)
             self._handles = (
                 self._add("/gizmo/level", scale, (True, True, False)),
                 self._add("/gizmo/lift", scale, (False, False, True)),
@@ -79,6 +80,11 @@ class Gizmo:
         return handle
 
 
+def arm_m(size_m: Size) -> float:
+    """How long the arrows at a thing of this size are [m]."""
+    return min(1.4, max(0.45, 0.9 * max(size_m)))
+
+
 def _pose_of(handle: TransformControlsHandle) -> Pose:
     x, y, z = (float(value) for value in handle.position)
     w, qx, qy, qz = (float(value) for value in handle.wxyz)
@@ -92,6 +98,6 @@ def put_down(pose: Pose, size_m: Size, others: Iterable[Solid]) -> Pose:
     if max(size_m[:2]) > _SMALL_M:
         return pose
     support = support_m((x, y, z + _STEP_UP_M), others)
-    if support <= z - _CLEAR_M:
+    if support <= z + _EVEN_M:
         return pose
     return Pose(position_m=(x, y, support + _CLEAR_M), orientation_wxyz=pose.orientation_wxyz)

@@ -13,7 +13,7 @@ from nodes.extern.web.differences import Mark
 from nodes.extern.web.page import Page, Place
 from nodes.extern.web.scene.assets import Assets
 from nodes.extern.web.scene.bodies import MODIFIERS, Bodies, Pixel
-from nodes.extern.web.scene.camera import FOV_RAD, View, first_view, uncrowded
+from nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, uncrowded
 from nodes.extern.web.scene.differences import drawn
 from nodes.extern.web.scene.dragging import Gizmo, Phase, put_down
 from nodes.extern.web.scene.marks import Labels, Lines, Rgb, Written, dashed, joined, line
@@ -174,7 +174,7 @@ class TabScene:
             return
         camera = self._client.camera
         aspect = camera.image_width / max(1, camera.image_height)
-        eye, target = first_view(self._assets.extent(self.page.state), aspect)
+        eye, target = first_view(extent(self.page.state.entities.values()), aspect)
         camera.position, camera.look_at = eye, target
 
     def _on_look(self) -> None:
