@@ -50,7 +50,7 @@ from schemas.replies import (
     Sighting,
     SystemStatus,
 )
-from schemas.scenes import Picture
+from schemas.scenes import Picture, Point
 from schemas.sparql import SparqlResult, Watching
 
 RDF_FORMATS = ("rdfxml", "turtle", "ntriples", "jsonld")
@@ -61,7 +61,9 @@ Since = Annotated[int, Meta(ge=0, le=1 << 53)]
 """A commit: if one after it has changed what is to be `unchanged`, a command is refused."""
 
 
-_SLOW: Final = frozenset({"load", "clear", "undo", "check", "infer", "export", "compact", "watch", "step"})
+_SLOW: Final = frozenset(
+    {"load", "clear", "undo", "check", "infer", "export", "compact", "watch", "step", "drive"}
+)
 """Commands that may be at work for long, or that do more when they come twice."""
 
 
@@ -581,6 +583,22 @@ class Close(Command[Moved], frozen=True, tag="close"):
 
     name: Word
     joint: Word | None = None
+    wait: bool = False
+
+
+class Drive(Command[Moved], frozen=True, tag="drive"):
+    """Drive a robot of the simulator to a point, or through several, in a straight line to each.
+
+    At the end it faces `yaw`. It turns to where it goes first, and goes at most at `speed` [m/s]. With `stop`
+    it stops where it is. `wait` delays the reply until it is there; where it gets no further, or falls, that
+    is Refused.
+    """
+
+    name: Word
+    to: tuple[Point, ...] = ()
+    yaw: Angle | None = None
+    speed: Annotated[float, Meta(gt=0.0, le=2.0)] = 0.4
+    stop: bool = False
     wait: bool = False
 
 

@@ -53,6 +53,7 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
         "submit",
         "approve",
         "move",
+        "drive",
         "open",
         "close",
         "pause",

@@ -34,12 +34,13 @@ from schemas import commands as c
 from schemas.entities import BodyState
 from schemas.health import Health
 from schemas.replies import Changed
-from schemas.scenes import Poses
+from schemas.scenes import DriveBase, Poses
 
 R = TypeVar("R")
 
 _WAIT_S = 20.0
 _SIM_TIMEOUT_S = 120.0
+_DRIVE_TIMEOUT_S = 3600.0
 _URGENT = frozenset({c.Status.VERB})
 _ROOM = 64
 """Commands that wait for their turn at most: more wait in the node's queue, which is fair and bounded."""
@@ -82,6 +83,7 @@ class Coordinator:
             c.Move.answered_by(running.move),
             c.Open.answered_by(self._opening.move),
             c.Close.answered_by(self._opening.move),
+            c.Drive.answered_by(running.drive),
             c.Pause.answered_by(running.pause),
             c.StepOnce.answered_by(running.step),
             c.Reset.answered_by(running.reset),
@@ -251,7 +253,8 @@ class Coordinator:
         return guarded
 
     def _ask_sim(self, call: calls.Call[R]) -> Future[R]:
-        return self._node.ask_later(keys.SIM, call, timeout_s=_SIM_TIMEOUT_S)
+        timeout_s = _DRIVE_TIMEOUT_S if isinstance(call, DriveBase) else _SIM_TIMEOUT_S
+        return self._node.ask_later(keys.SIM, call, timeout_s=timeout_s)
 
 
 def _tidy() -> None:

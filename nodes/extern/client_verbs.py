@@ -292,6 +292,7 @@ class Verbs:
 
     # To run
     move = Verb(commands.Move)
+    drive = Verb(commands.Drive)
     open = Verb(commands.Open)
     close = Verb(commands.Close)
     pause = Verb(commands.Pause)

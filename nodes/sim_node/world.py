@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import copy
+import math
 import time
 import uuid
 from collections.abc import Callable, Iterable, Sequence
 
 import mujoco
 import numpy as np
+from msgspec import structs
 
 from nodes.sim_node import orders
 from nodes.sim_node.bodies import Floats, Ints, pose_of
@@ -19,12 +21,16 @@ from nodes.sim_node.orders import ModelSource
 from nodes.sim_node.physics import base_scene, build
 from nodes.sim_node.physics.engine import Engine
 from nodes.sim_node.placement.settling import Settling
+from nodes.sim_node.robots.courses import ACTUATORS, Outcome, actuators
 from nodes.sim_node.vision.view import bulk, overview
+from schemas.entities import Pose
+from schemas.errors import Refused
 from schemas.scenes import (
     BodiesMoved,
     Body,
     BodyOrder,
     Deleted,
+    DriveBase,
     JointOrder,
     JointsMoving,
     Placement,
@@ -130,6 +136,48 @@ class World:
         for name, to in targets.items():
             self._engine.drive(name, to)
         return JointsMoving(bodies=self._bodies(targets), failed=failed)
+
+    def mark_robot(self, name: str) -> None:
+        """This body is a robot, and so are those that are part of it; its joints open nothing."""
+        records = self._engine.records
+        for record in records.values():  # wholes come before their parts
+            above = records.get(record.part_of)
+            if record.name == name or (above is not None and above.robot):
+                record.robot = True
+                record.joints = tuple(structs.replace(joint, closed=None) for joint in record.joints)
+
+    def drive(self, order: DriveBase) -> None:
+        """Begin a course, or, without points, end one.
+
+        Raises Refused for what is no body, or cannot drive, and says why.
+        """
+        engine, name = self._engine, order.name
+        if name not in engine.records:
+            raise Refused(f"the scene has no body named {name}")
+        if not actuators(engine.model, name):
+            wanted = ", ".join(ACTUATORS)
+            raise Refused(f"{name} cannot drive: its model has no velocity actuators named {wanted}")
+        if engine.records[name].static:
+            raise Refused(
+                f"{name} cannot drive: it is held where it is, because another body is in its place"
+            )
+        if not order.to:
+            engine.courses.stop(engine.model, engine.data, name, "stopped")
+            return
+        for x, y in order.to:
+            if math.hypot(x, y) > orders.REACH_M:
+                raise Refused(f"({x:g}, {y:g}) is too far; the limit is {orders.REACH_M:.0f} m")
+        engine.drive_base(name, order.to, order.yaw, order.speed)
+
+    def ended(self) -> dict[str, Outcome]:
+        """How courses ended since this was asked last, by robot."""
+        ended = dict(self._engine.courses.ended)
+        self._engine.courses.ended.clear()
+        return ended
+
+    def pose(self, name: str) -> Pose:
+        """Where a body is."""
+        return pose_of(self._engine.poses()[self._engine.index.row[name]])
 
     def step(self, duration_s: float) -> None:
         """Let `duration_s` of simulated time pass; it costs nothing while everything sleeps."""

@@ -21,7 +21,7 @@ _MODULES = {
     "past": ("undo", "history", "diff", "when", "last-seen"),
     "run": ("run",),
     "perceive": ("perceive",),
-    "scene": ("move", "open", "close", "pause", "step", "reset", "picture"),
+    "scene": ("move", "drive", "open", "close", "pause", "step", "reset", "picture"),
     "replay": ("replay",),
     "movie": ("movie",),
     "lifecycle": ("up", "down", "node", "repair"),
