@@ -32,7 +32,10 @@ from nodes.extern.testing import free_endpoint, own_system
 
 _SEMMAP = str(Path(sys.executable).with_name("semmap"))
 _FLAGS = ("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking")
-_SHOWN = "n => (document.querySelector('.semmap-state') || {}).innerText?.includes(`commit ${n}`)"
+_SHOWN = """n => {
+  const said = /commit ([0-9,]+)/.exec(document.querySelector(".semmap-state").innerText);
+  return said && Number(said[1].replaceAll(",", "")) >= n;
+}"""
 _COUNTED = "n => [...document.querySelectorAll('[role=status]')].some(e => e.innerText.includes(n))"
 _WAIT_MS = 60_000
 
@@ -68,7 +71,7 @@ def effects(client: Client, tab: Page, changes: int) -> list[float]:
     for i in range(changes):
         began = time.monotonic()
         commit = client.add("Cup", f"measured{i}", at=(2.0 + i % 10 / 10, 3.0, 1.0)).commit
-        tab.wait_for_function(_SHOWN, arg=f"{commit:,}", polling="raf", timeout=_WAIT_MS)
+        tab.wait_for_function(_SHOWN, arg=commit, polling="raf", timeout=_WAIT_MS)
         taken.append(time.monotonic() - began)
         time.sleep(0.13)  # not in step with the page, which tells ten times a second
     return taken
