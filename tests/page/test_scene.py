@@ -41,8 +41,8 @@ def tab(seeing, web):
     complained = []
     page.on("pageerror", lambda error: complained.append(str(error)))
     page.on("console", lambda said: said.type == "error" and complained.append(said.text))
-    page.goto(web.url, timeout=START_MS)
-    page.wait_for_selector("body.semmap-ready", timeout=START_MS)
+    page.goto(web.url, timeout=2 * START_MS)
+    page.wait_for_selector("body.semmap-ready", timeout=2 * START_MS)
     yield page
     page.close()
     assert not complained
@@ -107,7 +107,7 @@ def test_a_click_selects_and_one_beside_things_selects_nothing(tab, system, chai
         frame = tab.locator("iframe").bounding_box()
 
         def click_beside() -> bool:
-            tab.mouse.click(frame["x"] + frame["width"] - 6, frame["y"] + 0.5 * frame["height"])
+            tab.mouse.click(frame["x"] + frame["width"] - 60, frame["y"] + 0.5 * frame["height"])
             tab.wait_for_timeout(1000)
             return selected(tab) == ""
 

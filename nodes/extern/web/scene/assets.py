@@ -11,7 +11,7 @@ from nodes.extern.web.scene.meshes import glb
 from nodes.extern.web.scene.shown import BOX, Key
 from schemas import errors, keys
 from schemas.entities import Size
-from schemas.scenes import Surface, SurfaceQuery, WorldQuery
+from schemas.scenes import Scene, Surface, SurfaceQuery, WorldQuery
 
 _AT_ONCE: Final = 50
 
@@ -25,6 +25,7 @@ class Assets:
         self._surfaces = SurfaceCache()
         self._glbs: dict[Key, bytes] = {}
         self._run = ""
+        self._fetched: Scene | None = None
         self.walls: Surface | None = None
 
     def surface_of(self, model: str, size_m: Size) -> Surface | None:
@@ -43,7 +44,11 @@ class Assets:
 
     async def fetch(self) -> None:
         """Ask what bodies look like, as far as that was never told, and the world if it is another one."""
-        scene = self._live.scene
+        while (scene := self._live.scene) is not self._fetched:
+            await self._fetch(scene)
+            self._fetched = scene
+
+    async def _fetch(self, scene: Scene | None) -> None:
         if scene is None:
             return
         wanted = list(self._surfaces.wanted(scene.bodies).items())

@@ -25,9 +25,11 @@ _EVEN_M: Final = 0.001
 class Gizmo:
     """Arrows along x, y and z and a ring about z; only about z does a hand turn things."""
 
-    def __init__(self, scene: SceneApi, dragged: Dragged) -> None:
+    def __init__(self, scene: SceneApi, dragged: Dragged, is_open: Callable[[], bool]) -> None:
+        """`is_open()`: the frame is still there; what was being dragged when it went was not let go."""
         self._scene = scene
         self._dragged = dragged
+        self._is_open = is_open
         self._handles: tuple[TransformControlsHandle, ...] = ()
         self._pose: Pose | None = None
 
@@ -74,7 +76,8 @@ class Gizmo:
                 if other is not handle and event.phase == "update":
                     other.position = pose.position_m
             self._pose = None  # it has to be put back if the thing stays where it was
-            self._dragged(event.phase, pose)
+            if event.phase != "end" or self._is_open():
+                self._dragged(event.phase, pose)
 
         handle.on_update(on_update)
         return handle
