@@ -1,6 +1,6 @@
 # Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-long test-faults lint format docs diagrams schema shapes models relations-picture train-perception wheel clean
+.PHONY: help setup demo test test-long test-faults lint format docs diagrams pictures schema shapes models relations-picture train-perception wheel clean
 
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
@@ -66,6 +66,9 @@ shapes: setup  ## Write the models' sizes, support surfaces and hollows anew, fo
 
 models: setup  ## Draw the contact sheet of all models
 	$(BIN)/python -m nodes.sim_node.models.sheet docs/models.png
+
+pictures: setup  ## Draw the manual's pictures of the page, the plan and the movie; needs Debian's chromium
+	$(BIN)/python docs/_ext/pictures.py
 
 relations-picture: setup  ## Draw the sixty situations of docs/relations.md
 	$(BIN)/python -m benchmarks.relations.picture docs/relations.png

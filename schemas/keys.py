@@ -70,6 +70,8 @@ LIVE_POSES = Topic(f"{ROOT}/live", LivePoses, "newest")
 """Of all tracked entities, by the coordinator."""
 OBSERVATIONS = Topic(f"{PERCEPTION}/observations", Observations, "newest")
 CLOUD = Topic(f"{PERCEPTION}/cloud", SegmentedCloud, "newest")
+DETECTIONS = Topic(f"{PERCEPTION}/detections", Observations, "newest")
+"""What a detector of one's own has seen: perception compares it with the map as it does with what it sees."""
 HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 
 TOPICS = (
@@ -84,6 +86,7 @@ TOPICS = (
     CAMERA,
     OBSERVATIONS,
     CLOUD,
+    DETECTIONS,
     HEALTH,
 )
 

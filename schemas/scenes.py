@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from msgspec import Meta, Struct, field
 
 from schemas.calls import MANY, Call
-from schemas.entities import Name, Pose, Probability, Size, Vector
+from schemas.entities import Angle, Metres, Name, Pose, Probability, Size, Vector
 from schemas.joints import Joint
 
 PixelCount = Annotated[int, Meta(ge=1, le=1 << 14)]
@@ -57,6 +57,8 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     joints: tuple[Joint, ...] = ()
     joint_commit: int = 0
     part_of: str = ""
+    robot: bool = False
+    """It was put there by `semmap up --robot`: it becomes an entity whatever the truth is, and is tracked."""
 
 
 class Spawned(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -142,6 +144,33 @@ class MoveJoints(Call[JointsMoving], frozen=True, kw_only=True, forbid_unknown_f
 
     VERB: ClassVar[str] = "move-joints"
     orders: tuple[JointOrder, ...]
+
+
+Point = tuple[Metres, Metres]
+"""On the floor, in the map frame [m]."""
+
+
+class Driven(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """How a course ended, and where the robot is then; `driving` if nobody waited for its end."""
+
+    name: str
+    outcome: Literal["driving", "there", "blocked", "fallen", "stopped"]
+    pose: Pose
+
+
+class DriveBase(Call[Driven], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Drive a robot's base through these points, in a straight line to each, and at the end turn to `yaw`.
+
+    No points stop it. It goes at most at `speed` [m/s]; nobody looks whether the way is free, and a course
+    along which it gets no further is given up. With `wait` the reply comes when the course ends.
+    """
+
+    VERB: ClassVar[str] = "drive"
+    name: str
+    to: tuple[Point, ...] = ()
+    yaw: Angle | None = None
+    speed: float = 0.4
+    wait: bool = False
 
 
 class Surface(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

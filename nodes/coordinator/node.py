@@ -20,6 +20,7 @@ from nodes.coordinator.early_commands import EarlyCommands
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
 from nodes.coordinator.live.feed import LiveFeed
+from nodes.coordinator.scene.among_walls import AmongWalls
 from nodes.coordinator.scene.opening import Opening
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
@@ -34,12 +35,13 @@ from schemas import commands as c
 from schemas.entities import BodyState
 from schemas.health import Health
 from schemas.replies import Changed
-from schemas.scenes import Poses
+from schemas.scenes import DriveBase, Poses
 
 R = TypeVar("R")
 
 _WAIT_S = 20.0
 _SIM_TIMEOUT_S = 120.0
+_DRIVE_TIMEOUT_S = 3600.0
 _URGENT = frozenset({c.Status.VERB})
 _ROOM = 64
 """Commands that wait for their turn at most: more wait in the node's queue, which is fair and bounded."""
@@ -64,6 +66,7 @@ class Coordinator:
         door = self._door
         self._live = LiveFeed(node, config, door.map, self._keeping.scene, self._turns.change)
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge, self._live)
+        among_walls = AmongWalls(self._keeping, self._ask_sim, self._bridge.ask_later)
         running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
         self._opening = Opening(door, self._keeping, self._ask_sim)
         relay = self._bridge.relay
@@ -82,6 +85,7 @@ class Coordinator:
             c.Move.answered_by(running.move),
             c.Open.answered_by(self._opening.move),
             c.Close.answered_by(self._opening.move),
+            c.Drive.answered_by(running.drive),
             c.Pause.answered_by(running.pause),
             c.StepOnce.answered_by(running.step),
             c.Reset.answered_by(running.reset),
@@ -99,6 +103,8 @@ class Coordinator:
             c.Diff.answered_by(relay),
             c.WasWhen.answered_by(relay),
             c.Export.answered_by(relay),
+            c.PlanFloor.answered_by(among_walls.plan),
+            c.FindWay.answered_by(among_walls.route),
             c.Classes.answered_by(relay),
             c.Properties.answered_by(relay),
             c.Sparql.answered_by(relay),
@@ -251,7 +257,8 @@ class Coordinator:
         return guarded
 
     def _ask_sim(self, call: calls.Call[R]) -> Future[R]:
-        return self._node.ask_later(keys.SIM, call, timeout_s=_SIM_TIMEOUT_S)
+        timeout_s = _DRIVE_TIMEOUT_S if isinstance(call, DriveBase) else _SIM_TIMEOUT_S
+        return self._node.ask_later(keys.SIM, call, timeout_s=timeout_s)
 
 
 def _tidy() -> None:

@@ -99,7 +99,7 @@ class Client(Verbs):
         self._lifelines = bus.Lifelines(session)
         self._live: dict[str, Any] = {}
         """The publishers of live poses, by name."""
-        self._prefix = keys.CMD if identity is None else keys.commands_as(identity.name)
+        self.prefix = keys.CMD if identity is None else keys.commands_as(identity.name)
         role = "" if identity is None else identity.role
         self._signature: dict[str, Any] = {"source": source or roles.default_source(role), "agent": agent}
 
@@ -126,7 +126,7 @@ class Client(Verbs):
     def _ask(self, verb: str, command: Command, kind: Any, **how: Any) -> Any:
         """As `bus.ask`; a misunderstanding between versions is told as one."""
         try:
-            return bus.ask(self.session, self._prefix, verb, command, kind, lifelines=self._lifelines, **how)
+            return bus.ask(self.session, self.prefix, verb, command, kind, lifelines=self._lifelines, **how)
         except errors.SemmapError as error:
             if _may_be_of_versions(error) and (difference := version.difference(self._version_of_system())):
                 raise type(error)(f"{error.text}; {difference}", explanation=error.explanation) from None
@@ -136,7 +136,7 @@ class Client(Verbs):
         """What its status says; this client's own where nobody says."""
         ask = functools.partial(bus.ask, timeout_s=_VERSION_S, patience_s=0.0)
         try:
-            said = ask(self.session, self._prefix, Status.VERB, Status(), dict[str, Any])
+            said = ask(self.session, self.prefix, Status.VERB, Status(), dict[str, Any])
         except errors.SemmapError:
             return version.version()
         return str(said.get("version", ""))

@@ -22,7 +22,7 @@ from nodes.perception_node.input.frame_worker import FrameWorker
 from nodes.perception_node.pipeline import Look, look, shipped
 from nodes.perception_node.segmented_cloud import segmented_cloud
 from nodes.perception_node.tracking.association import associate, renamed
-from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy, hierarchy_of
+from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy, hierarchy_of
 from nodes.perception_node.tracking.map_updates import subject_of
 from nodes.perception_node.tracking.occupancy import occupancy_in
 from nodes.perception_node.tracking.tracks import Tracks
@@ -34,6 +34,7 @@ from schemas.commands import Add, Command, LastSeen
 from schemas.commits import Effects
 from schemas.entities import Size
 from schemas.errors import UnknownName
+from schemas.perception import Observations
 from schemas.replies import Sighting
 
 _COMPLAINT_S = 60.0
@@ -43,6 +44,8 @@ _CLOUD_S = 1.0
 """A cloud is published no more often."""
 _REFUSED_S = 10.0
 """What was refused is not said again before that."""
+_NAMED = 5
+"""So many of the classes that nobody knows are named."""
 _FAR_M = 3.5
 """Small things that are farther from every camera are hardly found."""
 
@@ -75,6 +78,7 @@ class Perception:
         self._cloud_is_wanted = bus.watched(node.session, keys.CLOUD)
         Follower(node, self._map, keys.EFFECTS, heard=lambda commit, known: None, begun=self._on_map)
         node.every(0.5, self._tick)
+        node.follow_newest(keys.DETECTIONS, self._on_detections)
         self._worker = FrameWorker(look, self._hand_over, self._complain)
         for plane in ("rgb", "depth"):
             bus.follow_cameras(node.session, plane, self._worker.keep, self._complain)
@@ -104,6 +108,24 @@ class Perception:
     def _on_look(self, clouds: Sequence[Cloud], found: Look, took_s: float) -> None:
         self._looked_at = time.monotonic()
         seen = found.observations
+        self._compare(seen, clouds)
+        if time.monotonic() >= self._cloud_due and self._cloud_is_wanted():
+            self._cloud_due = time.monotonic() + _CLOUD_S
+            cloud = segmented_cloud(clouds, found)
+            self._cloud.put(codec.encode(cloud), encoding=codec.encoding_of(cloud))
+        self._node.describe(summary(clouds, len(seen.observations), took_s))
+
+    def _on_detections(self, seen: Observations) -> None:
+        """What a detector of one's own has seen; without its picture nothing is known to be gone."""
+        unknown = {o.class_ for o in seen.observations} - self._classes.ancestors.keys() - {ANYTHING}
+        if unknown and self._classes.ancestors:
+            names = ", ".join(sorted(unknown)[:_NAMED])
+            self._on_complaint(f"detections of classes that the map does not have were ignored: {names}")
+        known = tuple(o for o in seen.observations if o.class_ not in unknown)
+        self._compare(structs.replace(seen, observations=known), ())
+
+    def _compare(self, seen: Observations, clouds: Sequence[Cloud]) -> None:
+        """Tell the map what differs, and all others what was seen."""
         if self._map_is_current():
             result = associate(
                 self._map.entities,
@@ -118,11 +140,6 @@ class Perception:
             seen = structs.replace(seen, observations=tuple(structs.replace(o, entity=e) for o, e in named))
             self._tell(result.commands)
         self._observations.put(codec.encode(seen), encoding=codec.encoding_of(seen))
-        if time.monotonic() >= self._cloud_due and self._cloud_is_wanted():
-            self._cloud_due = time.monotonic() + _CLOUD_S
-            cloud = segmented_cloud(clouds, found)
-            self._cloud.put(codec.encode(cloud), encoding=codec.encoding_of(cloud))
-        self._node.describe(summary(clouds, len(seen.observations), took_s))
 
     # The map
 

@@ -22,6 +22,7 @@ MODULES: Mapping[str, tuple[str, ...]] = {
     "mcp": ("anyio", "mcp", "uvicorn"),
     "web": ("fastapi", "nicegui", "numpy", "psutil", "uvicorn", "viser", "websockets"),
     "movie": ("av", "numpy"),
+    "ros": ("mcap", "numpy", "rosbags"),
 }
 """What each extra installs, as it is imported."""
 

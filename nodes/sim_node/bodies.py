@@ -48,6 +48,7 @@ class BodyRecord:
     """The body of a world that it is part of, which carries it."""
     anchored: bool = False
     """Held by a joint or by what it is part of: nobody can put it elsewhere."""
+    robot: bool = False
 
     @property
     def static(self) -> bool:
@@ -74,6 +75,7 @@ class BodyRecord:
             ),
             joint_commit=self.joint_commit,
             part_of=self.part_of,
+            robot=self.robot,
         )
 
 

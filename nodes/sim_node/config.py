@@ -22,6 +22,16 @@ class CameraConfig:
 
 
 @dataclass(frozen=True)
+class RobotConfig:
+    """A robot's MJCF file, the name it has as an entity, and where it stands at first (map frame)."""
+
+    path: Path
+    name: str = "robot1"
+    at_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    yaw_rad: float = 0.0
+
+
+@dataclass(frozen=True)
 class SimConfig:
     """`world` is an MJCF or JSON scene, None a bare floor; `models` a folder of files (`models.sources`)."""
 
@@ -36,3 +46,4 @@ class SimConfig:
     """Seconds to wait for the knowledge base, where the world is one that names classes."""
     still: bool = False
     """Time is paused from the start: bodies stand where they are ordered to."""
+    robot: RobotConfig | None = None

@@ -21,11 +21,14 @@ from nodes.sim_node.world_file import names_classes, open_world
 from schemas import codec, errors, keys, wording
 from schemas.calls import by_verb
 from schemas.commands import Classes, Pause, Reset, StepOnce
+from schemas.plans import Outline, WallsQuery
 from schemas.replies import Done
 from schemas.scenes import (
     BodiesMoved,
     Delete,
     Deleted,
+    DriveBase,
+    Driven,
     JointsMoving,
     MoveBodies,
     MoveJoints,
@@ -65,12 +68,14 @@ class Simulator:
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
         models = Models(config.models, config.data)
-        self._world = open_world(config.world, models, node.tick, self._classes(config))
+        self._world = open_world(config.world, models, node.tick, self._classes(config), config.robot)
         self._paused = config.still
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
         self._studio = Studio(config.cameras, bus.watched(node.session, keys.SEGMENTS))
         self._planes: dict[str, Any] = {}
+        self._driving: dict[str, Future[Driven]] = {}
+        """Who waits for the end of a robot's course."""
         node.serve(
             keys.SIM,
             by_verb(
@@ -79,11 +84,13 @@ class Simulator:
                 MoveBodies.answered_by(self._move),
                 MoveJoints.answered_by(self._move_joints),
                 SceneQuery.answered_by(self._snapshot),
+                DriveBase.answered_by(self._drive),
                 Pause.answered_by(self._pause),
                 StepOnce.answered_by(self._step),
                 Reset.answered_by(self._reset),
                 PictureQuery.answered_by(self._picture),
                 SurfaceQuery.answered_by(self._surfaces),
+                WallsQuery.answered_by(self._walls),
                 WorldQuery.answered_by(self._surface_of_the_world),
             ),
         )
@@ -128,6 +135,23 @@ class Simulator:
     def _move_joints(self, message: MoveJoints) -> JointsMoving:
         return self._told(self._world.move_joints(message.orders))
 
+    def _drive(self, message: DriveBase) -> Driven | Future[Driven]:
+        self._world.drive(message)
+        self._tell_ended()
+        if not message.wait or not message.to:
+            outcome: Literal["driving", "stopped"] = "driving" if message.to else "stopped"
+            return Driven(name=message.name, outcome=outcome, pose=self._world.pose(message.name))
+        future: Future[Driven] = Future()
+        self._driving[message.name] = future
+        return future
+
+    def _tell_ended(self) -> None:
+        """Answer those who wait for the end of a course."""
+        for name, outcome in self._world.ended().items():
+            future = self._driving.pop(name, None)
+            if future is not None:
+                future.set_result(Driven(name=name, outcome=outcome, pose=self._world.pose(name)))
+
     def _snapshot(self, _: SceneQuery) -> Scene:
         return self._world.scene()
 
@@ -171,6 +195,9 @@ class Simulator:
     def _surface_of_the_world(self, _: WorldQuery) -> Surface:
         return self._world.surface()
 
+    def _walls(self, _: WallsQuery) -> tuple[Outline, ...]:
+        return self._world.walls()
+
     def _still(self) -> Still:
         return Still(*self._world.snapshot())
 
@@ -205,6 +232,7 @@ class Simulator:
         if not self._paused:
             self._world.step(min(now - self._clock_s, _LAG_S, self._turn_s()))
         self._clock_s = now
+        self._tell_ended()
 
     def _turn_s(self) -> float:
         """As much simulated time as can be worked out in one go without falling silent."""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import copy
+import math
 import time
 import uuid
 from collections.abc import Callable, Iterable, Sequence
 
 import mujoco
 import numpy as np
+from msgspec import structs
 
 from nodes.sim_node import orders
 from nodes.sim_node.bodies import Floats, Ints, pose_of
@@ -18,13 +20,19 @@ from nodes.sim_node.models.world_surface import world_surface
 from nodes.sim_node.orders import ModelSource
 from nodes.sim_node.physics import base_scene, build
 from nodes.sim_node.physics.engine import Engine
+from nodes.sim_node.physics.walls import walls
 from nodes.sim_node.placement.settling import Settling
+from nodes.sim_node.robots.courses import ACTUATORS, Outcome, actuators
 from nodes.sim_node.vision.view import bulk, overview
+from schemas.entities import Pose
+from schemas.errors import Refused
+from schemas.plans import Outline
 from schemas.scenes import (
     BodiesMoved,
     Body,
     BodyOrder,
     Deleted,
+    DriveBase,
     JointOrder,
     JointsMoving,
     Placement,
@@ -131,6 +139,48 @@ class World:
             self._engine.drive(name, to)
         return JointsMoving(bodies=self._bodies(targets), failed=failed)
 
+    def mark_robot(self, name: str) -> None:
+        """This body is a robot, and so are those that are part of it; its joints open nothing."""
+        records = self._engine.records
+        for record in records.values():  # wholes come before their parts
+            above = records.get(record.part_of)
+            if record.name == name or (above is not None and above.robot):
+                record.robot = True
+                record.joints = tuple(structs.replace(joint, closed=None) for joint in record.joints)
+
+    def drive(self, order: DriveBase) -> None:
+        """Begin a course, or, without points, end one.
+
+        Raises Refused for what is no body, or cannot drive, and says why.
+        """
+        engine, name = self._engine, order.name
+        if name not in engine.records:
+            raise Refused(f"the scene has no body named {name}")
+        if not actuators(engine.model, name):
+            wanted = ", ".join(ACTUATORS)
+            raise Refused(f"{name} cannot drive: its model has no velocity actuators named {wanted}")
+        if engine.records[name].static:
+            raise Refused(
+                f"{name} cannot drive: it is held where it is, because another body is in its place"
+            )
+        if not order.to:
+            engine.courses.stop(engine.model, engine.data, name, "stopped")
+            return
+        for x, y in order.to:
+            if math.hypot(x, y) > orders.REACH_M:
+                raise Refused(f"({x:g}, {y:g}) is too far; the limit is {orders.REACH_M:.0f} m")
+        engine.drive_base(name, order.to, order.yaw, order.speed)
+
+    def ended(self) -> dict[str, Outcome]:
+        """How courses ended since this was asked last, by robot."""
+        ended = dict(self._engine.courses.ended)
+        self._engine.courses.ended.clear()
+        return ended
+
+    def pose(self, name: str) -> Pose:
+        """Where a body is."""
+        return pose_of(self._engine.poses()[self._engine.index.row[name]])
+
     def step(self, duration_s: float) -> None:
         """Let `duration_s` of simulated time pass; it costs nothing while everything sleeps."""
         self._settling.step(duration_s)
@@ -159,6 +209,10 @@ class World:
         stage = self._engine.stage()
         felt = np.isfinite(stage.body_low).all(axis=1)
         return bulk(stage.body_low[felt], stage.body_high[felt])
+
+    def walls(self) -> tuple[Outline, ...]:
+        """What of the world itself stands in the way, seen from above."""
+        return walls(self.model, self.data, self._engine.records)
 
     def tops(self, box: tuple[Floats, Floats] | None = None) -> dict[str, Floats]:
         """The middle of the top (3,) [m] of each entity's body; only of those whose middle is in the box."""

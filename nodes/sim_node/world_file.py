@@ -5,13 +5,17 @@ from __future__ import annotations
 import codecs
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
+import mujoco
 import numpy as np
 
 from nodes.runtime.class_names import ClassNames
+from nodes.sim_node.config import RobotConfig
 from nodes.sim_node.models.parts import rotation_matrix
 from nodes.sim_node.orders import ModelSource
 from nodes.sim_node.physics import base_scene
+from nodes.sim_node.robots.robot import put
 from nodes.sim_node.vision.view import View, look_at, pinhole
 from nodes.sim_node.world import World
 from schemas import codec, scene_files
@@ -40,8 +44,9 @@ def open_world(
     models: ModelSource,
     meanwhile: Callable[[], None] = lambda: None,
     classes: ClassNames | None = None,
+    robot: RobotConfig | None = None,
 ) -> World:
-    """The world that a file describes; a bare floor without a file.
+    """The world that a file describes, with a robot if there is one; a bare floor without a file.
 
     Bodies of a JSON scene are the world's own furniture (commit 0). Each has the model of its class, and
     stays where it is put if its class is fixed, as `classes` say; a class that they do not know has the model
@@ -49,21 +54,33 @@ def open_world(
     World. Raises BadFile for a file that is neither MJCF nor a scene, or has a body that cannot be made.
     """
     if path is None:
-        return World(models=models, meanwhile=meanwhile)
+        return _world(base_scene.bare_floor(), robot, models=models, meanwhile=meanwhile)
     if not is_scene(path):
         ground = base_scene.read_mjcf(path)
         known = classes or ClassNames()
-        return World(ground, name=path.name, models=models, meanwhile=meanwhile, is_class=known.has)
+        how = {"name": path.name, "models": models, "meanwhile": meanwhile, "is_class": known.has}
+        return _world(ground, robot, **how)
     scene = scene_files.read(_read(path), path.name)
     views = (
         None if scene.cameras is None else [(camera.name or "", _view(camera)) for camera in scene.cameras]
     )
-    world = World(base_scene.bare_floor(views), name=path.name, models=models, meanwhile=meanwhile)
+    floor = base_scene.bare_floor(views)
+    world = _world(floor, robot, name=path.name, models=models, meanwhile=meanwhile)
     spawned = world.spawn(_orders(scene.entities, classes or ClassNames()))
     for name, reason in spawned.failed.items():
         raise BadFile(f"{path.name}: {name} cannot be created: {reason}")
     if views is None:
         world.look_over()
+    return world
+
+
+def _world(ground: mujoco.MjSpec, robot: RobotConfig | None, **how: Any) -> World:
+    """The world on this ground, with a robot if there is one."""
+    if robot is not None:
+        put(ground, robot)
+    world = World(ground, **how)
+    if robot is not None:
+        world.mark_robot(robot.name)
     return world
 
 

@@ -12,6 +12,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from nodes.bus import FOREVER_S, RESTART_S
 from nodes.supervisor.orphans import end_when_orphaned
@@ -22,6 +23,9 @@ from ontology.model_shapes import add_own
 from schemas import codec, errors
 from schemas.endpoints import WEB_TOKEN_VARIABLE
 from schemas.keys import ROUTER, WEB
+
+if TYPE_CHECKING:
+    from nodes.sim_node.config import RobotConfig
 
 _RECORDED = "SEMMAP_RECORDED"
 """Handed from a recorder to itself: the last commit that is in its file."""
@@ -46,7 +50,11 @@ def seed(settings: Settings) -> None:
         from nodes.sim_node.world_file import open_world
 
         models = Models(Path(settings.models) if settings.models else None, Path(settings.data))
-        open_world(Path(settings.world), models)
+        open_world(Path(settings.world), models, robot=_robot(settings))
+    elif settings.sim and settings.robot is not None:
+        from nodes.sim_node.robots.robot import read
+
+        read(Path(settings.robot))
     if settings.models is not None or _own_shapes(settings).is_file():
         from nodes.sim_node.models.write_shapes import write_own
 
@@ -112,6 +120,15 @@ def _coordinator(settings: Settings) -> None:
     run(CoordinatorConfig(settings.truth, thresholds, live, settings.network("coordinator"), keys))
 
 
+def _robot(settings: Settings) -> RobotConfig | None:
+    """The robot of the world, if there is one."""
+    from nodes.sim_node.config import RobotConfig
+
+    if settings.robot is None:
+        return None
+    return RobotConfig(Path(settings.robot), settings.robot_name, settings.robot_at, settings.robot_yaw)
+
+
 def _sim_node(settings: Settings) -> None:
     from nodes.sim_node.config import CameraConfig, SimConfig
     from nodes.sim_node.node import run
@@ -125,7 +142,8 @@ def _sim_node(settings: Settings) -> None:
     patience_s = FOREVER_S if settings.only else RESTART_S  # another host may not be up yet
     data = Path(settings.data)
     still = settings.replay is not None
-    run(SimConfig(Path(settings.world), models, settings.window, cameras, network, data, patience_s, still))
+    world, robot = Path(settings.world), _robot(settings)
+    run(SimConfig(world, models, settings.window, cameras, network, data, patience_s, still, robot))
 
 
 def _perception_node(settings: Settings) -> None:

@@ -13,6 +13,7 @@ from msgspec import Meta, Struct, structs
 from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network, is_local
 from nodes.identity import Identity
 from schemas.endpoints import ALL_ROBOTS, robot_name
+from schemas.entities import Angle, Metres, Name
 from schemas.errors import BadRequest
 from schemas.keys import ROUTER, WEB
 
@@ -58,6 +59,11 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     truth: Literal["map", "scene", "perceived", "replayed"] = "map"
     threshold_m: Annotated[float, Meta(gt=0.0)] = 0.05
     angle_threshold_deg: Annotated[float, Meta(gt=0.0, le=180.0)] = 5.0
+    robot: str | None = None
+    """The MJCF file of a robot in the world."""
+    robot_name: Name = "robot1"
+    robot_at: tuple[Metres, Metres, Metres] = (0.0, 0.0, 0.0)
+    robot_yaw: Angle = 0.0
     stale_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] = 2.0
     """After how long a live pose that is not followed by another is stale."""
     journal_every_s: Annotated[float, Meta(ge=0.0, le=86_400.0)] = 0.0

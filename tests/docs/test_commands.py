@@ -37,6 +37,9 @@ PARSED = {
     "restore",
     "fleet",
     "mcp",
+    "web",
+    "ros",
+    "mcap",
 }
 """Verbs that start, stop or need something else than one running system."""
 BUSY_S = 300.0

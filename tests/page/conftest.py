@@ -28,7 +28,8 @@ _HARMLESS = re.compile("GPU stall|THREE|Software WebGL|WebGL|net::ERR_CONNECTION
 START_MS = 30_000
 
 
-def _chromium() -> str | None:
+def chromium_path() -> str | None:
+    """Where Chromium is."""
     return os.environ.get("SEMMAP_CHROMIUM") or next(filter(None, map(shutil.which, _NAMES)), None)
 
 
@@ -72,7 +73,7 @@ def serving(endpoint: str, *words: str) -> Iterator[Web]:
 def chromium():
     """Debian's Chromium, headless."""
     playwright = pytest.importorskip("playwright.sync_api", reason="Playwright for Python is not installed")
-    if (path := _chromium()) is None:
+    if (path := chromium_path()) is None:
         pytest.skip("there is no Chromium: sudo apt-get install chromium")
     with playwright.sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=path, args=[*_ARGUMENTS])
@@ -102,11 +103,13 @@ def open_tab(chromium):
     """
     contexts, asked, complained = [], [], []
 
-    def open_(web: Web, *, width: int = 1280, height: int = 800, dark: bool = False):
+    def open_(web: Web, *, width: int = 1280, height: int = 800, dark: bool = False, scene: bool = True):
         context = chromium.new_context(
             viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light"
         )
         contexts.append(context)
+        if not scene:  # which software draws slowly, on the thread of everything else
+            context.route("**/scene/**", lambda route: route.fulfill(body="<title>Scene</title>"))
         context.set_default_timeout(PATIENCE_S * 1000)
         tab = context.new_page()
         tab.on("request", lambda request: asked.append(request.url))

@@ -243,3 +243,33 @@ def test_cameras_that_are_far_from_everything_are_told(depth_m, said):
     points = np.full((4, 5, 3), depth_m, dtype=np.float32)
     points[0] = np.nan
     assert summary([Cloud(points)], 2, 0.08).endswith(said)
+
+
+def detected(world, *observations):
+    """A detector of one's own has seen this."""
+    found = Observations(stamp_ns=1, views=(), observations=observations)
+    world.session.put(keys.DETECTIONS.key, codec.encode(found))
+
+
+def test_a_detector_of_ones_own_feeds_the_map(world):
+    def said():
+        detected(world, CUP)
+        time.sleep(0.05)
+        return world.seen and world.seen[-1].observations[0].entity
+
+    until(said, "the map has it")
+    (add,) = world.told
+    assert (add.class_, add.name, add.source) == ("Cup", "cup1", "perception")
+
+
+def test_a_class_that_the_map_does_not_have_is_told_and_the_others_count(world):
+    strange = structs.replace(CUP, class_="Gizmo", candidates={"Gizmo": 1.0})
+
+    def said():
+        detected(world, strange, CUP)
+        time.sleep(0.05)
+        return world.seen and world.seen[-1].observations[0].entity
+
+    until(said, "the map has the other")
+    assert {add.class_ for add in world.told} == {"Cup"}
+    until(lambda: "that the map does not have were ignored: Gizmo" in world.health.last_error, "it says so")

@@ -88,7 +88,7 @@ def test_all_is_every_extra():
 
 def test_every_node_has_an_extra():
     assert set(extras.OF_NODE) == {*NODES, ROUTER, WEB}
-    assert set(extras.OF_NODE.values()) == set(extras.MODULES) - {"keys", "mcp", "movie"}
+    assert set(extras.OF_NODE.values()) == set(extras.MODULES) - {"keys", "mcp", "movie", "ros"}
 
 
 def test_with_everything_nothing_is_missing():

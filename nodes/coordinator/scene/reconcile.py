@@ -7,9 +7,10 @@ come from the scene, the body is ordered there; otherwise a body that rests else
 follows. The same goes for joints, by the commits that concern these.
 
 If only perception updates the map (`perceived`), nothing is to be done: an entity without a body is a belief,
-a body without an entity has not been seen yet, and a pose that differs will be seen. Only what is tracked
-from the simulator is followed all the same. What is tracked from a stream never follows its body. If the map
-is `replayed`, every pose of it is an order, also those that came from the scene, and the map follows nothing.
+a body without an entity has not been seen yet, and a pose that differs will be seen. Only a robot of the
+simulator becomes an entity, and what is tracked from there is followed, all the same. What is tracked from a
+stream never follows its body. If the map is `replayed`, every pose of it is an order, also those that came
+from the scene, and the map follows nothing.
 """
 
 from __future__ import annotations
@@ -56,7 +57,10 @@ def reconcile(
     if truth == "perceived":
         tracked = (e for e in entities.values() if e.tracked == "sim" and e.name in bodies)
         moved = (bodies[e.name] for e in tracked if _moved(e, bodies[e.name], thresholds))
-        return Actions(follow=tuple(Placement(name=body.name, pose=body.pose) for body in moved))
+        return Actions(
+            follow=tuple(Placement(name=body.name, pose=body.pose) for body in moved),
+            adopt=tuple(body for name, body in bodies.items() if body.robot and name not in entities),
+        )
     failed = failed or {}
     delete, spawn, place, follow, joints, opened, adopt, missing = [], [], [], [], [], [], [], []
     coming = {latest(e) for e in entities.values() if not (e.place or e.pose is None or e.name in bodies)}
@@ -91,7 +95,7 @@ def reconcile(
                 opened.append(name)
     for name, body in bodies.items():
         if name not in entities:
-            if truth == "scene":
+            if truth == "scene" or (body.robot and truth != "replayed"):
                 adopt.append(body)
             elif body.entity:
                 delete.append(name)

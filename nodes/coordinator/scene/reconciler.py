@@ -384,6 +384,7 @@ class Keeping:
             at=(x, y, z),
             orientation=pose.orientation_wxyz,
             size=body.size_m,
+            track="sim" if body.robot else None,
             set=(f"{_PART_OF}={whole}",) if whole else (),
         )
         self._change_about((name,), add, adopted)

@@ -18,7 +18,7 @@ from schemas.bridge import LoadOf
 from schemas.calls import Call
 from schemas.entities import Pose, Vector, carried, orientation_from_yaw
 from schemas.replies import Done, Moved
-from schemas.scenes import BodiesMoved, Body, MoveBodies, Picture, PictureQuery, Placement
+from schemas.scenes import BodiesMoved, Body, DriveBase, Driven, MoveBodies, Picture, PictureQuery, Placement
 
 R = TypeVar("R")
 
@@ -72,6 +72,18 @@ class Running:
 
         return then(self._ask(order), moved)
 
+    def drive(self, command: c.Drive) -> Future[Moved]:
+        """Drive a robot's base. Raises Refused for what cannot drive, and where it gets no further."""
+        if bool(command.to) is command.stop:
+            raise errors.BadRequest("say where to drive (--to X Y), or --stop")
+        if command.name not in self._keeping.scene.bodies and self._keeping.scene.known:
+            state = self._keeping.body_state(self._door.map.entity(command.name))
+            raise errors.Refused(f"{command.name} has no body to drive: {state.detail or state.status}")
+        order = DriveBase(
+            name=command.name, to=command.to, yaw=command.yaw, speed=command.speed, wait=command.wait
+        )
+        return then(self._ask_scene(order), lambda driven: Moved(name=command.name, text=_driven(driven)))
+
     def pause(self, command: c.Pause) -> Future[Done]:
         """Stop or start time."""
         return self._ask_scene(command)
@@ -117,6 +129,21 @@ class Running:
         if not self._keeping.scene.known:
             raise errors.NoAnswer("no simulator is running")
         return self._ask(call)
+
+
+def _driven(driven: Driven) -> str:
+    """What has become of a course. Raises Refused where it did not lead there."""
+    x, y, _ = driven.pose.position_m
+    where = f"({x:.2f}, {y:.2f})"
+    if driven.outcome == "blocked":
+        raise errors.Refused(f"{driven.name} gets no further than {where}: something is in its way")
+    if driven.outcome == "fallen":
+        raise errors.Refused(
+            f"{driven.name} has fallen over at {where}; to put it upright: semmap move {driven.name}"
+            f" --at {x:.2f} {y:.2f} 0 --yaw 0"
+        )
+    said = {"driving": "is on its way from", "there": "is at", "stopped": "stopped at"}[driven.outcome]
+    return f"{driven.name} {said} {where}, facing {math.degrees(driven.pose.yaw_rad):.0f}°"
 
 
 def _let_go(command: c.Move, body: Body) -> str:

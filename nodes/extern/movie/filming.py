@@ -26,7 +26,7 @@ from schemas.scenes import BodyOrder
 
 Rgb = NDArray[np.uint8]
 _LONGEST_S: Final = 3600.0
-_QUALITY: Final = {"crf": "24", "preset": "medium", "tune": "animation"}
+_QUALITY: Final = {"crf": "24", "preset": "faster", "tune": "animation"}
 _PAPER, _INK = (24, 28, 33), (238, 240, 242)
 
 

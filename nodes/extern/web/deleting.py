@@ -5,6 +5,7 @@ from __future__ import annotations
 from nicegui import ui
 
 from nodes.extern.web.page import Page
+from nodes.extern.web.views.consequences import consequences
 from schemas import wording
 from schemas.commands import Remove, Undo
 from schemas.errors import shortened
@@ -21,7 +22,13 @@ async def delete_selected(page: Page) -> None:
     if not page.may("remove"):
         page.tell("Your certificate may not delete.", "warning")
         return
-    if await _confirms(names) and (done := await page.change(Remove(names=names))) is not None:
+    tried = await page.change(Remove(names=names, dry_run=True))
+    if tried is None:
+        return
+    if (
+        await _confirms(names, consequences(tried))
+        and (done := await page.change(Remove(names=names))) is not None
+    ):
         page.tell(done.text, "positive")
 
 
@@ -34,13 +41,15 @@ async def undo(page: Page) -> None:
         page.tell(done.text, "positive")
 
 
-async def _confirms(names: tuple[str, ...]) -> bool:
+async def _confirms(names: tuple[str, ...], also: tuple[str, ...]) -> bool:
     what = names[0] if len(names) == 1 else wording.entities(len(names))
-    with ui.dialog().props('aria-label="Delete"') as dialog, ui.card():
+    with ui.dialog().props('aria-label="Delete"') as dialog, ui.card().classes("semmap-refused"):
         ui.label(f"Delete {shortened(what, 80)}?").classes("text-h6")
         if len(names) > 1:
             more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
             ui.label(", ".join(names[:_NAMED]) + more).classes("semmap-quiet")
+        for sentence in also:
+            ui.label(shortened(sentence, 1000)).classes("semmap-sentence")
         with ui.row().classes("w-full justify-end"):
             ui.button("Cancel", on_click=lambda: dialog.submit(False)).props("flat")
             ui.button("Delete", on_click=lambda: dialog.submit(True)).props("color=negative autofocus")

@@ -5,12 +5,12 @@ It is read once for all tabs, and kept up to date by the commits. Owned by the e
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
+import logging
 from collections.abc import Callable
 from typing import Final
 from weakref import WeakKeyDictionary
-
-from nicegui import background_tasks
 
 from nodes.extern.web.live import Happening, Live
 from nodes.extern.web.views.steps import words_of
@@ -22,6 +22,9 @@ from schemas.commits import Commit
 from schemas.entities import PropertyInfo
 from schemas.moments import When
 
+log = logging.getLogger(__name__)
+
+_AGAIN_S: Final = 2.0
 _ROWS: Final = 100_000
 _QUERY_S: Final = 30.0
 
@@ -45,6 +48,8 @@ class Knowing:
         self._since: list[Commit] | None = None
         """The commits that came while the whereabouts are being read; None while they are not."""
         self._again = False
+        self._task: asyncio.Task[None] | None = None
+        """It belongs to no tab, so that none takes it along when it is closed."""
         live.listen(self._on_happening)
         if live.commit >= 0:
             self._read()
@@ -100,7 +105,7 @@ class Knowing:
             self._again = True
             return
         self._since = []
-        background_tasks.create(self._fetch(), name="whereabouts")
+        self._task = asyncio.get_running_loop().create_task(self._fetch(), name="whereabouts")
 
     async def _fetch(self) -> None:
         live = self._live
@@ -108,8 +113,11 @@ class Knowing:
             properties = await live.ask(Properties())
             query = Sparql(query=QUERY, inferred=True, limit=_ROWS, timeout=_QUERY_S)
             found = await live.ask(query, _QUERY_S)
-        except errors.SemmapError:
-            self._since = None  # it is read again when the knowledge base is back
+        except errors.SemmapError as error:
+            log.info("where things are could not be read: %s", error.text)
+            await asyncio.sleep(_AGAIN_S)
+            self._since = None
+            self._read()
             return
         self.properties = {p.name: p for p in properties}
         self.words = words_of(live.classes, properties)

@@ -252,3 +252,4 @@ class _Tabs:
             with self.containers[name]:
                 for panel in self._panels[name]:
                     panel(self._page)
+        self._page.turned()

@@ -66,6 +66,7 @@ class Page:
         self._on_moment: list[Callable[[], None]] = []
         self._on_change: list[Callable[[], None]] = []
         self._on_connection: list[Callable[[], None]] = []
+        self._on_turn: list[Callable[[], None]] = []
         self._on_poses: list[Callable[[tuple[str, ...]], None]] = []
         self._on_look: list[Callable[[], None]] = []
         self._on_key: dict[str, Callable[[], object]] = {}
@@ -83,6 +84,7 @@ class Page:
             self._on_moment,
             self._on_change,
             self._on_connection,
+            self._on_turn,
             self._on_look,
         ):
             functions.clear()
@@ -232,6 +234,14 @@ class Page:
                     function(*arguments)
             except Exception:
                 log.exception("a panel of the page has failed")
+
+    def on_turn(self, function: Callable[[], None]) -> None:
+        """Call it when another panel has come into view."""
+        self._on_turn.append(function)
+
+    def turned(self) -> None:
+        """Tell that another panel has come into view."""
+        self._tell(self._on_turn)
 
     # Asking and changing
 

@@ -203,6 +203,9 @@ def set_standing(spec: mujoco.MjSpec, record: BodyRecord, pose: Pose) -> None:
     body.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
     for geom, (contype, conaffinity) in zip(body.geoms, record.masks, strict=True):
         geom.contype, geom.conaffinity = (0, 0) if record.ghost else (contype, conaffinity)
+    if record.robot:  # only what can move may sleep
+        policies = mujoco.mjtSleepPolicy
+        body.sleep = policies.mjSLEEP_AUTO if record.static else policies.mjSLEEP_ALLOWED
     joints = body.joints
     if record.static:
         for joint in joints:

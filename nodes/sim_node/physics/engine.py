@@ -15,6 +15,7 @@ from nodes.sim_node.physics.body_slots import Berth
 from nodes.sim_node.physics.drives import STEPS_A_PUSH, Drives
 from nodes.sim_node.physics.rest import JointWatch, RestWatch
 from nodes.sim_node.placement.obstacles import Stage
+from nodes.sim_node.robots.courses import Courses
 from nodes.sim_node.vision.view import View
 from schemas.entities import Pose
 
@@ -54,6 +55,7 @@ class Engine:
         self._rest = RestWatch(self.poses(), self.data.time)
         self._joint_rest = JointWatch(self.positions(), self.data.time)
         self._drives = Drives()
+        self.courses = Courses()
         self.resting: NDArray[np.bool_] = self.index.tree < 0
 
     def poses(self) -> Floats:
@@ -130,6 +132,13 @@ class Engine:
             sleep.wake(self.data, int(self.model.dof_treeid[self.index.joint_dof[row]]))
         self._joint_rest.disturb(rows, self.data.time)
         self.resting[self.index.row[name]] = False
+
+    def drive_base(
+        self, name: str, points: Sequence[tuple[float, float]], yaw_rad: float | None, speed_m_s: float
+    ) -> None:
+        """Begin to drive a robot's base through these points [m], at the end to face `yaw_rad`."""
+        self.courses.begin(name, points, yaw_rad, speed_m_s)
+        sleep.wake(self.data, int(self.index.tree[self.index.row[name]]))
 
     def set_joints(self, names: Iterable[str]) -> None:
         """Put the joints of these bodies where their records say, with no speed."""
@@ -273,6 +282,9 @@ class Engine:
                 if self._drives:
                     self._drives.push(self.model, self.data, self.index)
                     most = STEPS_A_PUSH
+                if self.courses:
+                    self.courses.steer(self.model, self.data, self.index)
+                    most = STEPS_A_PUSH
                 mujoco.mj_step(self.model, self.data, nstep=min(left, most))
                 if not np.isfinite(self.data.qpos).all():
                     self._calm(before)
@@ -286,7 +298,7 @@ class Engine:
     @property
     def asleep(self) -> bool:
         """Nothing moves: every body sleeps, and none is about to be woken."""
-        return not self._drives and sleep.all_asleep(self.data)
+        return not self._drives and not self.courses and sleep.all_asleep(self.data)
 
     @property
     def awake(self) -> int:

@@ -181,6 +181,15 @@ def test_an_export_follows_links_and_writes_into_pipes(system, tmp_path):
     assert pipe.is_fifo()
 
 
+def test_an_export_of_the_past_has_what_was_there_then(system, tmp_path):
+    system.cli("add", "Cup", "cup_exported", "--at", "5", "5", "0")
+    assert "(commit 1)" in system.cli("export", tmp_path / "then.ttl", "--as-of", "1")
+    system.cli("export", tmp_path / "now.ttl")
+    assert "cup_exported" not in (tmp_path / "then.ttl").read_text()
+    assert "cup_exported" in (tmp_path / "now.ttl").read_text()
+    system.cli("remove", "cup_exported")
+
+
 def test_numbers_may_be_numpys(system):
     with system.client() as client:
         client.add(

@@ -86,3 +86,12 @@ def test_what_has_no_position_or_size_is_counted():
 
 def test_the_bounds_of_nothing_are_a_square_metre():
     assert floor_of([]).bounds == (0.0, 1.0, 0.0, 1.0)
+
+
+def test_what_is_at_a_point_is_the_uppermost_thing_there():
+    cup = thing("cup1", at=(0, 0, 0.74), size=(0.1, 0.1, 0.1))
+    bay = ((-2.0, -2.0), (4.0, -2.0), (4.0, 4.0), (3.0, 4.0), (3.0, -1.0), (-2.0, -1.0))
+    floor = floor_of([cup, thing("table1"), place("hall", (0, 0), (1, 1))], outlines={"hall": bay})
+    assert [floor.at(point) for point in ((0.0, 0.0), (0.3, 0.0), (3.5, 3.0), (2.0, 3.0))] == [
+        "cup1", "table1", "hall", None
+    ]  # fmt: skip

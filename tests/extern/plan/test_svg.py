@@ -3,7 +3,7 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from nodes.extern.plan.floor import floor_of
-from nodes.extern.plan.svg import drawing
+from nodes.extern.plan.svg import draw, drawing
 from tests.extern.plan.things import place, thing
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -89,3 +89,11 @@ def test_an_empty_map_and_a_huge_one_fit_the_sheet():
 def test_what_cannot_be_drawn_is_counted():
     nowhere = thing("ghost", size=None)
     assert "1 thing has no known position or size" in texts(drawn(nowhere))
+
+
+def test_a_pixel_and_its_point_of_the_map_find_one_another():
+    drawn_ = draw(floor_of([place("room", (2, 2), (4, 4))]), title="", commit=1, stamp_ns=0)
+    x, y = drawn_.pixel((1.5, 0.5))
+    assert drawn_.point(x, y) == pytest.approx((1.5, 0.5))
+    assert 0.0 < x < drawn_.wide_mm * 96 / 25.4
+    assert 0.0 < y < drawn_.high_mm * 96 / 25.4

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nodes.kb_node.answers.map_then import ask_then, map_then
+from nodes.kb_node.answers.map_then import ask_then, export_then, map_then
 from nodes.kb_node.beliefs import Believed
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.semantic_map import SemanticMap
@@ -10,7 +10,7 @@ from nodes.kb_node.storage.history import Past
 from ontology import FLAT_TTL
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.commands import Sparql
+from schemas.commands import Export, Sparql
 from schemas.commits import Edit, NewEntity, Transaction
 from schemas.entities import Pose
 from tests.kb_node import home
@@ -77,3 +77,29 @@ def test_before_the_first_commit_there_was_no_map(flat):
         asked(flat, 0)
     with pytest.raises(errors.Refused, match="there is no commit 9 yet"):
         asked(flat, 9)
+
+
+def exported(flat, when, **others):
+    query = Export(format="turtle", as_of=when, **others)
+    document = export_then(flat._journal, Past(flat._journal), query)
+    return document, set(rdf.parse(document.content, "export.ttl"))
+
+
+def test_an_export_of_the_past_has_what_was_asserted_then(flat):
+    is_cup = (v.entity_iri("cup9"), v.RDF_TYPE, v.dm("Cup"))
+    before, then, after = (exported(flat, when)[1] for when in (1, 2, 5))
+    assert is_cup in then
+    assert is_cup not in before | after
+    assert before == after
+
+
+def test_an_export_of_the_past_leaves_the_ontology_out_and_says_of_when_it_is(flat):
+    document, triples = exported(flat, 3)
+    assert document.seq == 3
+    assert document.triples == len(triples)
+    assert not [s for s, p, o in triples if p == v.RDF_TYPE and o == v.OWL_CLASS]
+
+
+def test_what_followed_then_is_not_exported_and_it_is_said(flat):
+    with pytest.raises(errors.Refused, match="leave out --inferred or --as-of"):
+        exported(flat, 3, inferred=True)

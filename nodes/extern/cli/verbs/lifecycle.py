@@ -24,9 +24,12 @@ from nodes.supervisor.parts import nodes_of
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
-from schemas.endpoints import ALL_ROBOTS, CONNECT_VARIABLE, NAMESPACE_VARIABLE, robot_name
+from schemas.endpoints import ALL_ROBOTS, CONNECT_VARIABLE, NAMESPACE_VARIABLE
+from schemas.endpoints import robot_name as checked_namespace
 from schemas.keys import NODES, ROUTER
 
+_ROBOTS = Path(__file__).parents[3] / "sim_node" / "robots"
+"""Where those are that come with semmap."""
 _path = click.Path(path_type=Path)
 
 _PERCEPTION_HZ = 5.0
@@ -126,6 +129,22 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         help="Zenoh configuration for what semmap does not set itself.",
     )
     @click.option("--insecure", is_flag=True, help="Listen beyond this machine without certificates.")
+    @click.option(
+        "--robot",
+        metavar="FILE",
+        default=None,
+        help="Put a robot into the world: an MJCF file, or porter, which comes with semmap.",
+    )
+    @click.option("--robot-name", default="robot1", show_default=True, help="What it is called in the map.")
+    @click.option(
+        "--robot-at",
+        nargs=3,
+        type=float,
+        default=(0.0, 0.0, 0.0),
+        metavar="X Y Z",
+        help="Where the robot stands at first [m].  [default: 0 0 0]",
+    )
+    @click.option("--robot-yaw", type=float, default=0.0, metavar="RAD", help="How it is turned at first.")
     @click.option("--window", is_flag=True, help="Open a window that shows the scene (needs a display).")
     @click.option(
         "--models",
@@ -249,8 +268,9 @@ def node(name: str, settings: Settings) -> None:
 def _settings(
     *, tbox: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], spatial_root: tuple[str, ...],
     abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
-    threshold: float, angle_threshold: float, stale: float, journal_every: float, listen: str,
-    connect: tuple[str, ...], window: bool, models: Path | None, camera_hz: float | None,
+    threshold: float, angle_threshold: float, robot: str | None, robot_name: str,
+    robot_at: tuple[float, float, float], robot_yaw: float, stale: float, journal_every: float,
+    listen: str, connect: tuple[str, ...], window: bool, models: Path | None, camera_hz: float | None,
     camera_size: tuple[int, int], camera_noise: bool, perception: bool, when_gone: str, no_sim: bool,
     no_record: bool, record_keep: str | None, only: str | None, single: bool, secure: Path | None,
     zenoh_config: Path | None, insecure: bool, namespace: str,
@@ -295,6 +315,10 @@ def _settings(
         "truth": truth,
         "threshold_m": threshold,
         "angle_threshold_deg": angle_threshold,
+        "robot": None if robot is None else _robot_file(robot),
+        "robot_name": robot_name,
+        "robot_at": robot_at,
+        "robot_yaw": robot_yaw,
         "stale_s": stale,
         "journal_every_s": journal_every,
         "listen": listen if secure is None else bus.over_tls(listen),
@@ -316,7 +340,7 @@ def _settings(
         "web_as": web_as or "",
         "fresh": fresh,
         "secure": None if secure is None else _folder(secure),
-        "namespace": namespace if single else robot_name(namespace),
+        "namespace": namespace if single else checked_namespace(namespace),
         "zenoh_config": None if zenoh_config is None else _existing(zenoh_config),
     }
     _require_protected(values, insecure=insecure)
@@ -325,6 +349,12 @@ def _settings(
     except errors.BadRequest as error:
         field, _, fault = error.text.removeprefix("malformed message: ").partition(" ")
         raise errors.BadRequest(f"{_option_of(field)} {fault}") from None
+
+
+def _robot_file(word: str) -> str:
+    """The file of a robot, or of the one of that name that comes with semmap. Raises BadFile."""
+    shipped = _ROBOTS / f"{word}.xml"
+    return str(shipped) if word.isidentifier() and shipped.is_file() else _existing(Path(word))
 
 
 def _part(only: str, *, single: bool, without: dict[str, bool]) -> tuple[str, ...]:

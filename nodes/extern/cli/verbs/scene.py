@@ -1,4 +1,4 @@
-"""The verbs about the scene: `move`, `open`, `close`, `pause`, `step`, `reset`, `picture`."""
+"""The verbs about the scene: `move`, `drive`, `open`, `close`, `pause`, `step`, `reset`, `picture`."""
 
 from __future__ import annotations
 
@@ -62,6 +62,29 @@ def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
     The map follows when it comes to rest.
     """
     say(client.close(name, joint=joint, wait=wait).text)
+
+
+@click.command(cls=NegativeNumbers)
+@click.argument("name", shell_complete=entity_names)
+@click.option(
+    "--to",
+    nargs=2,
+    type=float,
+    multiple=True,
+    metavar="X Y",
+    help="A point of the floor [m]; several are driven through one after another.",
+)
+@yaw_option
+@click.option("--speed", type=float, default=0.4, show_default=True, help="At most so fast [m/s].")
+@click.option("--stop", is_flag=True, help="Stop where it is.")
+@click.option("--wait", is_flag=True, help="Wait until it is there.")
+@talks
+def drive(client: Client, **fields: Any) -> None:
+    """Drive a simulated robot to a point.
+
+    It goes in a straight line, to each point if there are several, and looks for no way around things.
+    """
+    say(client.drive(**given(fields)).text)
 
 
 @click.command()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-from msgspec import structs
 from nicegui import ui
 
 from nodes.extern.web.deleting import delete_selected
@@ -48,7 +47,7 @@ class Edit:
     async def _save(self) -> None:
         filled = self._fields.filled
         try:
-            command = forms.edit(self._entity, _named(filled, self._entity))
+            command = forms.edit(self._entity, filled, self._before)
         except errors.BadRequest as error:
             self._page.tell(error.text, "warning")
             return
@@ -119,8 +118,3 @@ async def _move(page: Page, names: tuple[str, ...], by: list[float | None]) -> N
             break
         done += 1
     page.tell(f"moved {done} of {len(names)}", "positive" if done == len(names) else "warning")
-
-
-def _named(filled: forms.Filled, entity: Entity) -> forms.Filled:
-    """The form has no field for the name, which stays."""
-    return structs.replace(filled, name=entity.name)

@@ -30,6 +30,7 @@ _OPTIONS: Final = {
     "defaultColDef": {"resizable": True, "sortable": True, "suppressMovable": True},
     "rowData": [],
     ":getRowId": "(row) => row.data.name",
+    ":getRowClass": "(row) => (window.semmapMarks ?? {})[row.data?.name]",
     "rowSelection": {"mode": "multiRow", "enableClickSelection": True, "headerCheckbox": True},
     "selectionColumnDef": {"width": 40, "pinned": "left"},
     "rowHeight": 30,
@@ -58,6 +59,8 @@ _SELECT: Final = """
         if (first) api.ensureNodeVisible(first);
     }
 """
+_MARK: Final = "window.semmapMarks = %s; getElement(%d)?.api?.redrawRows();"
+"""Rows that are otherwise than in the moment compared with; the rest is as it was drawn."""
 
 
 def entities(page: Page) -> None:
@@ -70,6 +73,7 @@ class _Entities:
         self._page, self._view = page, View.of(page)
         self._shown: dict[str, Cells] = {}
         self._is_ready = False
+        self._marked: dict[str, str] = {}
         with ui.column().classes("w-full gap-1 no-wrap").style("height: 100%; min-height: 320px"):
             self._draw_filter()
             self._grid = ui.aggrid({**_OPTIONS}, auto_size_columns=False, theme="balham")
@@ -81,6 +85,7 @@ class _Entities:
             js_handler=_CHOSEN_BY_HAND % self._grid.id,
         )
         page.on_select(self._select)
+        page.on_change(self._mark)
         self._view.on_touched(self._touch)
         self._view.on_wanted(self._look)
         self._view.now_and_then(self._offer, 2.0)
@@ -163,6 +168,13 @@ class _Entities:
             self._grid.run_grid_method(
                 "applyTransaction", {"add": news.add, "update": news.update, "remove": gone}
             )
+
+    def _mark(self) -> None:
+        """Mark what differs from the moment that the page compares with."""
+        marks = {name: f"semmap-is-{found.mark}" for name, found in self._page.differences.items()}
+        if marks != self._marked:
+            self._marked = marks
+            ui.run_javascript(_MARK % (json.dumps(marks), self._grid.id))
 
     def _say(self) -> None:
         self._count.text = counted(len(self._shown), len(self._page.state.entities))

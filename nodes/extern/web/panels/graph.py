@@ -50,7 +50,7 @@ class _Graph:
             self._chart = ui.echart(options(self._graph, {}, ()), on_point_click=self._click)
             self._chart.on("chart:dblclick", self._double_click, ["data"])
             self._chart.props('role="img" aria-label="Knowledge graph; the table below says the same"')
-            self._chart.classes("w-full border rounded").style(
+            self._chart.classes("w-full semmap-framed").style(
                 "height: calc(100vh - 330px); min-height: 20rem"
             )
             with ui.expansion("As a table", icon="table_rows").classes("w-full").props("dense"):

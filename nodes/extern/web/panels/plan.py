@@ -49,7 +49,7 @@ class _Plan:
                 ).tooltip("Save the plan as a file").mark("plan-download")
                 ui.button("Print", icon="print", on_click=self._print).props("dense no-caps flat")
             self._picture = ui.interactive_image(on_mouse=self._click, events=["click"], sanitize=False)
-            self._picture.classes("w-full border rounded").style("background: #fff")
+            self._picture.classes("w-full semmap-framed").style("background: #fff")
             self._picture.props('role="img" aria-label="Plan of the rooms and the furniture"').mark("plan")
         self._redrawing = Redrawing(page, self._draw)
         page.on_change(self._again)

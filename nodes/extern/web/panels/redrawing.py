@@ -1,12 +1,13 @@
-"""Drawing again what has become stale, but only while it is looked at, and not too often."""
+"""Drawing again what has become stale, but only while it is in view, and not too often."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator
 from typing import Final
 
 from nicegui import context, ui
+from nicegui.slot import Slot
 
 from nodes.extern.web.page import Page
 
@@ -14,23 +15,21 @@ _PAUSE_S: Final = 0.4
 
 
 class Redrawing:
-    """Calls `draw` when what it shows is stale and its tab is open; to be made where the panel is drawn."""
+    """Calls `draw` when what it shows is stale and it is in view; to be made where the panel is drawn."""
 
     def __init__(self, page: Page, draw: Callable[[], Awaitable[None]]) -> None:
         self._page = page
         self._draw = draw
         self._is_stale = True
         self._is_busy = False
-        self._panels = _panels()
-        for _, panels in self._panels:
-            panels.on_value_change(self._begin)
-        page.client.on_connect(self._begin)
+        self._within = tuple(_within())
+        page.on_turn(self._begin)
         self._begin()
 
     @property
     def is_shown(self) -> bool:
-        """Is every tab open that it is in?"""
-        return all(panels.value == panel.props["name"] for panel, panels in self._panels)
+        """Is all that it is in visible?"""
+        return all(element.visible for element in self._within)
 
     def stale(self, *_: object) -> None:
         """What it shows is no longer so."""
@@ -52,18 +51,9 @@ class Redrawing:
             self._is_busy = False
 
 
-def _panels() -> list[tuple[ui.tab_panel, ui.tab_panels]]:
-    """The tabs that what is being drawn is in, from the inside out."""
-    found: list[tuple[ui.tab_panel, ui.tab_panels]] = []
-    slot = context.slot
-    panel: ui.tab_panel | None = None
-    while True:
-        element = slot.parent
-        if isinstance(element, ui.tab_panel):
-            panel = element
-        elif isinstance(element, ui.tab_panels) and panel is not None:
-            found.append((panel, element))
-            panel = None
-        if element.parent_slot is None:
-            return found
-        slot = element.parent_slot
+def _within() -> Iterator[ui.element]:
+    """What that which is being drawn is in, from the inside out."""
+    slot: Slot | None = context.slot
+    while slot is not None:
+        yield slot.parent
+        slot = slot.parent.parent_slot

@@ -18,7 +18,6 @@ from schemas.sparql import SparqlResult
 
 _TIMEOUT_S: Final = 5.0
 _ROWS: Final = 10_000
-_DARK: Final = ".body--dark .sparql-editor .cm-editor { filter: invert(0.92) hue-rotate(180deg); }"
 
 
 def sparql(page: Page) -> None:
@@ -31,7 +30,6 @@ class _Sparql:
         self._page = page
         self._examples: dict[str, Example] = {}
         self._result: SparqlResult | None = None
-        ui.add_css(_DARK)
         with ui.column().classes("w-full gap-2"):
             with ui.row().classes("w-full items-center gap-2"):
                 self._choice = ui.select([], label="Examples that fit this map", on_change=self._take_example)
@@ -43,7 +41,7 @@ class _Sparql:
                 self._editor = ui.codemirror(
                     FIRST, language="SPARQL", line_wrapping=True, keymap={"Mod-Enter": self._ask}
                 )
-                self._editor.classes("w-full border rounded sparql-editor").style("height: 11rem")
+                self._editor.classes("w-full semmap-framed sparql-editor").style("height: 11rem")
             with ui.row().classes("w-full items-center gap-2"):
                 self._button = ui.button("Run", icon="play_arrow", on_click=self._ask).props("dense no-caps")
                 self._button.classes("px-3").tooltip("Ctrl+Enter").mark("sparql-run")

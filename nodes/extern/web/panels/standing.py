@@ -18,19 +18,11 @@ from schemas.sparql import RowsChanged
 MOST: Final = 8
 """Standing queries of one tab."""
 _MARKED_S: Final = 4.0
-_STYLE: Final = """
-.row-came { animation: row-came 4s ease-out; }
-.row-gone { opacity: .55; text-decoration: line-through; animation: row-gone 4s ease-out; }
-@keyframes row-came { from { background: rgba(46, 160, 67, .45); } to { background: transparent; } }
-@keyframes row-gone { from { background: rgba(218, 54, 51, .45); } to { background: transparent; } }
-@media (prefers-reduced-motion: reduce) { .row-came, .row-gone { animation: none; } }
-"""
 _SIGNS: Final = {"came": "+", "gone": "-", "": ""}
 
 
 def standing(page: Page) -> None:
     """The queries that are watched in this tab; others are begun from the SPARQL panel."""
-    ui.add_css(_STYLE)
     with ui.column().classes("w-full gap-2") as box:
         hint = ui.label("Nothing is watched yet: write a SELECT query above, and press Watch.")
         hint.classes("text-caption")

@@ -58,7 +58,7 @@ class _Timeline:
                 self._speed.props(f'{_SMALL} aria-label="Speed"')
                 compared = ui.select(_COMPARED, value=page.compared, label="marked against")
                 compared.props(_SMALL).classes("w-40 gt-sm")
-                compared.on_value_change(lambda event: page.compare(event.value))
+                compared.on_value_change(lambda event: self._compare(compared))
                 self._now = ui.button("Now", on_click=lambda: self._go(None))
                 self._now.props("dense unelevated color=warning text-color=black padding='2px 10px'")
                 self._now.tooltip("Back to now (Home)")
@@ -126,7 +126,12 @@ class _Timeline:
         finally:
             self._wanted = None
 
+    def _compare(self, choice: ui.select) -> None:
+        choice.run_method("blur")
+        self._page.compare(choice.value)
+
     def _go_to_when(self) -> None:
+        self._when.run_method("blur")  # so that Home goes back to now, and u undoes
         text = str(self._when.value or "").strip()
         if not text:
             return

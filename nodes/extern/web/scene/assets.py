@@ -5,21 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from nodes.drawing.surfaces import Kind, SurfaceCache
 from nodes.extern.web.live import Live
-from nodes.extern.web.moments import State
 from nodes.extern.web.scene.meshes import glb
-from nodes.extern.web.scene.picking import corners_of
 from nodes.extern.web.scene.shown import BOX, Key
 from schemas import errors, keys
 from schemas.entities import Size
-from schemas.scenes import Surface, SurfaceQuery, WorldQuery
+from schemas.scenes import Scene, Surface, SurfaceQuery, WorldQuery
 
 _AT_ONCE: Final = 50
-_FAR_M: Final = 100.0
 
 
 class Assets:
@@ -31,6 +25,7 @@ class Assets:
         self._surfaces = SurfaceCache()
         self._glbs: dict[Key, bytes] = {}
         self._run = ""
+        self._fetched: Scene | None = None
         self.walls: Surface | None = None
 
     def surface_of(self, model: str, size_m: Size) -> Surface | None:
@@ -49,7 +44,11 @@ class Assets:
 
     async def fetch(self) -> None:
         """Ask what bodies look like, as far as that was never told, and the world if it is another one."""
-        scene = self._live.scene
+        while (scene := self._live.scene) is not self._fetched:
+            await self._fetch(scene)
+            self._fetched = scene
+
+    async def _fetch(self, scene: Scene | None) -> None:
         if scene is None:
             return
         wanted = list(self._surfaces.wanted(scene.bodies).items())
@@ -73,16 +72,3 @@ class Assets:
             return
         for name, surface in told.surfaces.items():
             self._surfaces.take(kinds[name], surface)
-
-    def extent(self, state: State) -> NDArray[np.float64]:
-        """(N, 3) [m]: points around what there is, for a view of all of it; what is far off is left out."""
-        points = [
-            corners_of(entity.pose, entity.size_m or (0.1, 0.1, 0.1))
-            for entity in state.entities.values()
-            if entity.pose is not None
-        ]
-        if not points:
-            return np.empty((0, 3))
-        found = np.concatenate(points)
-        near = np.abs(found - np.median(found, axis=0)).max(axis=1) < _FAR_M
-        return np.asarray(found[near])

@@ -11,7 +11,8 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from schemas.entities import Vector
+from nodes.extern.web.scene.picking import corners_of
+from schemas.entities import Entity, Vector
 from schemas.relations import ViewPoint
 
 Floats = NDArray[np.float64]
@@ -21,6 +22,8 @@ FOV_RAD: Final = math.radians(40.0)
 _TILT_RAD: Final = math.radians(52.0)
 _MARGIN: Final = 1.06
 _FARTHEST_M: Final = 200.0
+_FAR_M: Final = 100.0
+_UNKNOWN_SIZE_M: Final = (0.1, 0.1, 0.1)
 _LABEL_PX: Final = 17.0
 _LETTER_PX: Final = 7.0
 _NEAREST_M: Final = 0.05
@@ -65,6 +68,19 @@ class View(Struct, frozen=True):
         east, north = ahead if math.hypot(*ahead) > 0.05 else up  # straight down: what is up in the picture
         px, py, pz = self.position_m
         return (px, py, pz, math.atan2(north, east))
+
+
+def extent(entities: Iterable[Entity]) -> Floats:
+    """(N, 3) [m]: points around what has a place, for a view of all of it; what is far off is left out."""
+    points = [
+        corners_of(entity.pose, entity.size_m or _UNKNOWN_SIZE_M)
+        for entity in entities
+        if entity.pose is not None
+    ]
+    if not points:
+        return np.empty((0, 3))
+    found = np.concatenate(points)
+    return np.asarray(found[np.abs(found - np.median(found, axis=0)).max(axis=1) < _FAR_M])
 
 
 def first_view(points: Floats, aspect: float) -> tuple[Vector, Vector]:

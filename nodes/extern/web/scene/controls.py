@@ -30,6 +30,7 @@ def scene(page: Page, tab: TabScene) -> None:
             _switch(tab, name)
         home = ui.button(icon="home", on_click=tab.look_over).tooltip("Look at everything")
         home.props('flat dense round color=secondary aria-label="Look at everything"')
+    said = ui.label().classes("semmap-unseen").props('role="status" aria-label="Selected"')
     past = ui.label().classes("semmap-scene-past").props('role="status"')
 
     def show() -> None:
@@ -37,6 +38,10 @@ def scene(page: Page, tab: TabScene) -> None:
         past.visible = not page.moment.is_now
         frame.classes(**{"remove" if page.moment.is_now else "add": "is-past"})
 
+    def say() -> None:
+        said.text = ", ".join(page.selected[:20])
+
+    page.on_select(say)
     page.on_change(show)
     page.on_moment(show)
     show()

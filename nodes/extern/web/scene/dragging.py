@@ -19,14 +19,17 @@ _STEP_UP_M: Final = 0.5
 _SMALL_M: Final = 0.45
 """What is no larger is put on what it is dragged over, if that is no more than a step up."""
 _CLEAR_M: Final = 0.003
+_EVEN_M: Final = 0.001
 
 
 class Gizmo:
     """Arrows along x, y and z and a ring about z; only about z does a hand turn things."""
 
-    def __init__(self, scene: SceneApi, dragged: Dragged) -> None:
+    def __init__(self, scene: SceneApi, dragged: Dragged, is_open: Callable[[], bool]) -> None:
+        """`is_open()`: the frame is still there; what was being dragged when it went was not let go."""
         self._scene = scene
         self._dragged = dragged
+        self._is_open = is_open
         self._handles: tuple[TransformControlsHandle, ...] = ()
         self._pose: Pose | None = None
 
@@ -42,7 +45,7 @@ class Gizmo:
             return
         self._pose = upright
         if not self._handles:
-            scale = min(1.4, max(0.45, 0.9 * max(size_m)))
+            scale = arm_m(size_m)
             self._handles = (
                 self._add("/gizmo/level", scale, (True, True, False)),
                 self._add("/gizmo/lift", scale, (False, False, True)),
@@ -73,10 +76,16 @@ class Gizmo:
                 if other is not handle and event.phase == "update":
                     other.position = pose.position_m
             self._pose = None  # it has to be put back if the thing stays where it was
-            self._dragged(event.phase, pose)
+            if event.phase != "end" or self._is_open():
+                self._dragged(event.phase, pose)
 
         handle.on_update(on_update)
         return handle
+
+
+def arm_m(size_m: Size) -> float:
+    """How long the arrows at a thing of this size are [m]."""
+    return min(1.4, max(0.45, 0.9 * max(size_m)))
 
 
 def _pose_of(handle: TransformControlsHandle) -> Pose:
@@ -92,6 +101,6 @@ def put_down(pose: Pose, size_m: Size, others: Iterable[Solid]) -> Pose:
     if max(size_m[:2]) > _SMALL_M:
         return pose
     support = support_m((x, y, z + _STEP_UP_M), others)
-    if support <= z - _CLEAR_M:
+    if support <= z + _EVEN_M:
         return pose
     return Pose(position_m=(x, y, support + _CLEAR_M), orientation_wxyz=pose.orientation_wxyz)

@@ -156,10 +156,10 @@ def stand_of(frame: CameraFrame) -> tuple[Vector, tuple[float, float, float, flo
     pose = np.array(frame.map_from_camera, dtype=float).reshape(4, 4)
     focal = float(np.array(frame.intrinsics).reshape(3, 3)[1, 1])
     x, y, z = (float(value) for value in pose[:3, 3])
-    return (x, y, z), _wxyz(pose[:3, :3]), 2.0 * math.atan(frame.height / 2.0 / focal)
+    return (x, y, z), wxyz_of(pose[:3, :3]), 2.0 * math.atan(frame.height / 2.0 / focal)
 
 
-def _wxyz(rotation: NDArray[np.float64]) -> tuple[float, float, float, float]:
+def wxyz_of(rotation: NDArray[np.float64]) -> tuple[float, float, float, float]:
     """The unit quaternion of a rotation (3, 3), by its largest component."""
     m = rotation
     squares = np.array(

@@ -32,7 +32,7 @@ class Stage:
     def show(self, page: Page) -> None:
         """A tab has been opened: its view, which is drawn as soon as its frame connects."""
         self._loop = asyncio.get_running_loop()
-        tab = self._tabs[page.id] = TabScene(page, self._assets)
+        tab = self._tabs[page.id] = TabScene(page, self._assets, self._server.is_open)
         page.draw_scene = lambda: scene(page, tab)
         page.client.on_delete(lambda: self._close(page.id))
         self._fetch()

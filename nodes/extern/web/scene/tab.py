@@ -13,7 +13,7 @@ from nodes.extern.web.differences import Mark
 from nodes.extern.web.page import Page, Place
 from nodes.extern.web.scene.assets import Assets
 from nodes.extern.web.scene.bodies import MODIFIERS, Bodies, Pixel
-from nodes.extern.web.scene.camera import FOV_RAD, View, first_view, uncrowded
+from nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, uncrowded
 from nodes.extern.web.scene.differences import drawn
 from nodes.extern.web.scene.dragging import Gizmo, Phase, put_down
 from nodes.extern.web.scene.marks import Labels, Lines, Rgb, Written, dashed, joined, line
@@ -54,6 +54,8 @@ _SKY: Final[Rgb] = (255, 255, 255)
 _GROUND: Final[Rgb] = (190, 180, 170)
 _LABELS_S: Final = 0.25
 _CLICK_S: Final = 0.15
+_TOLD_S: Final = 0.2
+"""After so long it is known that a body stands where it was put."""
 _RENDER_S: Final = (0.3, 1.0, 3.0, 8.0)
 _NAMED: Final = 50
 """Of so many selected things the names are written, whether or not there is room."""
@@ -62,10 +64,12 @@ _NAMED: Final = 50
 class TabScene:
     """It belongs to the event loop of the page; viser's thread only hands over."""
 
-    def __init__(self, page: Page, assets: Assets) -> None:
+    def __init__(self, page: Page, assets: Assets, is_open: Callable[[int], bool]) -> None:
+        """`is_open(client_id)`: a client of viser's is still there; it may be called on any thread."""
         self.page = page
         self.on: set[Switch] = set(_ON)
         self._assets = assets
+        self._is_open = is_open
         self._loop = asyncio.get_running_loop()
         self._client: ClientHandle | None = None
         self._things: dict[str, Shown] = {}
@@ -107,7 +111,7 @@ class TabScene:
         self._difference_labels = Labels(scene, "/differences/names")
         self._dragged = Bodies(scene, self._glb_of, None, "/dragged")
         self._nudge = scene.add_frame("/nudge", show_axes=False)
-        self._gizmo = Gizmo(scene, self._hop(self._on_drag))
+        self._gizmo = Gizmo(scene, self._hop(self._on_drag), lambda: self._is_open(client.client_id))
         self._seen = Seen(scene, self.page.live)
         self._listen(client)
         self._on_look()
@@ -174,7 +178,7 @@ class TabScene:
             return
         camera = self._client.camera
         aspect = camera.image_width / max(1, camera.image_height)
-        eye, target = first_view(self._assets.extent(self.page.state), aspect)
+        eye, target = first_view(extent(self.page.state.entities.values()), aspect)
         camera.position, camera.look_at = eye, target
 
     def _on_look(self) -> None:
@@ -419,7 +423,9 @@ class TabScene:
         thing = self._things[name]
         target = put_down(pose, thing.size_m, self._solids(without=name))
         self._copy(target)
-        await self.page.change(Move(name=name, at=target.position_m, yaw=target.yaw_rad, carry=True))
+        done = await self.page.change(Move(name=name, at=target.position_m, yaw=target.yaw_rad, carry=True))
+        if done is not None:
+            await asyncio.sleep(_TOLD_S)
         self._dragging = ""
         if self._client is not None:
             self._dragged.show({})

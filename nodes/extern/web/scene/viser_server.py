@@ -50,6 +50,10 @@ class SceneServer:
         """The open tab (`Page.id`) whose frame a client of viser's is; nothing for one that is gone."""
         return self._pages.get(client_id, "")
 
+    def is_open(self, client_id: int) -> bool:
+        """Is this client of viser's still there?"""
+        return client_id in self.viser.get_clients()
+
     def close(self) -> None:
         """End it."""
         with contextlib.redirect_stdout(io.StringIO()):

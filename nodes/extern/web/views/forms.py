@@ -70,9 +70,13 @@ def filled_from(entity: Entity) -> Filled:
     )
 
 
-def edit(entity: Entity, filled: Filled) -> Update | None:
-    """What was changed in the form, and nothing else; None where nothing was."""
-    before = filled_from(entity)
+def edit(entity: Entity, filled: Filled, before: Filled | None = None) -> Update | None:
+    """What was changed in the form since it was as `before`, and nothing else; None where nothing was.
+
+    The entity may have changed meanwhile: what nobody touched in the form stays as it is now.
+    """
+    if before is None:
+        before = filled_from(entity)
     if before == filled:
         return None
     if not filled.class_.strip():

@@ -64,7 +64,7 @@ def options(
                 "roam": True,
                 "edgeSymbol": ["none", "arrow"],
                 "edgeSymbolSize": 7,
-                "lineStyle": {"color": _EDGE, "width": 1.2, "curveness": 0.06},
+                "lineStyle": {"color": _EDGE, "width": 1.2, "opacity": 1, "curveness": 0.06},
                 "edgeLabel": {"show": few, "fontSize": 10, "color": _TEXT},
                 "emphasis": {"focus": "adjacency", "edgeLabel": {"show": True}},
                 "data": [

@@ -79,6 +79,13 @@ def test_only_what_was_changed_is_sent(changed, command):
     assert forms.edit(CUP, structs.replace(forms.filled_from(CUP), **changed)) == command
 
 
+def test_what_changed_meanwhile_and_nobody_touched_stays():
+    before = forms.filled_from(CUP)
+    fallen = structs.replace(CUP, pose=thing("x", at=(1.0, 2.0, 0.0)).pose)
+    filled = structs.replace(before, ref="my cup")
+    assert forms.edit(fallen, filled, before) == Update(name="cup1", ref="my cup")
+
+
 @pytest.mark.parametrize(
     "emptied", [{"class_": " "}, {"ref": ""}, {"at": (None, None, None)}, {"size": (None, None, None)}]
 )

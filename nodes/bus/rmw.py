@@ -1,0 +1,141 @@
+"""ROS 2's way over Zenoh, as rmw_zenoh documents it: keys, attachments and tokens of one node's endpoints.
+
+Data goes by `<domain>/<topic>/<type>/<hash>`, in CDR, with an attachment that numbers and dates it. A
+liveliness token tells others of each endpoint. Latched publications are kept in the publisher's cache, where
+late subscribers ask for them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import struct
+import time
+from collections.abc import Callable
+from typing import Any, Final, NamedTuple
+
+import zenoh
+from zenoh import ext
+
+from nodes.bus import pieces
+
+_SPACE: Final = "@ros2_lv"
+_DEPTH: Final = 10
+_CDR: Final = "application/cdr"
+_ATTACHED: Final = struct.Struct("<qqB16s")
+
+
+class RosTopic(NamedTuple):
+    """A topic: its name as in `/map`, its type as in `nav_msgs/msg/OccupancyGrid`, and that type's hash.
+
+    What is `latched` reaches subscribers that come later, too.
+    """
+
+    name: str
+    type: str
+    hash: str
+    latched: bool = False
+    reliable: bool = True
+
+    def key(self, domain: int) -> str:
+        """Where its messages go."""
+        return f"{domain}/{self.name.strip('/')}/{self._dds_type}/{self.hash}"
+
+    @property
+    def qos(self) -> str:
+        """Its quality of service in a token; what is empty is the default."""
+        reliability = "" if self.reliable else "2"
+        return f"{reliability}:{'1' if self.latched else ''}:,{1 if self.latched else _DEPTH}:,:,:,,"
+
+    @property
+    def token(self) -> str:
+        """How tokens of its endpoints end."""
+        return f"{self.name.replace('/', '%')}/{self._dds_type}/{self.hash}/{self.qos}"
+
+    @property
+    def tokens(self) -> str:
+        """The same, whatever the quality of service."""
+        return f"{self.name.replace('/', '%')}/{self._dds_type}/{self.hash}/*"
+
+    @property
+    def _dds_type(self) -> str:
+        package, kind, name = self.type.split("/")
+        return f"{package}::{kind}::dds_::{name}_"
+
+
+class RosNode:
+    """A node of ROS's graph in one session, until that is closed. Any thread may use it."""
+
+    def __init__(self, session: zenoh.Session, name: str, domain: int) -> None:
+        self._session, self._name, self._domain = session, name, domain
+        self._numbers = itertools.count(1)
+        self._space = f"{_SPACE}/{domain}/{session.zid()}/0"
+        self._kept: list[object] = []
+        """Zenoh ends what nobody holds."""
+        self._kept.append(session.liveliness().declare_token(f"{self._space}/0/NN/%/%/{name}"))
+
+    def publish(self, topic: RosTopic) -> RosPublisher:
+        """A publisher of a topic."""
+        token = self._announce("MP", topic)
+        made = RosPublisher(self._session, topic, topic.key(self._domain), token)
+        self._kept.append(made)
+        return made
+
+    def subscribe(self, topic: RosTopic, receive: Callable[[bytes], None]) -> None:
+        """Each message of a topic goes to `receive(cdr)`, on a thread of Zenoh's, unless it is too large."""
+
+        def on_sample(sample: zenoh.Sample) -> None:
+            if len(sample.payload) <= pieces.PLANE:
+                receive(sample.payload.to_bytes())
+
+        key = topic.key(self._domain)
+        if topic.latched:
+            ext.declare_advanced_subscriber(
+                self._session,
+                key,
+                on_sample,
+                history=ext.HistoryConfig(detect_late_publishers=True, max_samples=1),
+            )
+        else:
+            self._session.declare_subscriber(key, on_sample)
+        self._announce("MS", topic)
+
+    def when_subscribed(self, topic: RosTopic, told: Callable[[], None]) -> None:
+        """Call `told()` for each subscriber of a topic that there is or that comes."""
+
+        def on_sample(sample: zenoh.Sample) -> None:
+            if sample.kind == zenoh.SampleKind.PUT:
+                told()
+
+        of_topic = f"{_SPACE}/{self._domain}/*/*/*/MS/*/*/*/{topic.tokens}"
+        self._session.liveliness().declare_subscriber(of_topic, on_sample, history=True)
+
+    def _announce(self, kind: str, topic: RosTopic) -> str:
+        token = f"{self._space}/{next(self._numbers)}/{kind}/%/%/{self._name}/{topic.token}"
+        self._kept.append(self._session.liveliness().declare_token(token))
+        return token
+
+
+class RosPublisher:
+    """Of one topic."""
+
+    def __init__(self, session: zenoh.Session, topic: RosTopic, key: str, token: str) -> None:
+        self._sequence = itertools.count(1)
+        self._gid = hashlib.blake2b(token.encode(), digest_size=16).digest()
+        wait = zenoh.CongestionControl.BLOCK if topic.reliable else zenoh.CongestionControl.DROP
+        if topic.latched:
+            self._publisher: Any = ext.declare_advanced_publisher(
+                session,
+                key,
+                congestion_control=wait,
+                cache=ext.CacheConfig(max_samples=1),
+                sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=None),
+                publisher_detection=True,
+            )
+        else:
+            self._publisher = session.declare_publisher(key, congestion_control=wait)
+
+    def put(self, cdr: bytes | memoryview) -> None:
+        """Publish a message, now."""
+        attached = _ATTACHED.pack(next(self._sequence), time.time_ns(), len(self._gid), self._gid)
+        self._publisher.put(bytes(cdr), encoding=_CDR, attachment=attached)

@@ -1,0 +1,209 @@
+"""The map on ROS's topics: it follows map and poses, and publishes what differs from what it published."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from typing import Any, Final, NamedTuple
+
+from nodes.bus.rmw import RosNode, RosPublisher, RosTopic
+from nodes.drawing.scene_state import SceneState
+from nodes.drawing.surfaces import Kind, SurfaceCache
+from nodes.extern.ros import messages
+from nodes.extern.ros.messages import Moment
+from nodes.extern.ros.things import Thing, things_of
+from nodes.extern.ros.types import encode, topic
+from nodes.runtime.following import Follower
+from nodes.runtime.loop import Node
+from nodes.runtime.map_replica import MapReplica
+from schemas import keys
+from schemas.commits import Effects
+from schemas.entities import Pose
+from schemas.live import LivePoses
+from schemas.scenes import Poses, Scene, SceneQuery, Surface, SurfaceQuery, Surfaces
+
+_TICK_S: Final = 0.05
+_AGAIN_S: Final = 1.0
+"""Transforms of what does not move are said so often: listeners forget old ones."""
+_WHOLE_S: Final = 0.5
+"""What is published as a whole, and a scene to plan in, is so no more often."""
+_GREETING_S: Final = (0.0, 1.0, 4.0)
+_SURFACES_AT_ONCE: Final = 50
+
+
+class Topics(NamedTuple):
+    """The topics of the map. Names begin with a slash."""
+
+    detections: RosTopic
+    markers: RosTopic
+    transforms: RosTopic
+    planning_scene: RosTopic
+
+
+def topics(prefix: str = "/semmap", planning_scene: str = "/planning_scene") -> Topics:
+    """Detections and markers are of semmap and latched; transforms and planning scene are where ROS looks."""
+    return Topics(
+        detections=topic(f"{prefix}/detections", "vision_msgs/msg/Detection3DArray", latched=True),
+        markers=topic(f"{prefix}/markers", "visualization_msgs/msg/MarkerArray", latched=True),
+        transforms=topic("/tf", "tf2_msgs/msg/TFMessage"),
+        planning_scene=topic(planning_scene, "moveit_msgs/msg/PlanningScene"),
+    )
+
+
+class Bridge:
+    """Binds the map to ROS's topics. Owned by the node's thread."""
+
+    def __init__(
+        self,
+        node: Node,
+        ros: RosNode,
+        of: Topics,
+        *,
+        frame: str = "map",
+        meshes: bool = False,
+        period_s: float = 0.1,
+        tell: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        """`frame` is what the map's frame is called in ROS; transforms are published each `period_s`."""
+        self._node, self._frame, self._period_s, self._tell = node, frame, period_s, tell
+        self._map = MapReplica[Effects]()
+        self._scene = SceneState()
+        self._fetching = False
+        self._live: dict[str, Pose] = {}
+        self._surfaces: SurfaceCache | None = SurfaceCache() if meshes else None
+        self._things: dict[str, Thing] = {}
+        self._is_stale = True
+        self._said: dict[str, Thing] | None = None
+        self._planned: dict[str, Thing] = {}
+        self._transformed: dict[str, Thing] = {}
+        self._due_s = dict.fromkeys(("whole", "transforms", "again"), 0.0)
+        self._publishers: dict[RosTopic, RosPublisher] = {made: ros.publish(made) for made in of}
+        self._topics = of
+        Follower(node, self._map, keys.EFFECTS, heard=lambda _, __: self._stir(), begun=self._begun)
+        node.follow_newest(keys.POSES, self._on_poses)
+        node.follow_newest(keys.LIVE_POSES, self._on_live)
+        ros.when_subscribed(of.planning_scene, lambda: node.soon(self._greet))
+        node.every(_TICK_S, self._tick)
+
+    # What is known
+
+    def _begun(self, _: Any) -> None:
+        self._stir()
+        self._tell(f"publishing {len(self._map.entities)} entities as of commit {self._map.seq}")
+        self._node.ready("publishing to ROS")
+
+    def _stir(self) -> None:
+        self._is_stale = True
+
+    def _on_poses(self, poses: Poses) -> None:
+        if not self._scene.matches(poses):
+            self._fetch_scene()
+        elif any(self._scene.follow(poses)):
+            self._stir()
+
+    def _on_live(self, live: LivePoses) -> None:
+        self._live = {name: said.pose for name, said in live.entities.items()}
+        self._stir()
+
+    def _fetch_scene(self) -> None:
+        if self._fetching:
+            return
+        self._fetching = True
+
+        def on_scene(done: Future[Scene]) -> None:
+            self._fetching = False
+            if done.exception() is None:
+                self._scene.take(done.result())
+                self._stir()
+                self._fetch_surfaces()
+
+        self._node.ask_later(keys.SIM, SceneQuery()).add_done_callback(on_scene)
+
+    def _fetch_surfaces(self) -> None:
+        if (cache := self._surfaces) is None:
+            return
+        wanted = list(cache.wanted(self._scene.bodies.values()).items())
+        for start in range(0, len(wanted), _SURFACES_AT_ONCE):
+            self._fetch_some(cache, dict(wanted[start : start + _SURFACES_AT_ONCE]))
+
+    def _fetch_some(self, cache: SurfaceCache, kinds: dict[str, Kind]) -> None:
+        def on_surfaces(done: Future[Surfaces]) -> None:
+            if done.exception() is not None:
+                cache.give_up(kinds.values())
+                return
+            for name, surface in done.result().surfaces.items():
+                cache.take(kinds[name], surface)
+            self._plan_anew()
+
+        self._node.ask_later(keys.SIM, SurfaceQuery(names=tuple(kinds))).add_done_callback(on_surfaces)
+
+    def _looks(self) -> Mapping[str, Surface]:
+        if (cache := self._surfaces) is None:
+            return {}
+        known = {name: cache.of(body) for name, body in self._scene.bodies.items()}
+        return {name: surface for name, surface in known.items() if surface is not None}
+
+    # What is said
+
+    def _tick(self) -> None:
+        if self._map.seq < 0:
+            return
+        if self._is_stale:
+            self._is_stale = False
+            self._things = things_of(self._map.entities.values(), self._scene.bodies, self._live)
+        at = Moment(self._frame, time.time_ns())
+        if self._is_due("transforms", self._period_s):
+            self._transform(at)
+        if _differ(self._things, self._said) and self._is_due("whole", _WHOLE_S):
+            self._said = self._things
+            self._put(self._topics.detections, messages.detections(self._things.values(), at))
+            self._put(self._topics.markers, messages.markers(self._things.values(), at))
+            self._plan(at)
+
+    def _transform(self, at: Moment) -> None:
+        """Those that moved; and all of them now and then."""
+        before = {} if self._is_due("again", _AGAIN_S) else self._transformed
+        news = [t for t in self._things.values() if t.name not in before or not t.stands_as(before[t.name])]
+        self._transformed = self._things
+        if news:
+            self._put(self._topics.transforms, messages.transforms(news, at))
+
+    def _plan(self, at: Moment) -> None:
+        before, self._planned = self._planned, self._things
+        scene = messages.planning_scene(self._things, before, self._looks(), at)
+        if scene is not None:
+            self._put(self._topics.planning_scene, scene)
+
+    def _greet(self) -> None:
+        """Somebody has come who knows nothing yet; the token may be here before there are ears."""
+        for delay_s in _GREETING_S:
+            self._node.later(delay_s, self._plan_anew)
+
+    def _plan_anew(self) -> None:
+        """All of it is said again."""
+        self._planned = {name: thing for name, thing in self._planned.items() if name not in self._things}
+        if self._things:
+            self._plan(Moment(self._frame, time.time_ns()))
+
+    def _put(self, of: RosTopic, message: Any) -> None:
+        self._publishers[of].put(encode(message))
+
+    def _is_due(self, what: str, period_s: float) -> bool:
+        now_s = time.monotonic()
+        if now_s < self._due_s[what]:
+            return False
+        self._due_s[what] = now_s + period_s
+        return True
+
+
+def _differ(one: Mapping[str, Thing], other: Mapping[str, Thing] | None) -> bool:
+    if one is other:
+        return False
+    return (
+        other is None
+        or one.keys() != other.keys()
+        or any(
+            not thing.is_like(other[name]) or not thing.stands_as(other[name]) for name, thing in one.items()
+        )
+    )

@@ -1,0 +1,128 @@
+"""A depth camera of ROS: its colour, depth and intrinsics, put together to frames for perception."""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections import deque
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from msgspec import structs
+
+from nodes.extern.ros.frames import Frames
+from nodes.extern.ros.pictures import colour_of, depth_of
+from schemas import errors
+from schemas.entities import NAME_PATTERN
+from schemas.scenes import CameraFrame
+
+_APART_NS: Final = 30_000_000
+"""Colour and depth that were taken within that are of one frame, as drivers stamp them."""
+_KEPT: Final = 8
+
+
+class CameraTopics(NamedTuple):
+    """A camera's name, and the topics of its colour, depth (registered to the colour) and intrinsics."""
+
+    name: str
+    colour: str
+    depth: str
+    info: str
+
+
+class Planes(NamedTuple):
+    """A frame: what goes with its colour and its depth, and both."""
+
+    colour: CameraFrame
+    depth: CameraFrame
+    rgb: bytes
+    depth_m: bytes
+
+
+def camera_topics(said: str) -> CameraTopics:
+    """`NAME=COLOUR,DEPTH,INFO`. Raises BadRequest for anything else."""
+    name, _, rest = said.partition("=")
+    parts = rest.split(",")
+    if not re.match(NAME_PATTERN, name) or len(parts) != 3 or not all(_is_topic(part) for part in parts):
+        raise errors.BadRequest(
+            f"'{said}' is no camera; example: front=/camera/color/image_raw,/camera/aligned_depth_to_color"
+            "/image_raw,/camera/color/camera_info"
+        )
+    return CameraTopics(name, *parts)
+
+
+def _is_topic(name: str) -> bool:
+    return re.fullmatch(r"(/[A-Za-z_][A-Za-z0-9_]*)+", name) is not None
+
+
+class Camera:
+    """Puts together what comes of one camera. Any thread may use it."""
+
+    def __init__(self, name: str, frames: Frames, base: str) -> None:
+        """`base` is what ROS calls the frame of the map."""
+        self.name = name
+        self._frames, self._base = frames, base
+        self._lock = threading.Lock()
+        self._info: Any = None
+        self._colours: deque[Any] = deque(maxlen=_KEPT)
+        self._depths: deque[Any] = deque(maxlen=_KEPT)
+
+    def take_info(self, info: Any) -> None:
+        """A `sensor_msgs/CameraInfo`."""
+        self._info = info
+
+    def take_colour(self, image: Any) -> Planes | None:
+        """A `sensor_msgs/Image`; the frame that it makes whole. Raises BadRequest for what makes no sense."""
+        with self._lock:
+            self._colours.append(image)
+            return self._paired()
+
+    def take_depth(self, image: Any) -> Planes | None:
+        """The same of a depth picture."""
+        with self._lock:
+            self._depths.append(image)
+            return self._paired()
+
+    def _paired(self) -> Planes | None:
+        if not self._colours or not self._depths or self._info is None:
+            return None
+        apart, colour, depth = min(
+            (
+                (abs(_stamp_ns(colour) - _stamp_ns(depth)), colour, depth)
+                for colour in self._colours
+                for depth in self._depths
+            ),
+            key=lambda pair: pair[0],
+        )
+        if apart > _APART_NS:
+            return None
+        self._colours.clear()
+        self._depths.clear()
+        return self._frame(colour, depth)
+
+    def _frame(self, colour: Any, depth: Any) -> Planes:
+        info, stamp_ns = self._info, _stamp_ns(depth)
+        if (info.width, info.height) != (depth.width, depth.height):
+            raise errors.BadRequest(
+                f"camera {self.name}: its intrinsics are of {info.width} x {info.height} pixels, its depth"
+                f" has {depth.width} x {depth.height}; use the camera_info of that very picture"
+            )
+        intrinsics = np.array(info.k, float).reshape(3, 3)
+        intrinsics[:2, 2] += 0.5  # in ROS the middle of the first pixel is at (0, 0)
+        where = self._frames.pose(depth.header.frame_id, self._base, stamp_ns)
+        told = CameraFrame(
+            camera=self.name,
+            encoding="depth32f",
+            width=depth.width,
+            height=depth.height,
+            stamp_ns=stamp_ns,
+            sim_time_s=stamp_ns / 1e9,
+            intrinsics=tuple(intrinsics.ravel().tolist()),
+            map_from_camera=tuple(where.ravel().tolist()),
+        )
+        coloured = structs.replace(told, encoding="rgb8", width=colour.width, height=colour.height)
+        return Planes(coloured, told, colour_of(colour), depth_of(depth))
+
+
+def _stamp_ns(image: Any) -> int:
+    return int(image.header.stamp.sec) * 1_000_000_000 + int(image.header.stamp.nanosec)

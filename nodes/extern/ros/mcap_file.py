@@ -1,0 +1,130 @@
+"""A span of the map's history as an MCAP file, with the topics that are published live."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import IO, Any, Final, NamedTuple
+
+from mcap.writer import Writer
+
+from nodes import bus
+from nodes.bus.rmw import RosTopic
+from nodes.extern.client import Client
+from nodes.extern.ros import messages
+from nodes.extern.ros.bridge import Topics
+from nodes.extern.ros.messages import Moment
+from nodes.extern.ros.things import Thing, things_of
+from nodes.extern.ros.types import encode, store
+from nodes.runtime.version import version
+from schemas import errors, keys
+from schemas.bridge import Recall
+from schemas.calls import reply_type
+from schemas.commits import Commit
+from schemas.entities import Entity
+
+_AT_ONCE: Final = 100
+_MOST: Final = 10_000
+_RECALL_S: Final = 30.0
+
+
+class State(NamedTuple):
+    """The map as of a commit, and when that was."""
+
+    commit: int
+    stamp_ns: int
+    things: dict[str, Thing]
+
+
+def states(client: Client, since: str | None, until: str | None) -> Iterator[State]:
+    """The map before a span, and after each commit in it, in order.
+
+    Raises BadRequest for a span without commits, or with more than ten thousand.
+    """
+    rows = client.history(since=since, until=until, limit=_MOST)
+    if not rows:
+        raise errors.BadRequest("there is no commit in that span; semmap history shows when there were some")
+    if len(rows) == _MOST:
+        raise errors.BadRequest(f"there are {_MOST:,} commits in that span or more; choose a shorter one")
+    return _states(client, [row.seq for row in rows], rows[0].stamp_ns)
+
+
+def _states(client: Client, seqs: list[int], began_ns: int) -> Iterator[State]:
+    first = seqs[0]
+    before = client.list(as_of=str(first - 1)) if first > 1 else ()
+    entities = {entity.name: entity for entity in before}
+    yield State(first - 1, began_ns, things_of(entities.values(), {}, {}))
+    for commit in _recalled(client, seqs):
+        if commit.abridged is not None or commit.tbox:
+            entities = {entity.name: entity for entity in client.list(as_of=str(commit.seq))}
+        else:
+            _follow(entities, commit)
+        yield State(commit.seq, commit.stamp_ns, things_of(entities.values(), {}, {}))
+
+
+def _follow(entities: dict[str, Entity], commit: Commit) -> None:
+    for gone in commit.removed:
+        entities.pop(gone.name, None)
+    for entity in commit.changed:
+        entities[entity.name] = entity
+
+
+def _recalled(client: Client, seqs: list[int]) -> Iterator[Commit]:
+    for start in range(0, len(seqs), _AT_ONCE):
+        some = tuple(seqs[start : start + _AT_ONCE])
+        commits: tuple[Commit, ...] = bus.ask(
+            client.session,
+            keys.BRIDGE,
+            Recall.VERB,
+            Recall(seqs=some),
+            reply_type(Recall),
+            timeout_s=_RECALL_S,
+        )
+        yield from commits
+
+
+def write(path: Path, found: Iterable[State], of: Topics, *, frame: str = "map") -> int:
+    """Write them to a file that is not there yet, and return how many messages it holds.
+
+    Raises BadFile where it cannot be written.
+    """
+    try:
+        with path.open("xb") as file:
+            return _Recording(file, of, frame).fill(found)
+    except FileExistsError:
+        raise errors.BadFile(f"{path} is there already; choose another name") from None
+    except OSError as error:
+        raise errors.BadFile(f"{path} cannot be written: {error.strerror}") from None
+
+
+class _Recording:
+    def __init__(self, file: IO[bytes], of: Topics, frame: str) -> None:
+        self._writer, self._of, self._frame = Writer(file), of, frame
+        self._writer.start(profile="ros2", library=f"semmap {version()}")
+        self._channels = {made: self._channel(made) for made in of}
+        self._count = 0
+
+    def _channel(self, made: RosTopic) -> int:
+        text, _ = store().generate_msgdef(made.type, ros_version=2)
+        schema = self._writer.register_schema(made.type, "ros2msg", text.encode())
+        return self._writer.register_channel(made.name, "cdr", schema)
+
+    def fill(self, found: Iterable[State]) -> int:
+        before: dict[str, Thing] = {}
+        for state in found:
+            at = Moment(self._frame, state.stamp_ns)
+            things = state.things.values()
+            self._add(self._of.detections, messages.detections(things, at), state)
+            self._add(self._of.markers, messages.markers(things, at), state)
+            self._add(self._of.transforms, messages.transforms(things, at), state)
+            if (scene := messages.planning_scene(state.things, before, {}, at)) is not None:
+                self._add(self._of.planning_scene, scene, state)
+            before = state.things
+        self._writer.finish()  # type: ignore[no-untyped-call]
+        return self._count
+
+    def _add(self, made: RosTopic, message: Any, state: State) -> None:
+        self._count += 1
+        self._writer.add_message(
+            self._channels[made], state.stamp_ns, encode(message), state.stamp_ns, state.commit
+        )

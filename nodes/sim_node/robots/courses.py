@@ -1,0 +1,124 @@
+"""Courses: mobile bases on their way, steered by the velocity actuators of their models."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import mujoco
+import numpy as np
+
+from nodes.sim_node.bodies import BodyIndex
+
+Outcome = Literal["there", "blocked", "fallen", "stopped"]
+ACTUATORS: Final = ("drive_x", "drive_y", "drive_yaw")
+"""Velocities along and about the base's own axes; in the world each is called `NAME_drive_x`."""
+
+_NEAR_M, _PASSED_M, _FAR_M = 0.015, 0.15, 0.3
+_TURNED_RAD, _AHEAD_RAD = 0.02, 0.3
+"""It turns to where it goes before it goes there, if that is far, so that its cameras see what is ahead."""
+_TURN_GAIN, _TURN_RAD_S, _GAIN = 2.5, 1.2, 1.6
+_STUCK_S, _PROGRESS = 4.0, 0.01
+_UPRIGHT = 0.85
+"""The cosine of how far it may lean, 32 degrees: beyond that it has fallen."""
+
+
+@dataclass
+class _Course:
+    points: list[tuple[float, float]]
+    yaw_rad: float | None
+    speed_m_s: float
+    left: float = math.inf
+    """How far it was from its next point at best [m + rad]."""
+    better_s: float = 0.0
+    """When that was, in simulated time."""
+
+
+def actuators(model: mujoco.MjModel, name: str) -> tuple[int, ...]:
+    """The three that drive a robot's base; nothing if it lacks one."""
+    found = tuple(
+        mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, f"{name}_{axis}") for axis in ACTUATORS
+    )
+    return found if min(found) >= 0 else ()
+
+
+class Courses:
+    """Those under way, by robot; owned by the engine, which lets them `steer` every few steps."""
+
+    def __init__(self) -> None:
+        """Nobody drives."""
+        self._under_way: dict[str, _Course] = {}
+        self.ended: dict[str, Outcome] = {}
+        """How the courses ended that nobody has asked about yet."""
+
+    def __bool__(self) -> bool:
+        return bool(self._under_way)
+
+    def begin(
+        self, name: str, points: Sequence[tuple[float, float]], yaw_rad: float | None, speed_m_s: float
+    ) -> None:
+        """Drive through these points [m], and face `yaw_rad` at the last; another course is given up."""
+        if name in self._under_way:
+            self.ended[name] = "stopped"
+        self._under_way[name] = _Course(list(points), yaw_rad, speed_m_s)
+
+    def stop(self, model: mujoco.MjModel, data: mujoco.MjData, name: str, outcome: Outcome) -> None:
+        """End a course, if there is one; the base stands still."""
+        if self._under_way.pop(name, None) is not None:
+            data.ctrl[list(actuators(model, name))] = 0.0
+            self.ended[name] = outcome
+
+    def steer(self, model: mujoco.MjModel, data: mujoco.MjData, index: BodyIndex) -> None:
+        """Work out the velocities of all that drive."""
+        for name, course in list(self._under_way.items()):
+            row = index.row.get(name)
+            wheels = actuators(model, name)
+            if row is None or index.qpos[row] < 0 or not wheels:
+                self._under_way.pop(name)
+                self.ended[name] = "blocked"
+                continue
+            outcome = self._steer(data, index, row, wheels, course)
+            if outcome is not None:
+                self.stop(model, data, name, outcome)
+
+    def _steer(
+        self, data: mujoco.MjData, index: BodyIndex, row: int, wheels: tuple[int, ...], course: _Course
+    ) -> Outcome | None:
+        address = int(index.qpos[row])
+        x, y, _, qw, qx, qy, qz = data.qpos[address : address + 7].tolist()
+        if 1.0 - 2.0 * (qx * qx + qy * qy) < _UPRIGHT:
+            return "fallen"
+        yaw = math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
+        ox, oy = float(index.origin_m[row][0]), float(index.origin_m[row][1])
+        x, y = x + math.cos(yaw) * ox - math.sin(yaw) * oy, y + math.sin(yaw) * ox + math.cos(yaw) * oy
+        goal_x, goal_y = course.points[0]
+        away_m, heading = math.hypot(goal_x - x, goal_y - y), math.atan2(goal_y - y, goal_x - x)
+        is_last = len(course.points) == 1
+        if not is_last and away_m < _PASSED_M:
+            course.points.pop(0)
+            course.left = math.inf
+            return None
+        is_far = away_m > _FAR_M
+        wanted = heading if is_far else course.yaw_rad if is_last and course.yaw_rad is not None else yaw
+        turn = _wrapped(wanted - yaw)
+        if is_last and away_m < _NEAR_M and abs(turn) < _TURNED_RAD:
+            return "there"
+        if (left := away_m + abs(turn)) < course.left - _PROGRESS:
+            course.left, course.better_s = left, data.time
+        elif data.time - course.better_s > _STUCK_S:
+            return "blocked"
+        speed = 0.0 if is_far and abs(turn) > _AHEAD_RAD else min(course.speed_m_s, _GAIN * away_m)
+        along = heading - yaw
+        data.ctrl[list(wheels)] = (
+            speed * math.cos(along),
+            speed * math.sin(along),
+            float(np.clip(_TURN_GAIN * turn, -_TURN_RAD_S, _TURN_RAD_S)),
+        )
+        return None
+
+
+def _wrapped(angle_rad: float) -> float:
+    """The same angle in [-pi, pi]."""
+    return math.remainder(angle_rad, 2.0 * math.pi)

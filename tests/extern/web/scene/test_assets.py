@@ -1,0 +1,76 @@
+"""Surfaces are asked for once, and again when there are new kinds."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from nodes.extern.web.scene.assets import Assets
+from schemas import errors
+from schemas.scenes import Scene, SurfaceQuery, Surfaces
+from tests.extern.web.scene.things import body, surface
+
+
+def scene(*bodies, run="1"):
+    return Scene(run=run, version=1, stamp_ns=1, sim_time_s=0.0, world="flat", bodies=bodies)
+
+
+class Live:
+    """Stands in for the page's: a simulator that answers, refuses, or changes meanwhile."""
+
+    def __init__(self, now):
+        self.scene, self.asked, self.refuses, self.meanwhile = now, [], False, None
+
+    async def query(self, prefix, call):
+        self.asked.append(call.VERB)
+        if self.meanwhile is not None:
+            self.scene, self.meanwhile = self.meanwhile, None
+        if self.refuses:
+            raise errors.NoAnswer("no simulator answers")
+        if isinstance(call, SurfaceQuery):
+            return Surfaces(surfaces={name: surface() for name in call.names})
+        return surface((4.0, 0.1, 2.5))
+
+
+@pytest.fixture
+def made():
+    live, changed = Live(scene(body("chair1"), body("chair2"))), []
+    return Assets(live, lambda: changed.append(True)), live, changed
+
+
+def test_each_kind_is_asked_for_once_and_the_walls_with_them(made):
+    assets, live, changed = made
+    asyncio.run(assets.fetch())
+    asyncio.run(assets.fetch())
+    assert live.asked == ["surfaces", "world"]
+    assert assets.surface_of("chair", (0.5, 0.5, 1.0)) == surface()
+    assert assets.walls is not None
+    assert changed == [True]
+
+
+def test_what_comes_while_it_asks_is_asked_for_as_well(made):
+    assets, live, _ = made
+    live.meanwhile = scene(body("chair1"), body("table1", model="table"))
+    asyncio.run(assets.fetch())
+    assert assets.surface_of("table", (0.5, 0.5, 1.0)) is not None
+
+
+def test_what_could_not_be_had_is_asked_for_again_and_another_simulator_has_other_walls(made):
+    assets, live, _ = made
+    live.refuses = True
+    asyncio.run(assets.fetch())
+    assert assets.surface_of("chair", (0.5, 0.5, 1.0)) is None
+    assert assets.walls is None
+    live.refuses, live.scene = False, scene(body("chair1"), run="2")
+    asyncio.run(assets.fetch())
+    assert assets.surface_of("chair", (0.5, 0.5, 1.0)) is not None
+    assert assets.walls is not None
+
+
+def test_a_file_is_made_once_for_each_look(made):
+    assets, _, _ = made
+    asyncio.run(assets.fetch())
+    key = ("solid", "chair", (0.5, 0.5, 1.0))
+    assert assets.glb(key) is assets.glb(key)
+    assert assets.glb(("past", "chair", (0.5, 0.5, 1.0))) != assets.glb(key)

@@ -1,0 +1,57 @@
+"""Relations as lines."""
+
+from nodes.extern.web.scene.relation_lines import relation_lines
+from schemas.relations import Relation
+
+MIDDLES = {
+    "cup1": (0.0, 0.0, 1.0),
+    "table1": (1.0, 0.0, 0.4),
+    "milk1": (0.0, 1.0, 1.0),
+    "jug1": (2.0, 2.0, 1.0),
+}
+
+
+def relation(kind, subject, object_, gap_m=0.0, **more):
+    return Relation(relation=kind, subject=subject, object=object_, gap_m=gap_m, **more)
+
+
+def texts(of, *relations):
+    return {(line.a, line.b): line.text for line in relation_lines(of, relations, MIDDLES)}
+
+
+def test_there_is_one_line_for_each_other_thing_with_what_holds_and_its_measure():
+    found = texts(
+        "cup1",
+        relation("isNear", "cup1", "milk1", 0.155),
+        relation("isLeftOf", "cup1", "milk1", 1.25),
+        relation("isOn", "cup1", "table1"),
+    )
+    assert found == {
+        (MIDDLES["cup1"], MIDDLES["milk1"]): "near 16 cm, left of 1.25 m",
+        (MIDDLES["cup1"], MIDDLES["table1"]): "on",
+    }
+
+
+def test_of_what_it_bears_the_other_is_named():
+    assert list(texts("table1", relation("isOn", "cup1", "table1")).values()) == ["cup1 on"]
+
+
+def test_what_follows_is_not_said_and_neither_is_what_does_not_hold():
+    found = texts(
+        "cup1",
+        relation("isNextTo", "cup1", "milk1", 0.1),
+        relation("isNear", "cup1", "milk1", 0.1),
+        relation("isOn", "cup1", "jug1", holds=False),
+    )
+    assert list(found.values()) == ["next to 10 cm"]
+
+
+def test_between_two_there_are_two_lines():
+    found = texts("cup1", relation("isBetween", "cup1", "milk1", and_object="jug1"))
+    assert set(found.values()) == {"between"}
+    assert len(found) == 2
+
+
+def test_places_are_left_out():
+    assert texts("cup1", relation("isLocatedIn", "cup1", "kitchen1")) == {}
+    assert texts("ghost", relation("isOn", "ghost", "table1")) == {}

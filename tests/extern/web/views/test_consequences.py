@@ -1,0 +1,32 @@
+from nodes.extern.web.views.consequences import consequences
+from schemas.replies import Changed
+
+
+def tried(*facts, names=("table1",), notes=()):
+    return Changed(commit=None, text="x", names=names, no_longer_follows=facts, notes=notes, dry_run=True)
+
+
+def test_what_stood_on_it_and_what_others_lose_is_said_first():
+    said = consequences(
+        tried(
+            "table1 supports bowl1",
+            "table1 type Furniture",
+            "flat1 contains table1",
+            notes=("on table1 was bowl1",),
+        )
+    )
+    assert said == (
+        "On table1 was bowl1.",
+        "No longer so: flat1 contains table1.",
+        "With it go 2 inferred facts.",
+    )
+
+
+def test_of_very_many_facts_the_first_are_told():
+    (said,) = consequences(tried(*(f"flat1 contains cup{i}" for i in range(7))))
+    assert said.endswith("flat1 contains cup3, and 3 more facts.")
+
+
+def test_what_takes_nothing_with_it_says_nothing():
+    assert consequences(tried()) == ()
+    assert consequences(tried("table1 type Table")) == ("With it goes 1 inferred fact.",)

@@ -1,0 +1,117 @@
+"""The panels of data in a browser: SPARQL, standing queries, files, plan, graph, nodes; markup is text."""
+
+from __future__ import annotations
+
+import uuid
+import xml.etree.ElementTree as ET
+
+from semmap.commands import Add, Remove
+from tests.conftest import until
+
+DM = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#"
+ABOX = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_1#"
+
+
+def fresh(stem: str) -> str:
+    return f"{stem}_{uuid.uuid4().hex[:8]}"
+
+
+def turn_to(tab, name):
+    tab.get_by_role("tab", name=name, exact=True).click()
+
+
+def write_query(tab, text):
+    tab.locator(".cm-content").click()
+    tab.keyboard.press("Control+a")
+    tab.keyboard.insert_text(text)
+
+
+def test_sparql_runs_selects_refuses_and_watches(tab, system):
+    name = fresh("cup")
+    turn_to(tab, "SPARQL")
+    write_query(tab, "SELECT ?thing { ?thing a dm:Bed }")
+    tab.get_by_role("button", name="Run").click()
+    tab.get_by_role("cell", name=":bed1").click()
+    tab.locator(".semmap-heading").get_by_text("bed").first.wait_for()
+
+    write_query(tab, "INSERT DATA { :x a dm:Cup }")
+    tab.keyboard.press("Control+Enter")
+    tab.get_by_role("alert").get_by_text("the panels Add and Details").wait_for()
+
+    write_query(tab, f"SELECT ?thing {{ ?thing a dm:Cup FILTER(STRENDS(STR(?thing), '{name}')) }}")
+    tab.get_by_role("button", name="Watch").click()
+    tab.get_by_text("0 rows, commit").wait_for()
+    with system.client() as client:
+        client.send(Add(class_="Cup", name=name, at=(2.0, 3.0, 1.0)))
+        tab.get_by_text("1 row, commit").wait_for()
+        tab.get_by_role("cell", name=f":{name}").wait_for()
+        client.send(Remove(names=(name,)))
+        tab.get_by_text("0 rows, commit").wait_for()
+
+
+def test_files_are_tried_first_and_loaded_then_refused_or_downloaded(tab, system, tmp_path):
+    name = fresh("cup")
+    more, large, prose = (tmp_path / file for file in ("more.ttl", "film.bin", "prose.txt"))
+    more.write_text(f"<{ABOX}{name}> a <{DM}Cup> .\n")
+    prose.write_text("Once upon a time <there> was no ontology.")
+    with large.open("wb") as file:
+        file.write(b"abc\0def")
+        file.truncate(50 << 20)
+    turn_to(tab, "Files")
+    chooser = tab.locator("input[type=file]")
+    chooser.set_input_files(large)
+    tab.get_by_role("alert").get_by_text("film.bin is not text; what can be loaded is").wait_for()
+    chooser.set_input_files(prose)
+    tab.get_by_role("alert").get_by_text("prose.txt").wait_for()
+    chooser.set_input_files(more)
+    tab.get_by_text("If more.ttl is loaded:").wait_for()
+    with system.client() as client:
+        assert name not in {entity.name for entity in client.list("Cup")}
+        tab.get_by_role("button", name="Load more.ttl").click()
+        until(lambda: name in {entity.name for entity in client.list("Cup")}, "it is loaded")
+        with tab.expect_download() as download:
+            tab.get_by_role("button", name="Export").click()
+        client.send(Remove(names=(name,)))
+    assert download.value.suggested_filename.endswith(".ttl")
+    assert name in download.value.path().read_text()
+
+
+def test_the_plan_the_graph_the_check_and_the_nodes(tab):
+    turn_to(tab, "Plan")
+    image = tab.get_by_role("img", name="Plan of the rooms").locator("img")
+    until(lambda: image.evaluate("image => image.naturalWidth") > 1000, "the plan is drawn")
+    with tab.expect_download() as download:
+        tab.get_by_role("button", name="SVG").click()
+    svg = ET.fromstring(download.value.path().read_text())
+    words = [text.text for text in svg.iter("{http://www.w3.org/2000/svg}text")]
+    assert {"kitchen", "bed1"} <= set(words)
+
+    turn_to(tab, "Graph")
+    tab.get_by_text("Nothing is selected: this is all, by places").wait_for()
+    tab.get_by_text("As a table").click()
+    tab.get_by_role("row", name="kitchen").get_by_text("isLocatedIn").first.wait_for()
+
+    turn_to(tab, "System")
+    tab.get_by_role("row", name="kb_node").get_by_text("ready").first.wait_for()
+    tab.get_by_label("Filter the log").fill("begun from")
+    tab.get_by_role("row", name="begun from flat.ttl").first.wait_for()
+
+    turn_to(tab, "Check")
+    tab.get_by_text("consistent (").wait_for()
+
+
+def test_markup_in_references_is_text_everywhere(tab, system):
+    name = fresh("cup")
+    markup = "<img src=x onerror=\"document.title='run'\"><script>document.title='run'</script>"
+    with system.client() as client:
+        client.send(Add(class_="Cup", name=name, at=(2.0, 3.0, 1.0), ref=markup))
+        for panel in ("Graph", "Plan", "System", "SPARQL"):
+            turn_to(tab, panel)
+        written = "?thing dm:hasPreferredReference ?r . ?r dm:lexicalReference ?text"
+        write_query(tab, f"SELECT ?thing ?text {{ {written} FILTER(CONTAINS(?text, 'onerror')) }}")
+        tab.get_by_role("button", name="Run").click()
+        tab.get_by_role("cell", name="<img src=x").click()
+        tab.locator(".semmap-heading").get_by_text("<img src=x").wait_for()
+        client.send(Remove(names=(name,)))
+    assert tab.title() == "semmap"
+    assert tab.locator("img[src=x]").count() == 0

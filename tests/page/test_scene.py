@@ -1,0 +1,150 @@
+"""The scene in a browser that draws it, in software: a click selects, and what is dragged is moved."""
+
+from __future__ import annotations
+
+import math
+import time
+import uuid
+
+import numpy as np
+import pytest
+
+from nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view
+from nodes.extern.web.scene.dragging import arm_m
+from nodes.extern.web.scene.seen import wxyz_of
+from semmap.commands import Add, Remove
+from tests.page.conftest import START_MS, chromium_path
+
+_GL = (
+    "--no-sandbox",
+    "--no-first-run",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+)
+_WIDTH, _HEIGHT = 640, 480
+_DRAWN_S = 90.0
+
+
+@pytest.fixture(scope="module")
+def seeing(chromium):
+    """A Chromium with WebGL; the one for other tests goes without, which is quicker."""
+    browser = chromium.browser_type.launch(executable_path=chromium_path(), args=[*_GL])
+    yield browser
+    browser.close()
+
+
+@pytest.fixture
+def tab(seeing, web):
+    """The page, narrow, so that the scene is all of it."""
+    page = seeing.new_page(viewport={"width": _WIDTH, "height": _HEIGHT})
+    complained = []
+    page.on("pageerror", lambda error: complained.append(str(error)))
+    page.on("console", lambda said: said.type == "error" and complained.append(said.text))
+    page.goto(web.url, timeout=2 * START_MS)
+    page.wait_for_selector("body.semmap-ready", timeout=2 * START_MS)
+    yield page
+    page.close()
+    assert not complained
+
+
+@pytest.fixture
+def chair(system):
+    """A chair of the test's own, in the middle of the living room."""
+    name = f"chair_{uuid.uuid4().hex[:8]}"
+    with system.client() as client:
+        client.send(Add(class_="Chair", name=name, at=(3.0, 2.2, 0.0)))
+        until(lambda: client.get(name).body.status == "present", "the chair has a body")
+        yield name
+        client.send(Remove(names=(name,)))
+
+
+def looking(tab, client) -> View:
+    """How the scene is seen at first."""
+    frame = tab.locator("iframe").bounding_box()
+    eye, target = first_view(extent(client.list()), frame["width"] / frame["height"])
+    ahead = np.subtract(target, eye) / np.linalg.norm(np.subtract(target, eye))
+    right = np.array((1.0, 0.0, 0.0))
+    rotation = np.column_stack([right, np.cross(ahead, right), ahead])
+    return View(eye, wxyz_of(rotation), FOV_RAD, frame["width"], frame["height"])
+
+
+def pixel(tab, view, point):
+    """Where on the page a point [m] is seen."""
+    frame = tab.locator("iframe").bounding_box()
+    x, y, _ = view.project(np.array([point], dtype=float))[0]
+    return frame["x"] + x, frame["y"] + y
+
+
+def until(condition, what: str) -> None:
+    """Software takes long to draw, on a machine that does much else."""
+    deadline_s = time.monotonic() + _DRAWN_S
+    while not condition():
+        assert time.monotonic() < deadline_s, f"waited {_DRAWN_S:g} s in vain: {what}"
+
+
+def selected(tab) -> str:
+    return tab.get_by_role("status", name="Selected").inner_text()
+
+
+def select(tab, view, entity) -> None:
+    """Click at a thing until it is selected: nothing is there to be clicked before it is drawn."""
+    x, y, z = entity.pose.position_m
+    at = pixel(tab, view, (x, y, z + 0.45 * entity.size_m[2]))
+
+    def click() -> bool:
+        tab.mouse.click(*at)
+        tab.wait_for_timeout(1000)
+        return selected(tab) == entity.name
+
+    until(click, f"{entity.name} is selected")
+
+
+def test_nothing_of_viser_s_own_panels_is_shown(seeing, web):
+    for width in (480, 900):  # it has one for phones, and one for all others
+        page = seeing.new_page(viewport={"width": width, "height": 320})
+        page.goto(web.url, timeout=2 * START_MS)
+        panel = page.frame_locator("iframe").get_by_text("Scene tree")
+        panel.wait_for(state="attached", timeout=2 * START_MS)
+        assert not panel.is_visible()
+        page.close()
+
+
+def test_a_click_selects_and_one_beside_things_selects_nothing(tab, system, chair):
+    with system.client() as client:
+        view, entity = looking(tab, client), client.get(chair)
+        select(tab, view, entity)
+        frame = tab.locator("iframe").bounding_box()
+
+        def click_beside() -> bool:
+            tab.mouse.click(frame["x"] + frame["width"] - 60, frame["y"] + 0.5 * frame["height"])
+            tab.wait_for_timeout(1000)
+            return selected(tab) == ""
+
+        until(click_beside, "nothing is selected")
+
+
+def test_what_is_dragged_with_the_mouse_is_moved_and_the_map_follows(tab, system, chair):
+    with system.client() as client:
+        view, entity = looking(tab, client), client.get(chair)
+        select(tab, view, entity)
+        x, y, z = entity.pose.position_m
+        grip = 0.6 * arm_m(entity.size_m)
+
+        def drag() -> bool:
+            """By the arrow along x, which is there a moment after the thing has been selected."""
+            tab.mouse.move(*pixel(tab, view, (x + grip, y, z)))
+            tab.wait_for_timeout(500)
+            tab.mouse.down()
+            for step in range(1, 6):
+                tab.mouse.move(*pixel(tab, view, (x + grip + 0.2 * step, y, z)))
+                tab.wait_for_timeout(200)
+            tab.mouse.up()
+            tab.wait_for_timeout(2000)
+            return client.get(chair).pose.position_m[0] > x + 0.5
+
+        until(drag, "the map says that the chair was moved")
+        moved = client.get(chair).pose
+        assert moved.position_m[0] == pytest.approx(x + 1.0, abs=0.35)
+        assert moved.position_m[1] == pytest.approx(y, abs=0.05)
+        assert math.isclose(moved.yaw_rad, entity.pose.yaw_rad, abs_tol=0.05)

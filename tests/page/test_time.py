@@ -1,0 +1,110 @@
+"""The past in a browser: the slider, one commit back and on, play, what is marked, and back to now."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from semmap.commands import Add, Remove, Update
+from tests.conftest import until
+from tests.page.test_shell import commit_of, fresh
+
+
+@pytest.fixture
+def cup(system):
+    """A cup that was added, moved, and moved again; its name and its three commits."""
+    name = fresh("cup")
+    with system.client() as client:
+        added = client.send(Add(class_="Cup", name=name, at=(2.0, 3.0, 0.0))).commit
+        moved = client.send(Update(name=name, at=(2.0, 3.5, 0.0))).commit
+        again = client.send(Update(name=name, at=(2.5, 3.5, 0.0))).commit
+    yield name, added, moved, again
+    with system.client() as client:
+        client.send(Remove(names=(name,)))
+
+
+def caption(tab):
+    return tab.locator(".semmap-bar [role=status]").inner_text()
+
+
+def go_to(tab, when):
+    field = tab.get_by_label("Go to a commit or a time")
+    field.fill(str(when))
+    field.press("Enter")
+
+
+def chips(tab):
+    return tab.get_by_label("What is different").inner_text()
+
+
+def test_back_and_on_by_commit_and_home_again(tab, cup):
+    name, _, moved, again = cup
+    until(lambda: commit_of(tab) >= again, "the page has all commits")
+    tab.get_by_role("tab", name="History").click()  # the scene costs a browser without graphics much
+    go_to(tab, again)
+    until(lambda: caption(tab).startswith(f"The past: commit {again} of ") or "Now" in caption(tab), "then")
+    go_to(tab, moved)
+    until(lambda: caption(tab).startswith(f"The past: commit {moved} of "), "it shows the past")
+    until(lambda: "1 moved by this commit" in chips(tab), "what it moved is marked")
+    assert name in chips(tab)
+    tab.get_by_role("button", name="One commit back").click()
+    until(lambda: "1 added by this commit" in chips(tab), "what it added is marked")
+    tab.locator(".q-slider__track-container").press("ArrowRight")
+    until(lambda: caption(tab).startswith(f"The past: commit {moved} of "), "the slider goes on by one")
+    tab.keyboard.press("Home")
+    until(lambda: caption(tab).startswith("Now: commit "), "it is now again")
+    assert chips(tab) == ""
+
+
+def test_the_past_is_compared_with_now_and_cannot_be_changed(tab, cup, system):
+    name, added, *_ = cup
+    tab.get_by_role("tab", name="History").click()
+    go_to(tab, added)
+    until(lambda: caption(tab).startswith(f"The past: commit {added} of "), "it shows the past")
+    tab.get_by_label("marked against").click()
+    tab.get_by_role("option", name="now", exact=True).click()
+    until(lambda: re.search(r"\d moved since then", chips(tab)), "what has moved since is marked")
+    assert name in chips(tab)
+    with system.client() as client:
+        before = client.status().commit
+        tab.keyboard.press("u")
+        tab.get_by_text("This is the past, which does not change").wait_for()
+        assert client.status().commit == before
+
+
+def test_it_plays_to_the_end(tab, cup):
+    _, added, *_ = cup
+    tab.get_by_role("tab", name="History").click()
+    go_to(tab, added)
+    until(lambda: caption(tab).startswith(f"The past: commit {added} of "), "it shows the past")
+    tab.get_by_role("button", name="Play").click()
+    until(lambda: caption(tab).startswith("Now: commit "), "it has played to now")
+
+
+def test_a_moment_that_there_was_not_is_refused_in_a_sentence(tab, cup):
+    for said, why in (
+        ("1000000", "there is no commit 1000000 yet"),
+        ("soonish", "'soonish' is neither a commit"),
+    ):
+        go_to(tab, said)
+        tab.get_by_text(why).first.wait_for()
+    assert caption(tab).startswith("Now: commit ")
+
+
+def test_the_history_of_what_is_selected_goes_to_its_commits(tab, cup):
+    name, added, moved, again = cup
+    go_to(tab, added)
+    until(lambda: name in chips(tab), "what it added is marked")
+    tab.get_by_label("What is different").get_by_text(name).click()
+    tab.get_by_role("tab", name="History").click()
+    tab.get_by_role("checkbox", name="Only commits of what is selected").click()
+    table = tab.get_by_label("Commits").locator("tbody")
+    until(
+        lambda: table.locator("tr:not(.q-virtual-scroll__padding *)").count() >= 3, "its commits are listed"
+    )
+    listed = table.inner_text()
+    assert all(str(seq) in listed for seq in (added, moved, again))
+    assert name in listed
+    table.get_by_text(str(moved), exact=True).click()
+    until(lambda: caption(tab).startswith(f"The past: commit {moved} of "), "the page goes there")

@@ -1,0 +1,55 @@
+"""A robot in a whole system: it becomes an entity, is tracked, drives, and is committed where it stops."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from schemas import errors
+from tests.conftest import running, until
+
+
+@pytest.fixture(scope="module", params=["map", "perceived"])
+def system(request, tmp_path_factory):
+    words = ("--no-record", "--robot", "porter", "--robot-at", "7.4", "2", "0", "--truth", request.param)
+    with running(tmp_path_factory.mktemp("robot"), *words) as system:
+        yield system
+
+
+def names(client) -> set[str]:
+    return {entity.name for entity in client.list()}
+
+
+def test_it_drives_live_and_is_committed_where_it_stops(system):
+    with system.client() as client:
+        until(lambda: "robot1" in names(client), "the robot among the entities")
+        robot = until(lambda: (e := client.get("robot1")).live and e, "where it is, live")
+        assert (robot.class_, robot.tracked, robot.live.source) == ("Robot", "sim", "sim")
+        commits = len(client.history("robot1"))
+        said = client.drive("robot1", to=((7.4, 2.0), (7.0, 1.2)), yaw=0.0).text
+        assert "on its way" in said
+        until(lambda: client.get("robot1").live.pose.position_m[1] < 1.7, "that it is on its way")
+        assert "is at (7.0" in client.drive("robot1", to=((7.0, 1.0),), yaw=0.0, wait=True).text
+        until(lambda: abs(client.get("robot1").pose.position_m[1] - 1.0) < 0.03, "the commit")
+        assert 1 <= len(client.history("robot1")) - commits <= 2
+
+
+def test_what_cannot_be_driven_there_is_said(system):
+    with system.client() as client:
+        with pytest.raises(errors.BadRequest, match="--to X Y"):
+            client.drive("robot1")
+        with pytest.raises(errors.BadRequest, match="--to X Y"):
+            client.drive("robot1", to=((1.0, 1.0),), stop=True)
+        with pytest.raises(errors.UnknownName):
+            client.drive("nobody1", to=((1.0, 1.0),))
+        with pytest.raises(errors.Refused, match="gets no further"):
+            client.drive("robot1", to=((7.0, -3.0),), wait=True)
+        assert "stopped at" in client.drive("robot1", stop=True).text
+
+
+def test_the_command_line_drives(system):
+    said = system.cli("drive", "robot1", "--to", "7", "1", "--yaw", "90deg", "--wait")
+    found = re.fullmatch(r"robot1 is at \((.*), (.*)\), facing (.*)°\n", said)
+    assert [float(number) for number in found.groups()] == pytest.approx([7.0, 1.0, 90.0], abs=2.0)
+    system.cli("drive", "robot1", "--to", "7", status=2)
