@@ -140,6 +140,7 @@ class _Timeline:
         except errors.SemmapError as error:
             self._page.tell(error.text, "warning")
             return
+        self._when.value = ""
         self._go(None if commit == self._page.live.commit else commit)
 
     # Playing
