@@ -165,6 +165,8 @@ ALTERNATIVE_REFERENCE: Final = dm("AlternativeReference")
 
 HAS_POSITION: Final = dm("hasPosition")
 HAS_SIZE: Final = dm("hasSize")
+HAS_EXTENT: Final = dm("hasExtent")
+"""The polygon that a place covers, a literal of `WKT_LITERAL`."""
 HAS_PREFERRED_REFERENCE: Final = dm("hasPreferredReference")
 HAS_ALTERNATIVE_REFERENCE: Final = dm("hasAlternativeReference")
 LEXICAL_REFERENCE: Final = dm("lexicalReference")
@@ -247,3 +249,4 @@ OWL_DIFFERENT_FROM: Final = iri(f"{OWL}differentFrom")
 XSD_STRING: Final = iri(f"{XSD}string")
 XSD_FLOAT: Final = iri(f"{XSD}float")
 XSD_BOOLEAN: Final = iri(f"{XSD}boolean")
+WKT_LITERAL: Final = iri("http://www.opengis.net/ont/geosparql#wktLiteral")

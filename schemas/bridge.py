@@ -31,10 +31,11 @@ from schemas.commands import (
     Watch,
 )
 from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
-from schemas.entities import CommandId, Entity, Source
+from schemas.entities import CommandId, Entity, Source, Word
 from schemas.errors import ErrorMessage
 from schemas.explanations import Triple
 from schemas.moments import When
+from schemas.plans import Clearance, HeightRange, Outline, Plan, Way
 from schemas.relations import Where
 
 
@@ -223,6 +224,30 @@ class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unkno
         return True
 
 
+class PlanOf(Call[Plan], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The plan of the map; `walls` are those of the simulated world, None without one."""
+
+    LARGEST: ClassVar[int] = MANY
+
+    VERB: ClassVar[str] = "floorplan"
+    as_of: When | None = None
+    walls: tuple[Outline, ...] | None = None
+
+
+class WayOf(Call[Way], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A way through the map; see `schemas.commands.FindWay`, and `PlanOf` for the walls."""
+
+    LARGEST: ClassVar[int] = MANY
+
+    VERB: ClassVar[str] = "route"
+    from_: Word = field(name="from")
+    to: Word
+    radius: Clearance
+    heights: HeightRange
+    as_of: When | None = None
+    walls: tuple[Outline, ...] | None = None
+
+
 class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Take back a commit by another one; see `schemas.commands.Undo`."""
 
@@ -241,7 +266,7 @@ BRIDGE: dict[str, type[Call]] = {
     call.VERB: call
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
-        *(SnapshotQuery, CopyQuery, Recall, StarQuery, MadeBy, Entities),
+        *(SnapshotQuery, CopyQuery, Recall, StarQuery, MadeBy, Entities, PlanOf, WayOf),
         *(
             Classes,
             Properties,

@@ -36,6 +36,7 @@ from schemas.explanations import Explanation
 from schemas.happenings import Difference, KeptRelation, Spells
 from schemas.language import Account, Found, Language, Understood
 from schemas.moments import When
+from schemas.plans import HEIGHTS_M, RADIUS_M, Clearance, HeightRange, Plan, Way
 from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
     Changed,
@@ -56,6 +57,8 @@ from schemas.sparql import SparqlResult, Watching
 RDF_FORMATS = ("rdfxml", "turtle", "ntriples", "jsonld")
 RdfFormat = Literal["rdfxml", "turtle", "ntriples", "jsonld"]
 ListFormat = Literal["json", "lu4r", "legacy"]
+ExtentText = Annotated[str, Meta(min_length=1, max_length=50_000)]
+"""What a place covers, seen from above: `POLYGON ((x y, ...))` in WKT; see `schemas.polygons`."""
 ClassName = Annotated[str, Meta(min_length=1, max_length=200)]
 Since = Annotated[int, Meta(ge=0, le=1 << 53)]
 """A commit: if one after it has changed what is to be `unchanged`, a command is refused."""
@@ -100,7 +103,8 @@ class Add(Command[Changed], frozen=True, tag="add"):
     Without `name` one is made from the class; without `at` it goes to the next free place near the default
     pose; with `default` it also gets the class's label as reference. `set` are properties, each written
     `PROPERTY=VALUE`. With `track` it is tracked from the start (see `Track`). `wait` delays the reply until
-    its body stands in the scene.
+    its body stands in the scene. `extent` is for places: with it only the z of `at`
+    counts, the height of the floor, and the z of `size`, how high the place is.
 
     Like every command that changes entities, it is refused with PreconditionFailed where one of those that
     are to be `unchanged` is gone, or was changed by a commit after `since`.
@@ -112,6 +116,7 @@ class Add(Command[Changed], frozen=True, tag="add"):
     yaw: Angle | None = None
     orientation: Quaternion | None = None
     size: Size | None = None
+    extent: ExtentText | None = None
     ref: Text | None = None
     alt: tuple[Text, ...] = ()
     confidence: Probability | None = None
@@ -131,7 +136,8 @@ class Update(Command[Changed], frozen=True, tag="update"):
     `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values; both of one
     property replace its values. A class that would make an object a place, or a place an object, is refused
     without `force`. With `carry`, what stands on the entity or is inside it moves with it as one rigid body,
-    in the same commit; not what `leave` names, and what stands on that.
+    in the same commit; not what `leave` names, and what stands on that. `extent` is as for `add`; who has one
+    is moved by another.
     """
 
     name: Word
@@ -140,6 +146,7 @@ class Update(Command[Changed], frozen=True, tag="update"):
     yaw: Angle | None = None
     orientation: Quaternion | None = None
     size: Size | None = None
+    extent: ExtentText | None = None
     ref: Text | None = None
     alt: tuple[Text, ...] | None = None
     conflict: Remark | None = None
@@ -389,6 +396,30 @@ class Find(Command[Found], frozen=True, tag="find"):
     viewer: Word | None = None
     viewpoint: ViewPoint | None = None
     asker: Word | None = None
+
+
+class PlanFloor(Command[Plan], frozen=True, tag="floorplan"):
+    """Places, things and walls as outlines seen from above; with `as_of` the map as it was then.
+
+    The command line makes occupancy grids, SVG and GeoJSON of it.
+    """
+
+    as_of: When | None = None
+
+
+class FindWay(Command[Way], frozen=True, tag="route"):
+    """The shortest way for a robot of a `radius` [m], over places and through doors.
+
+    `from` and `to` are places, things, persons (by name, reference or class) or positions, written `2.5,1`
+    [m]. What has a part within `heights` [m] above the floor is in the way, and so are places that are
+    forbidden. A way through closed doors names them. Raises Refused, with the reason, where there is none.
+    """
+
+    from_: Word = field(name="from")
+    to: Word
+    radius: Clearance = RADIUS_M
+    heights: HeightRange = HEIGHTS_M
+    as_of: When | None = None
 
 
 class Export(Command[Document], frozen=True, tag="export"):

@@ -42,7 +42,7 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
             "classes",
             "properties",
         ),
-        *("status", "history", "last-seen", "sparql", "watch", "renew", "picture"),
+        *("status", "history", "last-seen", "sparql", "watch", "renew", "picture", "floorplan", "route"),
     ),
     _OBSERVERS: ("add", "update", "set", "unset", "remove"),
     _OPERATORS: (

@@ -35,7 +35,8 @@ class Described(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fiel
 
     `at` is the bottom centre [m] in the map frame; `yaw` [rad] or `orientation` (unit quaternion wxyz) turns
     it; `size` is its extent along its own axes [m]; `ref` is what people call it, `alt` what they call it
-    too.
+    too. `extent` is what a place covers, in WKT: `POLYGON ((x y, ...))`. `set` are other properties, each
+    written `PROPERTY=VALUE`; an individual that one names comes before it in the file, or is in the map.
     """
 
     class_: Text = field(name="class")
@@ -44,10 +45,12 @@ class Described(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fiel
     yaw: Angle | None = None
     orientation: Quaternion | None = None
     size: Size | None = None
+    extent: Annotated[str, Meta(min_length=1, max_length=50_000)] | None = None
     ref: Text | None = None
     alt: tuple[Text, ...] = ()
     affords: tuple[Text, ...] = ()
     """Affordances, by their names in the TBox: `containing`, `supporting`, ..."""
+    set: tuple[Text, ...] = ()
 
     def __post_init__(self) -> None:
         if self.name is not None and not self.name.isascii():

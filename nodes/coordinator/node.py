@@ -20,6 +20,7 @@ from nodes.coordinator.early_commands import EarlyCommands
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
 from nodes.coordinator.live.feed import LiveFeed
+from nodes.coordinator.scene.among_walls import AmongWalls
 from nodes.coordinator.scene.opening import Opening
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
@@ -65,6 +66,7 @@ class Coordinator:
         door = self._door
         self._live = LiveFeed(node, config, door.map, self._keeping.scene, self._turns.change)
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge, self._live)
+        among_walls = AmongWalls(self._keeping, self._ask_sim, self._bridge.ask_later)
         running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
         self._opening = Opening(door, self._keeping, self._ask_sim)
         relay = self._bridge.relay
@@ -101,6 +103,8 @@ class Coordinator:
             c.Diff.answered_by(relay),
             c.WasWhen.answered_by(relay),
             c.Export.answered_by(relay),
+            c.PlanFloor.answered_by(among_walls.plan),
+            c.FindWay.answered_by(among_walls.route),
             c.Classes.answered_by(relay),
             c.Properties.answered_by(relay),
             c.Sparql.answered_by(relay),

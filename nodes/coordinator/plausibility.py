@@ -9,6 +9,7 @@ from ontology.model_shapes import own_size_m
 from schemas import errors
 from schemas.commands import Move, Update
 from schemas.entities import ClassInfo, Entity, Pose, Size
+from schemas.polygons import extent_of
 
 FAR_OFF = 10.0
 """A size is doubtful whose longest side is so many times its class's usual one, or its fraction."""
@@ -53,6 +54,8 @@ def _is_over(place: Entity, pose: Pose) -> bool:
     """Is the pose above the place's ground?"""
     assert place.pose is not None
     assert place.size_m is not None
+    if (extent := extent_of(place)) is not None:
+        return extent.contains(pose.position_m[:2])
     dx, dy = (a - b for a, b in zip(pose.position_m[:2], place.pose.position_m[:2], strict=True))
     c, s = math.cos(place.pose.yaw_rad), math.sin(place.pose.yaw_rad)
     width, depth, _ = place.size_m

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from schemas import errors
+from schemas import errors, polygons
 from schemas.commands import Add, Command, Set, Track, Unset, Update
 from schemas.commits import Edit, NewEntity, Statement, Transaction
-from schemas.entities import ClassInfo, Pose, Value
+from schemas.entities import IDENTITY, ClassInfo, Entity, Pose, Size, Value, Vector
 from schemas.scene_files import Described, pose_of
 
 
@@ -38,34 +38,49 @@ def transaction(
 
 
 def add(command: Add, name: str, found: ClassInfo, pose: Pose, ref: str | None) -> Transaction:
-    """A new entity; its name must be free."""
+    """A new entity; its name must be free. Raises BadRequest for an extent of what is no place."""
+    at, size, extent = _covering(found, command.extent, pose, command.size)
     new = NewEntity(
         name=name,
         class_iri=found.iri,
-        pose=pose,
-        size=command.size,
+        pose=at,
+        size=size,
         ref=ref,
         alt=command.alt,
-        set=tuple(map(_assignment, command.set)),
+        set=(*extent, *map(_assignment, command.set)),
         tracked=command.track or "",
     )
     return transaction(command, f"add {found.name} {name}", add=[new])
 
 
-def update(command: Update, found: ClassInfo | None = None) -> Transaction:
-    """What is given changes; omitted fields keep their values."""
+def update(command: Update, entity: Entity, found: ClassInfo | None = None) -> Transaction:
+    """What is given of an entity changes; omitted fields keep their values.
+
+    Raises BadRequest for an extent of what is no place; Refused where a box would be of no consequence,
+    because the entity's extent is a polygon.
+    """
+    at, size = command.at, command.size
+    extent: tuple[Statement, ...] = ()
+    if command.extent is None:
+        _require_box(command, entity)
+    else:
+        is_place, class_name = (entity.place, entity.class_) if found is None else (found.place, found.name)
+        _require_place(is_place, class_name)
+        if command.yaw is not None or command.orientation is not None:
+            raise errors.BadRequest("an extent is in the map frame, and not turned: leave the angle out")
+        at, size, extent = _around(command.extent, at, size)
     edit = Edit(
         name=command.name,
         class_iri=None if found is None else found.iri,
-        at=command.at,
+        at=at,
         yaw=command.yaw,
         orientation=command.orientation,
-        size=command.size,
+        size=size,
         ref=command.ref,
         alt=command.alt,
         conflict=command.conflict,
         unset=tuple(map(_unassignment, command.unset)),
-        set=tuple(map(_assignment, command.set)),
+        set=(*extent, *map(_assignment, command.set)),
         carry=command.carry,
         leave=command.leave,
     )
@@ -116,15 +131,68 @@ def remove(command: Command, reason: str, names: Iterable[str]) -> Transaction:
 
 def described(name: str, found: ClassInfo, said: Described) -> NewEntity:
     """The entity that a file describes. Raises BadRequest for a pose that is none."""
+    given = pose_of(said.at, said.yaw, said.orientation) if said.at is not None else None
+    try:
+        pose, size, extent = _covering(found, said.extent, given, said.size)
+    except errors.BadRequest as error:
+        raise errors.BadRequest(f"{name}: {error.text}") from None
     return NewEntity(
         name=name,
         class_iri=found.iri,
-        pose=pose_of(said.at, said.yaw, said.orientation) if said.at is not None else None,
-        size=said.size,
+        pose=pose,
+        size=size,
         ref=said.ref,
         alt=said.alt,
         affordances=said.affords,
+        set=(*extent, *map(_assignment, said.set)),
     )
+
+
+def _covering(
+    found: ClassInfo, extent: str | None, pose: Pose | None, size: Size | None
+) -> tuple[Pose | None, Size | None, tuple[Statement, ...]]:
+    """The pose and size of a new entity, and what is stated of its extent. Raises BadRequest."""
+    if extent is None:
+        return pose, size, ()
+    _require_place(found.place, found.name)
+    if pose is not None and pose.orientation_wxyz != IDENTITY:
+        raise errors.BadRequest("an extent is in the map frame, and not turned: leave the angle out")
+    at, size, stated = _around(extent, None if pose is None else pose.position_m, size)
+    return None if at is None else Pose(position_m=at), size, stated
+
+
+def _around(
+    extent: str, at: Vector | None, size: Size | None
+) -> tuple[Vector | None, Size | None, tuple[Statement, ...]]:
+    """Where a place with this extent is and how large, as far as that is given; and what is stated of it."""
+    polygon = polygons.read_wkt(extent)
+    centre, box = polygons.box_around(
+        polygon, 0.0 if at is None else at[2], polygons.HEIGHT_M if size is None else size[2]
+    )
+    stated = Statement(property=polygons.EXTENT, values=(polygons.wkt(polygon),))
+    return None if at is None else centre, None if size is None else box, (stated,)
+
+
+def _require_place(is_place: bool, class_name: str) -> None:
+    if not is_place:
+        raise errors.BadRequest(
+            f"only places have an extent, and a {class_name} is none; say how large it is with --size X Y Z"
+        )
+
+
+def _require_box(command: Update, entity: Entity) -> None:
+    """Raises Refused for a place that a polygon puts where it is."""
+    if any(word.partition("=")[0].strip() == polygons.EXTENT for word in command.unset):
+        return
+    if polygons.extent_of(entity) is None or entity.pose is None or entity.size_m is None:
+        return
+    moves = command.at is not None and command.at[:2] != entity.pose.position_m[:2]
+    resizes = command.size is not None and command.size[:2] != entity.size_m[:2]
+    if moves or resizes or command.yaw is not None or command.orientation is not None:
+        raise errors.Refused(
+            f"the extent of {entity.name} is a polygon: give another with --extent, or make it a box again"
+            f" with --unset {polygons.EXTENT} --at X Y Z --size X Y Z"
+        )
 
 
 def _statement(property_: str, *values: Value) -> Statement:

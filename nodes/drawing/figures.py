@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from schemas.entities import Entity, Pose, Size, angle_rad, distance_m
+from schemas.polygons import Polygon, extent_of
 from schemas.scenes import Body, Surface
 
 Look = Literal["solid", "ghost", "believed", "furniture", "place"]
@@ -28,6 +29,8 @@ class Figure:
     size_m: Size
     look: Look
     surface: Surface | None = None
+    extent: Polygon | None = None
+    """What a place covers, map frame, where that is no box."""
 
     @property
     def group(self) -> str:
@@ -46,7 +49,8 @@ def figure_of(
         return Figure(body.name, body.class_ or "", body.size_m, _look_of(body), surface)
     if entity.place:
         label = entity.preferred_reference or entity.name
-        return Figure(label, entity.class_, entity.size_m or UNKNOWN_SIZE_M, "place")
+        size_m = entity.size_m or UNKNOWN_SIZE_M
+        return Figure(label, entity.class_, size_m, "place", extent=extent_of(entity))
     if body is not None:
         return Figure(entity.name, entity.class_, body.size_m, "ghost" if body.ghost else "solid", surface)
     look: Look = "believed" if simulated else "solid"

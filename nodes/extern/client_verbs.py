@@ -25,12 +25,14 @@ from typing import (
 
 from nodes.extern.files import read_file
 from nodes.extern.ontology_upload import ontology
+from nodes.extern.plan_files import is_plan, read_plan
 from schemas import commands, errors, replies
 from schemas.calls import reply_type
 from schemas.commands import Command
 from schemas.entities import Entity, Value
 from schemas.moments import When
 from schemas.packing import packed
+from schemas.plans import HEIGHTS_M, RADIUS_M, HeightRange, Way
 from schemas.scenes import Picture
 
 if TYPE_CHECKING:
@@ -170,7 +172,9 @@ def _load(
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Changed]:
-    """Add what a file describes: an ABox, a JSON scene or a HuRIC map. Raises BadFile.
+    """Add what a file describes: an ABox, a JSON scene, a HuRIC map or a plan. Raises BadFile.
+
+    A plan is the YAML file of a map of ROS's map server: its free space is cut into rooms at its doors.
 
     `replace` takes the present entities out in the same commit; `skip_unknown` leaves out what is of a class
     that the TBox does not have; `strict` refuses a file that relates things to what nobody describes.
@@ -182,7 +186,12 @@ def _load(
     """
     if imports and not tbox:
         raise errors.BadRequest("--import applies to TBoxes only; add --tbox")
-    content, filename = ontology(Path(path), imports) if tbox else (read_file(Path(path)), Path(path).name)
+    if tbox:
+        content, filename = ontology(Path(path), imports)
+    elif is_plan(Path(path)):
+        content, filename = read_plan(Path(path)).content, Path(path).name
+    else:
+        content, filename = read_file(Path(path)), Path(path).name
     return commands.Load(
         content=packed(content),
         filename=filename,
@@ -227,6 +236,25 @@ def _list_as(
 ) -> commands.List:
     """The entity list in the format of another system."""
     return commands.List(class_=class_, format=format, as_of=as_of)
+
+
+def _route(
+    from_: str | Sequence[float],
+    to: str | Sequence[float],
+    *,
+    radius: float = RADIUS_M,
+    heights: HeightRange = HEIGHTS_M,
+    as_of: When | None = None,
+) -> Command[Way]:
+    """The shortest way for a robot of a `radius` [m], over places and through doors.
+
+    From and to places, things or persons (by name, reference or class), or positions (x, y) [m] in the map
+    frame. What has a part within `heights` [m] above the floor is in the way. A way through closed doors
+    names them in `closed`: it is none until they are opened. Raises Refused, with the reason, if there
+    is none.
+    """
+    start, end = (word if isinstance(word, str) else ",".join(map(repr, word)) for word in (from_, to))
+    return commands.FindWay(from_=start, to=end, radius=radius, heights=heights, as_of=as_of)
 
 
 def _entities(reply: tuple[Entity, ...] | dict[str, Any]) -> tuple[Entity, ...]:
@@ -276,6 +304,8 @@ class Verbs:
     diff = Verb(commands.Diff)
     when = Verb(commands.WasWhen)
     export = Verb(commands.Export)
+    floorplan = Verb(commands.PlanFloor)
+    route = Verb(_route)
     classes = Verb(commands.Classes)
     properties = Verb(commands.Properties)
     status = Verb(commands.Status)

@@ -34,7 +34,7 @@ _FEW = 10
 """Sentences of one kind."""
 _MANY = 1000
 """Of those that leave, so many are looked at for what they leave behind."""
-_GEOMETRY = frozenset((*stars.COORDINATE_PROPERTIES, *v.SIZE_XYZ, v.HAS_POSITION, v.HAS_SIZE))
+_GEOMETRY = frozenset((*stars.COORDINATE_PROPERTIES, *v.SIZE_XYZ, v.HAS_POSITION, v.HAS_SIZE, v.HAS_EXTENT))
 
 
 class TakenBack(NamedTuple):
@@ -219,8 +219,11 @@ def _moved(
         was = entity_changes.known(entities, iri)
         if was is not None:
             pose, size_m = entity_reading.read_place(about, classes, iri)
-            if (pose, size_m) != (was.pose, was.size_m):
-                yield was.name, structs.replace(was, pose=pose, size_m=size_m)
+            stated = classes.stated.stated(about(iri)) if was.place else was.properties
+            if (pose, size_m) != (was.pose, was.size_m) or stated.get("hasExtent") != was.properties.get(
+                "hasExtent"
+            ):
+                yield was.name, structs.replace(was, pose=pose, size_m=size_m, properties=stated)
 
 
 def _about_after(

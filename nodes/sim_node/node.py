@@ -21,6 +21,7 @@ from nodes.sim_node.world_file import names_classes, open_world
 from schemas import codec, errors, keys, wording
 from schemas.calls import by_verb
 from schemas.commands import Classes, Pause, Reset, StepOnce
+from schemas.plans import Outline, WallsQuery
 from schemas.replies import Done
 from schemas.scenes import (
     BodiesMoved,
@@ -89,6 +90,7 @@ class Simulator:
                 Reset.answered_by(self._reset),
                 PictureQuery.answered_by(self._picture),
                 SurfaceQuery.answered_by(self._surfaces),
+                WallsQuery.answered_by(self._walls),
                 WorldQuery.answered_by(self._surface_of_the_world),
             ),
         )
@@ -192,6 +194,9 @@ class Simulator:
 
     def _surface_of_the_world(self, _: WorldQuery) -> Surface:
         return self._world.surface()
+
+    def _walls(self, _: WallsQuery) -> tuple[Outline, ...]:
+        return self._world.walls()
 
     def _still(self) -> Still:
         return Still(*self._world.snapshot())

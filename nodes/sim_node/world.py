@@ -20,11 +20,13 @@ from nodes.sim_node.models.world_surface import world_surface
 from nodes.sim_node.orders import ModelSource
 from nodes.sim_node.physics import base_scene, build
 from nodes.sim_node.physics.engine import Engine
+from nodes.sim_node.physics.walls import walls
 from nodes.sim_node.placement.settling import Settling
 from nodes.sim_node.robots.courses import ACTUATORS, Outcome, actuators
 from nodes.sim_node.vision.view import bulk, overview
 from schemas.entities import Pose
 from schemas.errors import Refused
+from schemas.plans import Outline
 from schemas.scenes import (
     BodiesMoved,
     Body,
@@ -207,6 +209,10 @@ class World:
         stage = self._engine.stage()
         felt = np.isfinite(stage.body_low).all(axis=1)
         return bulk(stage.body_low[felt], stage.body_high[felt])
+
+    def walls(self) -> tuple[Outline, ...]:
+        """What of the world itself stands in the way, seen from above."""
+        return walls(self.model, self.data, self._engine.records)
 
     def tops(self, box: tuple[Floats, Floats] | None = None) -> dict[str, Floats]:
         """The middle of the top (3,) [m] of each entity's body; only of those whose middle is in the box."""

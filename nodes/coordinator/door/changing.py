@@ -42,13 +42,15 @@ def _add(view: KnownMap, command: Add, found: ClassInfo) -> Talk[Changed]:
     name = command.name or view.free_name(found.name)
     if name in view.entities:
         raise errors.NameTaken(f"the name '{name}' is taken; see: semmap get {name}")
-    at = command.at or view.free_place(command.size)
+    at = command.at or ((0.0, 0.0, 0.0) if command.extent else view.free_place(command.size))
     pose = pose_of(at, command.yaw, command.orientation)
     ref = command.ref or (_label(found) if command.default else None)
-    made = yield from commit(view, transactions.add(command, name, found, pose, ref))
+    wanted = transactions.add(command, name, found, pose, ref)
+    (new,) = wanted.add
+    made = yield from commit(view, wanted)
     return changed(
         made,
-        f"added {found.name} {name} at {_metres(pose)}",
+        f"added {found.name} {name} at {_metres(new.pose or pose)}",
         names=(name,),
         notes=(
             *view.classes.note(command.class_, found),
@@ -63,11 +65,11 @@ def update(view: KnownMap, command: Update) -> Talk[Changed]:
     entity = view.entity(command.name)
     require_carrying(command)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
-    shape = (found, command.ref, command.alt, command.size)
+    shape = (found, command.ref, command.alt, command.size, command.extent)
     if any(value is not None for value in shape):
         require_authority(command, [entity])
     require_same_nature(entity, found, force=command.force)
-    made = yield from commit(view, transactions.update(command, found))
+    made = yield from commit(view, transactions.update(command, entity, found))
     now = _after(made, entity.name) or entity
     return changed(
         made,

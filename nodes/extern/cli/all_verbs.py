@@ -21,6 +21,7 @@ _MODULES = {
     "past": ("undo", "history", "diff", "when", "last-seen"),
     "run": ("run",),
     "perceive": ("perceive",),
+    "navigation": ("floorplan", "route"),
     "scene": ("move", "drive", "open", "close", "pause", "step", "reset", "picture"),
     "replay": ("replay",),
     "movie": ("movie",),

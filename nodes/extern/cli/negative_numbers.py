@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 import click
 
-_NUMBER = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+_NUMBER = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(,-?[\d.]+)?")
+"""A negative number, or a position that begins with one: `-1,2`."""
 
 
 class NegativeNumbers(click.Command):

@@ -9,6 +9,7 @@ from typing import Final, Literal
 
 from nodes.kb_node.relations.geometry.polygons import Point, Polygon, area, clipped, hull
 from schemas.entities import Entity, Pose, Quaternion, Size
+from schemas.polygons import extent_of
 
 Kind = Literal["furniture", "small", "person", "door", "window", "overhead"]
 """`small`: what stands on something. `overhead`: what hangs above where people walk."""
@@ -80,7 +81,8 @@ def floor_of(
 ) -> Floor:
     """The plan of these entities: where `poses` says, or else where the map does.
 
-    `outlines` are the polygons of places that are no boxes (map frame [m], counterclockwise).
+    Places whose extents are polygons have these outlines; `outlines` are others (map frame [m],
+    counterclockwise).
     """
     poses, outlines = poses or {}, outlines or {}
     places: list[Area] = []
@@ -90,6 +92,8 @@ def floor_of(
         pose = poses.get(entity.name, entity.pose)
         if entity.place and entity.name in outlines:
             outline = tuple(outlines[entity.name])
+        elif (extent := extent_of(entity)) is not None:
+            outline = extent.outer
         elif pose is not None and entity.size_m is not None:
             outline = footprint(pose, entity.size_m)
         else:

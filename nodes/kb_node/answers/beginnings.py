@@ -23,7 +23,8 @@ from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
 from ontology.model_shapes import own_size_m
-from schemas.entities import Entity, Pose, Size
+from schemas.entities import Entity, Pose, Size, Stated
+from schemas.polygons import EXTENT
 
 _MARGIN_M = 1.5
 """Beyond what can touch the thing: so all of the cells of the spatial index that it is in are complete."""
@@ -38,10 +39,20 @@ class _Stood(Struct, frozen=True):
     size_m: Size | None = None
     place: bool = False
     model: str = ""
+    properties: dict[str, Stated] = {}
 
     @property
     def placed(self) -> Placed:
-        return Placed(**{field: getattr(self, field) for field in self.__struct_fields__})
+        stated = self.properties.get(EXTENT) if self.place else None
+        return Placed(
+            name=self.name,
+            iri=self.iri,
+            pose=self.pose,
+            size_m=self.size_m,
+            place=self.place,
+            model=self.model,
+            extent=stated if isinstance(stated, str) else "",
+        )
 
 
 class _Left(Struct, frozen=True):

@@ -14,7 +14,7 @@ from nodes.kb_node.entities.class_table import ClassTable, Kind
 from nodes.kb_node.reasoner import Reasoner
 from ontology import stars
 from ontology import vocabulary as v
-from schemas import errors
+from schemas import errors, polygons
 from schemas.commits import Star
 from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
 from schemas.explanations import Term, Triple
@@ -85,14 +85,32 @@ def read_entity(
 
 
 def read_place(about: About, classes: ClassTable, iri: Term) -> tuple[Pose | None, Size | None]:
-    """Where a thing is and how large. Raises BadRequest for numbers that make no sense."""
+    """Where a thing is and how large: of a place with a polygon for its extent, the upright box around that.
+
+    Raises BadRequest for numbers that make no sense, and for an extent that is no polygon.
+    """
     said = about(iri)
     size_m = _size(about, iri, said.get(v.HAS_SIZE, ()))
     pose = _pose(about, iri, said.get(v.HAS_POSITION, ()))
     if classes.alignments:
         size_m = size_m or aligned.size(classes.alignments, about, iri)
         pose = pose or aligned.pose(classes.alignments, about, iri, size_m)
+    if v.HAS_EXTENT in said:
+        return _around(iri, said[v.HAS_EXTENT], pose, size_m)
     return pose, size_m
+
+
+def _around(iri: Term, extents: Sequence[Term], pose: Pose | None, size_m: Size | None) -> tuple[Pose, Size]:
+    """The box around an extent, on the floor and as high as is said. Raises BadRequest."""
+    text = min(extents)
+    try:
+        polygon = polygons.read_wkt(v.lexical(text) if text.startswith('"') else text)
+    except errors.BadRequest as error:
+        raise errors.BadRequest(f"{v.local_name(iri)}: {error.text}") from None
+    floor_m = pose.position_m[2] if pose is not None else 0.0
+    height_m = size_m[2] if size_m is not None else polygons.HEIGHT_M
+    at, size = polygons.box_around(polygon, floor_m, height_m)
+    return Pose(position_m=at), size
 
 
 def entity_of(
@@ -140,7 +158,10 @@ def moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
     """`known` where it is now, of whose star nothing but coordinates is otherwise. Raises BadRequest."""
     iri = v.iri(known.iri)
     nodes = [o for _, _, o in reasoner.asserted(iri, v.HAS_POSITION, None)]
-    return structs.replace(known, pose=_pose(reasoner.about, iri, nodes), provenance=provenance)
+    pose = _pose(reasoner.about, iri, nodes)
+    if known.place and (extents := [o for _, _, o in reasoner.asserted(iri, v.HAS_EXTENT, None)]):
+        pose, _ = _around(iri, extents, pose, known.size_m)
+    return structs.replace(known, pose=pose, provenance=provenance)
 
 
 def read_again(reasoner: Reasoner, classes: ClassTable, known: Entity) -> Entity | None:

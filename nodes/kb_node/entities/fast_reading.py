@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
 from itertools import count
-from typing import NamedTuple
+from typing import Final, NamedTuple
 from weakref import WeakKeyDictionary
 
 from nodes.kb_node.entities.class_table import ClassTable, Kind
@@ -18,6 +18,7 @@ from ontology import vocabulary as v
 from schemas.entities import REACH_M, Entity, Pose, Provenance
 from schemas.explanations import Term
 
+_EXTENT: Final = frozenset((v.HAS_EXTENT,))
 Places = tuple[int, ...]
 """Which of a run's other objects."""
 
@@ -132,7 +133,7 @@ def _pattern(run: Run, reasoner: Reasoner, classes: ClassTable) -> Pattern | Non
     if not are_entities[0] or any(are_entities[1:]):
         return None
     said = _Said(run)
-    if said.is_out_of_the_ordinary or said.speaks(classes.first_words):
+    if said.is_out_of_the_ordinary or said.speaks(classes.first_words) or said.speaks(_EXTENT):
         return None
     kind = classes.kind(reasoner.types(said.entity), frozenset(said.classes))
     assert kind is not None

@@ -8,7 +8,7 @@ from collections.abc import Set
 
 from nodes.kb_node.reasoner import datatypes
 from ontology import vocabulary as v
-from schemas import errors
+from schemas import errors, polygons
 from schemas.changes import value_in_words
 from schemas.entities import Stated as Stated
 from schemas.entities import Value
@@ -52,6 +52,8 @@ def literal(name: str, ranges: Set[Term], text: str) -> Term:
     """
     if _LITERAL.fullmatch(text):
         return _checked(name, ranges, text, text)
+    if v.WKT_LITERAL in ranges:
+        return v.literal(polygons.wkt(polygons.read_wkt(text)), v.WKT_LITERAL)
     known = sorted(r for r in ranges if datatypes.is_datatype(r) and r not in _TEXTS)
     if not known:
         return _text(text) if ranges & _TEXTS or ranges == {v.XSD_STRING} else _guessed(text)

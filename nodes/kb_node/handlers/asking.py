@@ -19,6 +19,7 @@ from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.sightings import Sightings
 from nodes.kb_node.answers.standing_places import StandingPlaces
 from nodes.kb_node.answers.understanding import Understanding
+from nodes.kb_node.answers.ways import Ways
 from nodes.kb_node.reasoner import Held
 from nodes.kb_node.reasoner.entailment.explaining import nearby
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -28,7 +29,17 @@ from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import Journal
 from nodes.runtime.fair_pool import FairPool
 from schemas import errors
-from schemas.bridge import CopyQuery, Entities, LoadOf, MapCopy, Recall, SnapshotQuery, StarQuery
+from schemas.bridge import (
+    CopyQuery,
+    Entities,
+    LoadOf,
+    MapCopy,
+    PlanOf,
+    Recall,
+    SnapshotQuery,
+    StarQuery,
+    WayOf,
+)
 from schemas.calls import Handler, by_verb
 from schemas.commands import (
     Check,
@@ -92,6 +103,7 @@ class Asking:
         """To be told of what perception sees."""
         self._accounts = Accounts(semantic_map, self._now, self.sightings)
         self._aside = FairPool(2, asker)
+        self._ways = Ways(semantic_map, self._past, self._aside.submit)
         self._second_opinions = FairPool(1, asker)
         """Of owlrl, which take seconds to minutes: nothing else waits behind them."""
         self._is_over = threading.Event()
@@ -118,6 +130,8 @@ class Asking:
             Tell.answered_by(self._accounts.tell),
             Find.answered_by(self.on_find),
             Export.answered_by(self.on_export),
+            PlanOf.answered_by(self._ways.plan),
+            WayOf.answered_by(self._ways.way),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
             Check.answered_by(self.on_check),

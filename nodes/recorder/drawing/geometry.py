@@ -7,12 +7,14 @@ import rerun as rr
 
 from nodes.drawing.figures import Figure
 from nodes.drawing.palette import GREY, colour_of
+from schemas.polygons import Polygon
 from schemas.scenes import Surface
 
 _GHOST_ALPHA = 90
 _SHEET_ALPHA = 36
 _SHEET_M = 0.002
 _LABEL_M = 0.02
+_BORDER_M = 0.015
 _THIN_M = 0.001
 
 
@@ -63,15 +65,30 @@ _FILL_MODE = {
 }
 
 
-def _sheet(figure: Figure) -> tuple[rr.Boxes3D, rr.Points3D]:
-    """Places lie in one another, so the larger a sheet, the lower it lies."""
+def _borders(figure: Figure, extent: Polygon, z_m: float) -> rr.LineStrips3D:
+    """The borders of a polygon, around the middle of its bounds."""
+    x0, y0, x1, y1 = extent.bounds
+    x, y = (x0 + x1) / 2.0, (y0 + y1) / 2.0
+    return rr.LineStrips3D(
+        [[(px - x, py - y, z_m) for px, py in (*ring, ring[0])] for ring in extent.rings],
+        radii=[_BORDER_M],
+        colors=[colour_of(figure.class_)],
+    )
+
+
+def _sheet(figure: Figure) -> tuple[rr.AsComponents, rr.AsComponents]:
+    """Places lie in one another, so the larger a sheet, the lower it lies. A polygon is its borders."""
     x, y, _ = figure.size_m
     below = -_SHEET_M * (x + y)
-    sheet = rr.Boxes3D(
-        half_sizes=[(x / 2.0, y / 2.0, _SHEET_M / 2.0)],
-        centers=[(0.0, 0.0, below)],
-        colors=[(*colour_of(figure.class_), _SHEET_ALPHA)],
-        fill_mode=rr.components.FillMode.Solid,
+    sheet: rr.AsComponents = (
+        _borders(figure, figure.extent, below)
+        if figure.extent
+        else rr.Boxes3D(
+            half_sizes=[(x / 2.0, y / 2.0, _SHEET_M / 2.0)],
+            centers=[(0.0, 0.0, below)],
+            colors=[(*colour_of(figure.class_), _SHEET_ALPHA)],
+            fill_mode=rr.components.FillMode.Solid,
+        )
     )
     name = rr.Points3D(
         [(0.0, 0.0, below)],

@@ -1,8 +1,13 @@
 import pytest
+import rerun as rr
 from msgspec import structs
 
+from nodes.drawing.figures import figure_of
 from nodes.drawing.neighbourhood import Knot, Neighbourhood
+from nodes.recorder.drawing.geometry import shape_of
 from nodes.recorder.drawing.stage import Stage
+from schemas.entities import Pose
+from schemas.polygons import EXTENT, box_around, read_wkt
 from tests.recorder.messages import body, entity, pose
 
 
@@ -81,3 +86,19 @@ def test_a_graph_is_drawn_when_it_changes(stage, told):
     stage.show_graph(Neighbourhood((Knot("cup1", "cup1", "centre", "Cup"),)))
     stage.show_graph(Neighbourhood((Knot("cup1", "cup1", "centre", "Cup"),)))
     assert [verb for verb, _ in told.take()] == ["graph"]
+
+
+def test_a_place_with_a_polygon_is_drawn_by_its_borders_and_a_box_as_a_sheet():
+    wkt = "POLYGON ((20 0, 26 0, 26 2, 22 2, 22 5, 20 5, 20 0))"
+    at, size = box_around(read_wkt(wkt), 0.0, 2.5)
+    room = structs.replace(
+        entity("room1", "Room", place=True), pose=Pose(position_m=at), size_m=size, properties={EXTENT: wkt}
+    )
+    border, _ = shape_of(figure_of(room, None, simulated=True))
+    assert isinstance(border, rr.LineStrips3D)
+    (strip,) = border.strips.as_arrow_array().to_pylist()
+    assert strip[0] == pytest.approx(strip[-1])
+    assert {round(point[0], 6) for point in strip} == {-3.0, -1.0, 3.0}
+
+    sheet, _ = shape_of(figure_of(structs.replace(room, properties={}), None, simulated=True))
+    assert isinstance(sheet, rr.Boxes3D)

@@ -15,6 +15,8 @@ from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
 from nodes.extern.cli.output import lines
+from nodes.extern.cli.output.printable import say
+from nodes.extern.plan_files import is_plan, read_plan
 from schemas import errors
 
 if TYPE_CHECKING:
@@ -45,6 +47,7 @@ _describing = _options(
     yaw_option,
     click.option("--orientation", nargs=4, type=float, metavar="W X Y Z", help="Unit quaternion."),
     vector_option("--size", metavar="X Y Z", help="Size along its own axes [m]."),
+    click.option("--extent", metavar="WKT", help="What a place covers: 'POLYGON ((X Y, ...))' [m]."),
     click.option("--ref", metavar="TEXT", help="Preferred reference: what people call it."),
     click.option("--alt", multiple=True, metavar="TEXT", help="Alternative reference; may be repeated."),
     click.option("--confidence", type=float, metavar="P", help="Confidence, 0 to 1."),
@@ -183,6 +186,7 @@ def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **ho
     """Load a map, a scene or a TBox from a file.
 
     A map is an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; a TBox comes with its imports.
+    A plan is the .yaml of an occupancy grid of ROS's map server: its free space becomes rooms and doors.
     """
     from nodes.extern.cli.output.progress import progress
 
@@ -194,3 +198,6 @@ def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **ho
                 f"{error.text}; whether {file.name} was loaded is unknown; to find out: semmap history"
             ) from None
     print_lines(lines.changed(reply))
+    if is_plan(file) and not how["tbox"]:
+        for line in read_plan(file).lines:
+            say(f"  {line}")

@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 
 from nodes.kb_node.relations.geometry.form_columns import Bools, Extents, Floats, FormColumns, Ints, flat
-from nodes.kb_node.relations.geometry.forms import Form, form_of
+from nodes.kb_node.relations.geometry.forms import Form
 from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.geometry.solids import UNMEASURED, Solid, shape_of
+from nodes.kb_node.relations.geometry.solids import Solid, form_in, shape_of
 from schemas.entities import Entity, Vector
 
 _FAR_M = 2e4
@@ -56,7 +56,7 @@ def solids_of(entities: Iterable[Entity | Placed]) -> list[Solid]:
             model, size = shape_of(entity)
             names.append(entity.name)
             positions.append(pose.position_m)
-            forms.append(form_of(model, size or UNMEASURED, pose.orientation_wxyz))
+            forms.append(form_in(entity, pose, model, size))
             are_places.append(entity.place)
             are_measured.append(size is not None)
     each, row = _once(forms)

@@ -123,8 +123,9 @@ class FormColumns(Extents):
         (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(self.rotation, 0, -1)
         x, y, z = self.size.T
         self.volume: Final[Floats] = x * y * z
-        self.is_plumb: Final[Bools] = (np.abs([c, f, g, h]).max(axis=0) < 1e-9) & (i > 0.0)
-        """Whether its z axis is that of the map, but for rounding."""
+        is_box = np.array([form.region is None for form in forms], dtype=bool)
+        self.is_plumb: Final[Bools] = (np.abs([c, f, g, h]).max(axis=0) < 1e-9) & (i > 0.0) & is_box
+        """Whether its z axis is that of the map, but for rounding; and it is no polygon."""
         self.is_square: Final[Bools] = self.is_plumb & (
             (np.maximum(np.abs(b), np.abs(d)) < 1e-9) | (np.maximum(np.abs(a), np.abs(e)) < 1e-9)
         )

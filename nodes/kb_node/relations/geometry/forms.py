@@ -11,8 +11,10 @@ from nodes.kb_node.relations.geometry.convex import Convex, convex
 from nodes.kb_node.relations.geometry.fitting import fitted
 from nodes.kb_node.relations.geometry.lazily import lazily
 from nodes.kb_node.relations.geometry.polygons import Point, area, hull
+from nodes.kb_node.relations.geometry.regions import Region
 from ontology.model_shapes import ModelShape
-from schemas.entities import Quaternion, Size, Vector
+from schemas.entities import IDENTITY, Quaternion, Size, Vector
+from schemas.polygons import Polygon, read_wkt
 
 UPRIGHT = math.cos(math.radians(15.0))
 """A thing that leans more has no level surfaces."""
@@ -49,6 +51,9 @@ class Form:
         """How many solids have it, or had it."""
         self.is_level: Final = self.rotation[2][2] >= LEVEL
         self.is_upright: Final = self.rotation[2][2] >= UPRIGHT
+
+    region: Region | None = None
+    """What it covers, of a place whose extent is a polygon."""
 
     def is_of(self, model: str | None, size: Size, wxyz: Quaternion) -> bool:
         """Whether it is the form of a model at a size, turned so."""
@@ -164,6 +169,47 @@ class Form:
 
 
 _EXACTLY = 1e-9
+
+
+class Expanse(Form):
+    """A place whose extent is a polygon, seen from the middle of the upright box around it."""
+
+    def __init__(self, polygon: Polygon, size: Size, middle: Point) -> None:
+        super().__init__(None, size, IDENTITY)
+        x, y = middle
+        self.region = Region([[(px - x, py - y) for px, py in ring] for ring in polygon.rings])
+
+    def is_of(self, model: str | None, size: Size, wxyz: Quaternion) -> bool:
+        """Never: another place has another extent."""
+        return False
+
+    @lazily
+    def is_square(self) -> bool:
+        """Whether its outline is its bounds: that is for boxes to say."""
+        return False
+
+    @lazily
+    def outline(self) -> list[Point]:
+        """The convex hull of what it covers."""
+        assert self.region is not None
+        return hull([point for piece in self.region.pieces for point in piece.corners])
+
+    @lazily
+    def footprint(self) -> float:
+        """Of what it covers [m^2]."""
+        assert self.region is not None
+        return self.region.area
+
+    @lazily
+    def volume(self) -> float:
+        """Of what it covers, as high as it is [m^3]."""
+        return self.footprint * self.size[2]
+
+
+@lru_cache(maxsize=1024)
+def expanse(wkt: str, size: Size, middle: Point) -> Expanse:
+    """The form of a place with this extent, whose bounding box has this size and middle."""
+    return Expanse(read_wkt(wkt), size, middle)
 
 
 @lru_cache(maxsize=4096)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from msgspec import Struct
 
 from schemas.entities import Entity, Pose, Size
+from schemas.polygons import EXTENT
 
 
 class Placed(Struct, frozen=True, kw_only=True, array_like=True):
@@ -16,6 +17,8 @@ class Placed(Struct, frozen=True, kw_only=True, array_like=True):
     size_m: Size | None
     place: bool
     model: str
+    extent: str = ""
+    """The WKT of a place whose extent is a polygon."""
 
     @classmethod
     def of(cls, entity: Entity) -> Placed:
@@ -27,4 +30,15 @@ class Placed(Struct, frozen=True, kw_only=True, array_like=True):
             size_m=entity.size_m,
             place=entity.place,
             model=entity.model,
+            extent=extent_in(entity),
         )
+
+
+def extent_in(entity: Entity | Placed) -> str:
+    """The WKT of an extent that is a polygon; "" for one that is a box, and for what is no place."""
+    if not entity.place:
+        return ""
+    if isinstance(entity, Placed):
+        return entity.extent
+    text = entity.properties.get(EXTENT)
+    return text if isinstance(text, str) else ""

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Final
 
 from nodes.kb_node.relations.geometry.convex import Convex, moved
-from nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, form_of
+from nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, expanse, form_of
 from nodes.kb_node.relations.geometry.lazily import lazily
-from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.geometry.placed import Placed, extent_in
 from nodes.kb_node.relations.geometry.polygons import Point
 from ontology.model_shapes import Interior, own_size_m
-from schemas.entities import Entity, Size, Vector
+from schemas.entities import Entity, Pose, Size, Vector
 
 Extent = tuple[Bounds, float, float]
 """Bounds, bottom and top."""
@@ -203,6 +203,8 @@ def solid_of(entity: Entity | Placed, before: Solid | None = None) -> Solid | No
     if pose is None:
         return None
     model, size = shape_of(entity)
+    if entity.place and (form := _expanse(entity, pose.position_m, size)) is not None:
+        return Solid(entity.name, pose.position_m, form, True, True)
     extent, turn = size or UNMEASURED, pose.orientation_wxyz
     if before is None or not before.form.is_of(model, extent, turn):
         form = form_of(model, extent, turn)
@@ -213,6 +215,19 @@ def solid_of(entity: Entity | Placed, before: Solid | None = None) -> Solid | No
     is_alike = stays and (before.is_place, before.is_measured) == (entity.place, size is not None)
     known = (_bounds(form, pose.position_m), before.bottom, before.top) if is_alike else None
     return Solid(entity.name, pose.position_m, form, entity.place, size is not None, known)
+
+
+def form_in(entity: Entity | Placed, pose: Pose, model: str | None, size: Size | None) -> Form:
+    """The form of an entity that stands at `pose`."""
+    found = _expanse(entity, pose.position_m, size) if entity.place else None
+    return found or form_of(model, size or UNMEASURED, pose.orientation_wxyz)
+
+
+def _expanse(entity: Entity | Placed, position: Vector, size: Size | None) -> Form | None:
+    """The form of a place whose extent is a polygon; None for a box."""
+    if size is None or not (wkt := extent_in(entity)):
+        return None
+    return expanse(wkt, size, position[:2])
 
 
 def _bounds(form: Form, position: Vector) -> Bounds:

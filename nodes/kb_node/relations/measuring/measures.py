@@ -12,6 +12,7 @@ from typing import NamedTuple
 from nodes.kb_node.relations.geometry.convex import Convex, contact, over_flat_top
 from nodes.kb_node.relations.geometry.forms import LOWEST_M, Bounds
 from nodes.kb_node.relations.geometry.polygons import area, clipped, contains, covers, distance, hull
+from nodes.kb_node.relations.geometry.regions import Region
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from ontology.model_shapes import Interior
@@ -209,10 +210,14 @@ def within(solid: Solid, place: Solid, limits: Thresholds, *, also_places: bool 
     limit = limits.place_share
     if not place.bottom - limits.gap_m <= height <= place.top + limits.gap_m:
         return Measure(False, share=0.0, limit=limit)
-    if not solid.is_measured:
+    if place.form.region is not None:
+        share = _share_in_region(solid, place, place.form.region)
+    elif not solid.is_measured:
         share = float(contains(place.outline, solid.position[:2]))
     elif not overlap(solid.bounds, place.bounds):
         share = 0.0
+    elif solid.form.region is not None:
+        share = solid.form.region.shared(place.outline, solid.position[:2]) / max(solid.footprint, 1e-9)
     elif (place.form.is_square and _is_amid(solid.bounds, place.bounds)) or covers(
         place.outline, solid.outline
     ):
@@ -222,10 +227,35 @@ def within(solid: Solid, place: Solid, limits: Thresholds, *, also_places: bool 
     return Measure(share >= limit, share=share, limit=limit)
 
 
+def _share_in_region(solid: Solid, place: Solid, region: Region) -> float:
+    """The share of a footprint that a polygon covers; of what has no size, whether its position is in it."""
+    x, y, _ = place.position
+    if not solid.is_measured:
+        px, py, _ = solid.position
+        return float(region.contains((px - x, py - y)))
+    if not overlap(solid.bounds, place.bounds):
+        return 0.0
+    if (its := solid.form.region) is not None:
+        to = (x - solid.position[0], y - solid.position[1])
+        shared = sum(region.shared(piece.corners, to) for piece in its.pieces)
+        return min(1.0, shared / max(its.area, 1e-9))
+    return min(1.0, region.shared(solid.outline, (x, y)) / max(area(solid.outline), 1e-9))
+
+
 def gap(one: Solid, other: Solid) -> float:
     """The distance of two boxes [m]; of leaning ones that of the upright prisms around them."""
     up = max(0.0, one.bottom - other.top, other.bottom - one.top)
+    if one.is_place or other.is_place:
+        return math.hypot(_apart_in_plan(one, other), up)
     return math.hypot(distance(one.outline, other.outline), up)
+
+
+def _apart_in_plan(one: Solid, other: Solid) -> float:
+    """The distance of two outlines, of which one is a place's and may be a polygon [m]."""
+    for place, solid in ((one, other), (other, one)):
+        if (region := place.form.region) is not None:
+            return region.distance(solid.outline, place.position[:2])
+    return distance(one.outline, other.outline)
 
 
 def near(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:

@@ -1,0 +1,62 @@
+"""Plans and ways: the knowledge base works them out, once the simulator has told where the walls are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import TypeVar
+
+from nodes.coordinator.scene.reconciler import AskSim, Keeping
+from nodes.runtime.futures import settle
+from schemas import commands as c
+from schemas import errors
+from schemas.bridge import PlanOf, WayOf
+from schemas.calls import Call
+from schemas.plans import Outline, Plan, WallsQuery, Way
+
+R = TypeVar("R")
+Walls = tuple[Outline, ...] | None
+"""None where nobody knows them."""
+
+
+class AmongWalls:
+    """Passes questions on with the walls of the simulated world."""
+
+    def __init__(self, keeping: Keeping, ask: AskSim, ask_map: AskSim) -> None:
+        """`ask(call)` asks the simulator, `ask_map(call)` the knowledge base, without waiting."""
+        self._keeping = keeping
+        self._ask = ask
+        self._ask_map = ask_map
+
+    def plan(self, command: c.PlanFloor) -> Future[Plan]:
+        """The plan of the map."""
+        return self._knowing(lambda walls: PlanOf(as_of=command.as_of, walls=walls))
+
+    def route(self, command: c.FindWay) -> Future[Way]:
+        """A way through the map."""
+        return self._knowing(
+            lambda walls: WayOf(
+                from_=command.from_,
+                to=command.to,
+                radius=command.radius,
+                heights=command.heights,
+                as_of=command.as_of,
+                walls=walls,
+            )
+        )
+
+    def _knowing(self, call: Callable[[Walls], Call[R]]) -> Future[R]:
+        if not self._keeping.scene.known:
+            return self._ask_map(call(None))
+        future: Future[R] = Future()
+        found = self._ask(WallsQuery())
+        found.add_done_callback(lambda done: settle(future, lambda: self._ask_map(call(_walls(done)))))
+        return future
+
+
+def _walls(found: Future[tuple[Outline, ...]]) -> Walls:
+    """None where the simulator has gone meanwhile."""
+    try:
+        return found.result()
+    except errors.NoAnswer:
+        return None

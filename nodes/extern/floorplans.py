@@ -1,0 +1,88 @@
+"""Floor plans as files: what a robot's navigation takes, or a person."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from nodes.extern.files import write_atomically
+from nodes.runtime import extras
+from schemas import errors
+from schemas.moments import When
+from schemas.plans import HEIGHTS_M, HeightRange
+
+if TYPE_CHECKING:
+    from nodes.extern.client import Client
+
+RESOLUTION_M: Final = 0.05
+_FINEST_M, _COARSEST_M = 0.005, 1.0
+_KINDS: Final = "PNG or PGM (an occupancy grid), .svg (to print) or .geojson"
+
+
+def write_floorplan(
+    client: Client,
+    file: Path,
+    *,
+    resolution: float = RESOLUTION_M,
+    heights: HeightRange = HEIGHTS_M,
+    as_of: When | None = None,
+    furniture: bool = True,
+) -> tuple[Path, ...]:
+    """Write the plan of a system's map, of the kind that the name of `file` says; answers what was written.
+
+    A grid (`.png`, `.pgm`) comes with its `.yaml`, as ROS's map server has them: `resolution` is metres a
+    pixel, and what has a part within `heights` [m] above the floor is occupied. Where places are forbidden,
+    it comes with a mask of them, too. Raises BadRequest, Refused.
+    """
+    extras.require("a floor plan", "kb")
+    kind = file.suffix.lower()
+    if kind not in (".png", ".pgm", ".svg", ".geojson"):
+        raise errors.BadRequest(f"{file.name} is no kind of floor plan; there are {_KINDS}")
+    if not _FINEST_M <= resolution <= _COARSEST_M:
+        raise errors.BadRequest(
+            f"the resolution is {resolution:g} m a pixel; it is from {_FINEST_M:g} to {_COARSEST_M:g} m"
+        )
+    if not heights[0] < heights[1]:
+        raise errors.BadRequest(
+            f"the height range is from {heights[0]:g} to {heights[1]:g} m; it begins below where it ends"
+        )
+    if kind == ".svg":
+        return (_svg(client, file, as_of),)
+    plan = client.floorplan(as_of=as_of)
+    if kind == ".geojson":
+        from nodes.navigation.geojson import geojson
+
+        write_atomically(file, geojson(plan).encode())
+        return (file,)
+
+    from nodes.navigation import map_server
+    from nodes.navigation.grid import forbidden, occupancy
+
+    encode: Callable[[map_server.Pixels], bytes] = map_server.png if kind == ".png" else map_server.pgm
+    grid = occupancy(plan, resolution, heights, furniture=furniture)
+    pictures = [(file, map_server.pixels_of(grid))]
+    if any(place.forbidden for place in plan.places):
+        mask = forbidden(plan, grid.frame)
+        pictures.append((file.with_name(f"{file.stem}_forbidden{file.suffix}"), map_server.mask_pixels(mask)))
+    written: list[Path] = []
+    for path, pixels in pictures:
+        write_atomically(path, encode(pixels))
+        described = path.with_suffix(".yaml")
+        write_atomically(described, map_server.yaml_of(path.name, grid.frame).encode())
+        written += [path, described]
+    return tuple(written)
+
+
+def _svg(client: Client, file: Path, as_of: When | None) -> Path:
+    from nodes.extern.plan.floor import floor_of
+    from nodes.extern.plan.svg import drawing
+
+    entities = client.list(as_of=as_of)
+    if not entities:
+        raise errors.Refused("there is nothing to plan on: no place has an extent, and no thing a size")
+    commits = client.history(until=as_of, limit=1)
+    last = commits[-1]
+    text = drawing(floor_of(entities), title="Floor plan", commit=last.seq, stamp_ns=last.stamp_ns)
+    write_atomically(file, text.encode())
+    return file

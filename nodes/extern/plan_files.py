@@ -1,0 +1,53 @@
+"""Plans of ROS's map server as files: a YAML file, and the image that it names."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nodes.extern.files import read_file
+from nodes.runtime import extras
+from schemas import errors
+
+if TYPE_CHECKING:
+    from nodes.navigation.loaded_plan import LoadedPlan
+    from nodes.navigation.map_server import Pixels
+
+
+def is_plan(path: Path) -> bool:
+    """Whether a file is the description of a plan, by its name."""
+    return path.suffix.lower() in (".yaml", ".yml")
+
+
+def read_plan(path: Path) -> LoadedPlan:
+    """The rooms and doors of a plan, told by its YAML file. Raises BadFile."""
+    extras.require("a plan", "sim")
+    from nodes.navigation.loaded_plan import loaded_plan
+    from nodes.navigation.map_server import read_image, read_yaml
+
+    try:
+        text = read_file(path).decode()
+    except UnicodeDecodeError:
+        raise errors.BadFile(f"{path.name} is not a text in UTF-8") from None
+    described = read_yaml(text, path.name)
+    image = path.parent / described.image  # one that is absolute stays so
+    if not image.is_file():
+        raise errors.BadFile(f"the image of {path.name} is missing: there is no file {image}")
+    return loaded_plan(described, read_image(read_file(image), image.name, _png), path.name)
+
+
+def _png(content: bytes) -> Pixels:
+    import numpy as np
+    from PIL import Image
+
+    from nodes.navigation.grid import MOST_CELLS
+
+    try:
+        with Image.open(io.BytesIO(content)) as picture:
+            width, height = picture.size
+            if width * height > MOST_CELLS:
+                raise errors.BadFile(f"the image is {width} x {height}; it has at most {MOST_CELLS:,} pixels")
+            return np.asarray(picture.convert("L"), dtype=np.uint8)
+    except (OSError, SyntaxError, ValueError) as error:
+        raise errors.BadFile(f"the image is not a PNG file that can be read: {error}") from None

@@ -1,0 +1,84 @@
+"""The rooms and doors of a map server's plan, as a scene that can be loaded: places to be named."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import msgspec
+
+from nodes.kb_node.relations.geometry.polygons import Point
+from nodes.navigation.map_server import Described, Pixels, grid_of
+from nodes.navigation.rooms import Cut, cut
+from schemas import errors, scene_files
+from schemas.polygons import simple, wkt
+from schemas.scene_files import SceneFile
+
+_DOOR_M: Final = (0.06, 2.08)
+"""How thick and how high a door is."""
+_DIGITS: Final = 3
+
+
+@dataclass(frozen=True)
+class LoadedPlan:
+    """What a plan falls into: a scene of rooms and doors, and a line on each."""
+
+    scene: SceneFile
+    lines: tuple[str, ...]
+
+    @property
+    def content(self) -> bytes:
+        """The scene as a file."""
+        return msgspec.json.encode(self.scene)
+
+
+def loaded_plan(described: Described, pixels: Pixels, name: str) -> LoadedPlan:
+    """The rooms of a plan as places, and the passages between them as doors.
+
+    Raises BadFile for a plan without free space, or whose rooms are all too small.
+    """
+    found = cut(grid_of(described, pixels))
+    if not found.rooms:
+        raise errors.BadFile(
+            f"{name} has no room in it: nothing free is larger than 2 square metres; look at its thresholds,"
+            " resolution and negate"
+        )
+    return _scene(found, described)
+
+
+def _scene(found: Cut, described: Described) -> LoadedPlan:
+    x0, y0, yaw = described.origin
+    c, s = math.cos(yaw), math.sin(yaw)
+
+    def placed(point: Point) -> Point:
+        x, y = point
+        return round(x0 + c * x - s * y, _DIGITS), round(y0 + s * x + c * y, _DIGITS)
+
+    rooms = [f"room{k}" for k in range(1, len(found.rooms) + 1)]
+    entities: list[scene_files.Described] = []
+    lines: list[str] = []
+    for name, room in zip(rooms, found.rooms, strict=True):
+        polygon = simple([[placed(point) for point in ring] for ring in room.polygon.rings])
+        entities.append(scene_files.Described(class_="Room", name=name, extent=wkt(polygon)))
+        left, low, right, high = polygon.bounds
+        lines.append(
+            f"{name}: {room.area_m2:.1f} square metres, x {left:g} to {right:g}, y {low:g} to {high:g}"
+        )
+    for k, door in enumerate(found.doorways, start=1):
+        x, y = placed(door.middle)
+        between = [rooms[room] for room in door.rooms]
+        entities.append(
+            scene_files.Described(
+                class_="Door",
+                name=f"doorway{k}",
+                at=(x, y, 0.0),
+                yaw=round((door.yaw_rad + yaw + math.pi / 2) % math.pi - math.pi / 2, 4) + 0.0,
+                size=(_DOOR_M[0], max(door.width_m, 0.1), _DOOR_M[1]),
+                set=tuple(f"connects={room}" for room in between),
+            )
+        )
+        lines.append(
+            f"doorway{k}: {door.width_m:g} m wide at ({x:g}, {y:g}), from {between[0]} to {between[1]}"
+        )
+    return LoadedPlan(SceneFile(entities=tuple(entities)), tuple(lines))

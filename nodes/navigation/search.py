@@ -1,0 +1,118 @@
+"""The shortest way over the free cells of a grid: A* to eight neighbours, then straight where one can see."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from heapq import heappop, heappush
+from typing import Final
+
+import numpy as np
+
+from nodes.navigation.grid import Mask
+
+Cell = tuple[int, int]
+"""Row and column."""
+
+_STEPS: Final = tuple(
+    (dy, dx, math.hypot(dy, dx)) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if (dy, dx) != (0, 0)
+)
+
+_DIAGONALLY: Final = math.sqrt(2.0) - 1.0
+
+
+def shortest(free: Mask, starts: Iterable[Cell], goals: Iterable[Cell]) -> list[Cell] | None:
+    """The cells of a shortest way from one of the starts to one of the goals; None without any.
+
+    It squeezes past no corner: to go diagonally, both cells beside the step must be free. Of ways of one
+    length it is always the same.
+    """
+    height, width = free.shape
+    across = width + 2
+    open_ = np.zeros((height + 2, across), dtype=bool)
+    open_[1:-1, 1:-1] = free
+    is_free = open_.ravel().tolist()
+    ends = {(row + 1) * across + column + 1 for row, column in goals}
+    ends = {end for end in ends if is_free[end]}
+    if not ends:
+        return None
+    rows, columns = [end // across for end in ends], [end % across for end in ends]
+    low, high, left, right = min(rows), max(rows), min(columns), max(columns)
+    steps = [(dy * across + dx, dy * across, dx, cost) for dy, dx, cost in _STEPS]
+
+    def rest(cell: int) -> float:
+        """At least so far from the goals: octile distance to the rectangle around them."""
+        row, column = divmod(cell, across)
+        dy = max(low - row, row - high, 0)
+        dx = max(left - column, column - right, 0)
+        octile: float = max(dy, dx) + _DIAGONALLY * min(dy, dx)
+        return octile
+
+    costs: dict[int, float] = {}
+    before: dict[int, int] = {}
+    queue: list[tuple[float, int]] = []
+    for row, column in starts:
+        start = (row + 1) * across + column + 1
+        if is_free[start] and start not in costs:
+            costs[start] = 0.0
+            heappush(queue, (rest(start), start))
+    done: set[int] = set()
+    while queue:
+        _, cell = heappop(queue)
+        if cell in done:
+            continue
+        done.add(cell)
+        if cell in ends:
+            return _back(cell, before, across)
+        cost = costs[cell]
+        for step, up, over, length in steps:
+            other = cell + step
+            if not is_free[other] or other in done:
+                continue
+            if up and over and not (is_free[cell + up] and is_free[cell + over]):
+                continue
+            further = cost + length
+            if further < costs.get(other, math.inf):
+                costs[other] = further
+                before[other] = cell
+                heappush(queue, (further + rest(other), other))
+    return None
+
+
+def _back(cell: int, before: dict[int, int], across: int) -> list[Cell]:
+    found = [cell]
+    while cell in before:
+        cell = before[cell]
+        found.append(cell)
+    return [(c // across - 1, c % across - 1) for c in reversed(found)]
+
+
+def straightened(cells: Sequence[Cell], free: Mask) -> list[Cell]:
+    """The corners that are left of a way when each is joined to the furthest that can be seen from it."""
+    kept = [cells[0]]
+    at = 0
+    while at < len(cells) - 1:
+        step, furthest = 1, at + 1
+        while at + step < len(cells) and is_seen(cells[at], cells[at + step], free):
+            furthest = at + step
+            step *= 2
+        low, high = furthest, min(len(cells) - 1, at + step)
+        while low < high:
+            middle = (low + high + 1) // 2
+            if is_seen(cells[at], cells[middle], free):
+                low = middle
+            else:
+                high = middle - 1
+        at = low
+        kept.append(cells[at])
+    return kept
+
+
+def is_seen(one: Cell, other: Cell, free: Mask) -> bool:
+    """Whether all cells that the line between two cells' middles passes through are free."""
+    (y0, x0), (y1, x1) = one, other
+    count = 2 * max(abs(y1 - y0), abs(x1 - x0)) + 1
+    shares = np.linspace(0.0, 1.0, max(count * 2, 2))
+    rows = np.rint(y0 + (y1 - y0) * shares).astype(np.int64)
+    columns = np.rint(x0 + (x1 - x0) * shares).astype(np.int64)
+    return bool(free[rows, columns].all())

@@ -1,0 +1,74 @@
+"""What of the world itself stands in the way, seen from above: its own geometry, but not that of bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Final
+
+import mujoco
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+from nodes.sim_node.bodies import Floats
+from schemas.plans import Outline
+
+_PASSED_OVER: Final = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
+_ROUND: Final = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_CYLINDER))
+_SIDES: Final = 16
+_DIGITS: Final = 6
+
+
+def walls(model: mujoco.MjModel, data: mujoco.MjData, bodies: Collection[str]) -> tuple[Outline, ...]:
+    """The outlines of what collides and cannot move, but of no body that is named in `bodies`.
+
+    Planes and height fields are floors. What is round has sixteen corners.
+    """
+    theirs = {model.body(name).id for name in bodies}
+    found: list[Outline] = []
+    for geom in range(model.ngeom):
+        body = int(model.geom_bodyid[geom])
+        if model.body_weldid[body] != 0 or int(model.body_rootid[body]) in theirs:
+            continue
+        if model.geom_type[geom] in _PASSED_OVER or not (
+            model.geom_contype[geom] or model.geom_conaffinity[geom]
+        ):
+            continue
+        if (outline := _outline(_points(model, data, geom))) is not None:
+            found.append(outline)
+    return tuple(found)
+
+
+def _points(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Floats:
+    """(N, 3) points whose hull is the geometry, or around it; map frame [m]."""
+    kind = int(model.geom_type[geom])
+    centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
+    if kind == int(mujoco.mjtGeom.mjGEOM_MESH):
+        mesh = int(model.geom_dataid[geom])
+        start = int(model.mesh_vertadr[mesh])
+        own = np.asarray(model.mesh_vert[start : start + int(model.mesh_vertnum[mesh])], dtype=np.float64)
+    elif kind in _ROUND:
+        angle = np.arange(_SIDES) * (2.0 * np.pi / _SIDES)
+        reach = half[0] / np.cos(np.pi / _SIDES)
+        ring = np.stack([np.cos(angle) * reach, np.sin(angle) * reach, np.zeros(_SIDES)], axis=1)
+        up = np.array([0.0, 0.0, half[2]])
+        own = np.concatenate([ring - up, ring + up]) + centre
+    else:
+        signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
+        own = centre + signs * half
+    rotation = data.geom_xmat[geom].reshape(3, 3)
+    points: Floats = own @ rotation.T + data.geom_xpos[geom]
+    return points
+
+
+def _outline(points: Floats) -> Outline | None:
+    """Seen from above; None for what has no area."""
+    try:
+        hull = ConvexHull(points[:, :2])
+    except QhullError:
+        return None
+    corners = np.round(points[hull.vertices, :2], _DIGITS) + 0.0
+    return Outline(
+        corners=tuple((float(x), float(y)) for x, y in corners),
+        low=round(float(points[:, 2].min()), _DIGITS),
+        high=round(float(points[:, 2].max()), _DIGITS),
+    )

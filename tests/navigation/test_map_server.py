@@ -1,0 +1,85 @@
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from nodes.navigation.grid import FREE, OCCUPIED, UNKNOWN, Frame, OccupancyGrid
+from nodes.navigation.map_server import grid_of, pgm, pixels_of, png, read_image, read_yaml, yaml_of
+from schemas.errors import BadFile
+
+FRAME = Frame(-0.6, 1.25, 0.05, 3, 2)
+GRID = OccupancyGrid(FRAME, np.array([[FREE, OCCUPIED, UNKNOWN], [UNKNOWN, UNKNOWN, FREE]], dtype=np.int8))
+
+
+def decoded(content):
+    return np.asarray(Image.open(io.BytesIO(content)).convert("L"))
+
+
+def test_what_is_written_is_read_the_same():
+    for encode in (png, pgm):
+        pixels = read_image(encode(pixels_of(GRID)), "plan", decoded)
+        described = read_yaml(yaml_of("plan.png", FRAME), "plan.yaml")
+        assert (described.image, described.resolution, described.origin) == (
+            "plan.png",
+            0.05,
+            (-0.6, 1.25, 0.0),
+        )
+        assert (grid_of(described, pixels).cells == GRID.cells).all()
+
+
+def test_the_image_is_what_others_expect():
+    image = Image.open(io.BytesIO(png(pixels_of(GRID))))
+
+    assert (image.size, image.mode) == ((3, 2), "L")
+    assert np.asarray(image).tolist() == [[205, 205, 254], [254, 0, 205]]
+
+
+def test_pgm_in_text_with_comments_and_sixteen_bits():
+    text = b"P2\n# made by hand\n2 1\n# brightest\n100\n0 100\n"
+    assert read_image(text, "plan.pgm", decoded).tolist() == [[0, 255]]
+    wide = b"P5 2 1 65535\n" + bytes([0, 0, 255, 255])
+    assert read_image(wide, "plan.pgm", decoded).tolist() == [[0, 255]]
+
+
+def test_negate_raw_and_lists_over_lines():
+    said = "image: 'a b.pgm'  # with a space\nresolution: 0.1\norigin:\n - 1\n - 2\n - 0.5\nnegate: 1\n"
+    described = read_yaml(said, "m.yaml")
+    assert (described.image, described.origin) == ("a b.pgm", (1.0, 2.0, 0.5))
+    assert grid_of(described, np.array([[0, 255]], dtype=np.uint8)).cells.tolist() == [[FREE, OCCUPIED]]
+    raw = read_yaml("image: x\nresolution: 1\nmode: raw\n", "m.yaml")
+    pixels = np.array([[0, 100, 255]], dtype=np.uint8)
+    assert grid_of(raw, pixels).cells.tolist() == [[FREE, OCCUPIED, UNKNOWN]]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("resolution: 0.05\n", "takes at least image: FILE and resolution: METRES"),
+        ("hello\n", "it has the line 'hello'"),
+        ("image: x\nresolution: nan\n", "resolution is 'nan', which is no number"),
+        ("image: x\nresolution: 0\n", "metres a pixel, over 0"),
+        ("image: x\nresolution: 0.1\norigin: [1]\n", "three numbers"),
+        ("image: x\nresolution: 0.1\norigin: [a, b, c]\n", "three numbers"),
+        ("image: x\nresolution: 0.1\nmode: odd\n", "none of trinary, scale and raw"),
+        ("image: x\nresolution: 0.1\nfree_thresh: 0.9\n", "below occupied_thresh"),
+    ],
+)
+def test_broken_descriptions(text, said):
+    with pytest.raises(BadFile, match=said):
+        read_yaml(text, "plan.yaml")
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"GIF89a", "neither PNG nor PGM"),
+        (b"P5\n2 2\n", "its head is broken"),
+        (b"P5\n2 2\n255\nab", "ends before"),
+        (b"P2\n2 2\n255\n1 2 x 4", "ends before"),
+        (b"P5\n90000 90000\n255\n", "has at most"),
+    ],
+)
+def test_broken_images(content, said):
+    with pytest.raises(BadFile, match=said):
+        read_image(content, "plan.pgm", decoded)

@@ -1,0 +1,60 @@
+"""Floor plans, ways and loaded plans, through a whole system with its walls."""
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from schemas import errors
+from tests.conftest import running
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    with running(tmp_path_factory.mktemp("navigation"), "--no-record") as system:
+        yield system
+
+
+def test_a_plan_to_files_and_back_as_rooms(system, tmp_path):
+    plan = tmp_path / "bare.png"
+    system.cli("floorplan", plan, "--no-furniture")
+    pixels = np.asarray(Image.open(plan))
+    assert set(np.unique(pixels)) == {0, 205, 254}
+    told = system.cli("load", tmp_path / "bare.yaml", "--dry-run")
+    lines = [line for line in told.splitlines() if line.startswith(("  room", "  doorway"))]
+    assert len([line for line in lines if line.startswith("  room")]) == 6
+    assert "  doorway1: 0.9 m wide at (6, 1.8), from room1 to room2" in lines
+    assert " room1 " not in system.cli("list", "--class", "Room")
+    missing = tmp_path / "missing.yaml"
+    missing.write_text("image: nothing.pgm\nresolution: 0.05\n")
+    assert "the image of missing.yaml is missing" in system.cli("load", missing, status=2)
+
+
+def test_plans_of_other_kinds(system, tmp_path):
+    system.cli("floorplan", tmp_path / "flat.svg")
+    assert "kitchen" in (tmp_path / "flat.svg").read_text()
+    system.cli("floorplan", tmp_path / "flat.geojson", "--as-of", 1)
+    features = json.loads((tmp_path / "flat.geojson").read_text())["features"]
+    assert {f["properties"]["kind"] for f in features} == {"place", "door", "thing", "wall"}
+    assert "no kind of floor plan" in system.cli("floorplan", tmp_path / "flat.bmp", status=2)
+    assert "begins below" in system.cli(
+        "floorplan", plan := tmp_path / "x.png", "--height-range", 2, 1, status=2
+    )
+    assert not plan.exists()
+
+
+def test_ways_in_words_in_python_and_when_a_door_is_shut(system):
+    told = system.cli("route", "bathroom", "studio")
+    assert "bathroom1 to corridor1 to studio1, through door4 and door6" in told
+    with system.client() as client:
+        way = client.route("bathroom1", (8.0, 6.0))
+        assert (way.places, way.doors) == (("bathroom1", "corridor1", "studio1"), ("door4", "door6"))
+        assert 8.0 < way.metres < 12.0
+        client.set("door4", "isOpen", False)
+        assert client.route("bathroom1", "studio1").closed == ("door4",)
+        assert client.route("bathroom1", "studio1", as_of=1).closed == ()
+        with pytest.raises(errors.Refused, match="it is in no place of the map"):
+            client.route("bathroom1", (50.0, 50.0))
+        with pytest.raises(errors.UnknownName, match="nothing is named or called 'atlantis'"):
+            client.route("bathroom1", "atlantis")
