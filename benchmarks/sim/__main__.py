@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from benchmarks.sim import alone, endurance, live, system
+from benchmarks.sim import alone, drive, endurance, live, system
 from benchmarks.table import Row, lines
 
 
@@ -55,12 +55,18 @@ def _live(words: argparse.Namespace) -> list[Row]:
         return live.measure(Path(folder), seconds=6.0 if words.quick else 15.0)
 
 
+def _drive(_: argparse.Namespace) -> list[Row]:
+    with tempfile.TemporaryDirectory() as folder:
+        return drive.measure(Path(folder))
+
+
 PARTS: dict[str, Callable[[argparse.Namespace], list[Row]]] = {
     "alone": _alone,
     "frames": lambda _: alone.frames(),
     "system": _system,
     "loads": _loads,
     "live": _live,
+    "drive": _drive,
     "endurance": lambda words: endurance.endure(words.minutes),
 }
 

@@ -100,6 +100,16 @@ def select(tab, view, entity) -> None:
     until(click, f"{entity.name} is selected")
 
 
+def test_nothing_of_viser_s_own_panels_is_shown(seeing, web):
+    for width in (480, 900):  # it has one for phones, and one for all others
+        page = seeing.new_page(viewport={"width": width, "height": 320})
+        page.goto(web.url, timeout=2 * START_MS)
+        panel = page.frame_locator("iframe").get_by_text("Scene tree")
+        panel.wait_for(state="attached", timeout=2 * START_MS)
+        assert not panel.is_visible()
+        page.close()
+
+
 def test_a_click_selects_and_one_beside_things_selects_nothing(tab, system, chair):
     with system.client() as client:
         view, entity = looking(tab, client), client.get(chair)

@@ -76,11 +76,27 @@ class Access:
         elif not self._is_own_origin(headers):
             await _refuse(scope, send, 403, "the page does not answer pages of another origin")
         elif self._is_known(headers):
-            await self._app(scope, receive, _with_headers(send))
+            await self._answer(scope, receive, send)
         elif scope["type"] == "http" and self._has_token(scope):
             await self._exchange(scope, send)
         else:
             await _refuse(scope, send, 401, "open the address with the token that semmap printed")
+
+    async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Let the application answer; where the browser has gone meanwhile, no answer is no error."""
+        is_gone = False
+
+        async def receiving() -> MutableMapping[str, Any]:
+            nonlocal is_gone
+            message = await receive()
+            is_gone = is_gone or message["type"] == "http.disconnect"
+            return message
+
+        try:
+            await self._app(scope, receiving, _with_headers(send))
+        except RuntimeError:
+            if not is_gone:
+                raise
 
     def _is_own_host(self, said: str) -> bool:
         """Is it an address of the page's own? A foreign name may be made to point here (rebinding)."""

@@ -21,7 +21,7 @@ _LARGEST: Final = 64 << 20
 _GONE: Final = 1001
 _TRY_AGAIN: Final = 1013
 _OWN: Final = """<style>
-[data-dock-root] > :not(:first-child), .mantine-Notifications-root { display: none !important; }
+div:has(canvas) ~ div, .mantine-Notifications-root { display: none !important; }
 </style><script>
 addEventListener("keydown", (event) => {
   if (event.target.closest && event.target.closest("input, textarea, select")) return;

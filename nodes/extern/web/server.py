@@ -95,7 +95,7 @@ def _serve(
         stage.show(page)
         layout(page)
 
-    ui.run_with(app, title="semmap", dark=None, show_welcome_message=False, reconnect_timeout=10.0)
+    ui.run_with(app, title="semmap", dark=None, show_welcome_message=False, reconnect_timeout=30.0)
     uvicorn.Server(_uvicorn(Access(app, config.host, port, token))).run(sockets=[listening])
 
 

@@ -68,9 +68,12 @@ def layout(bounds: Bounds, cameras: Sequence[str] = ()) -> rrb.Blueprint:
                 rrb.GraphView(
                     origin="/graph",
                     name="Knowledge graph",
-                    force_link=rrb.archetypes.ForceLink(distance=45.0),
-                    force_position=rrb.archetypes.ForcePosition(enabled=True, strength=0.05),
-                    force_many_body=rrb.archetypes.ForceManyBody(strength=-150.0),
+                    force_link=rrb.archetypes.ForceLink(distance=70.0),
+                    force_position=rrb.archetypes.ForcePosition(enabled=True, strength=0.03),
+                    force_many_body=rrb.archetypes.ForceManyBody(strength=-700.0),
+                    force_collision_radius=rrb.archetypes.ForceCollisionRadius(
+                        enabled=True, strength=1.0, iterations=3
+                    ),
                 ),
                 row_shares=[4, 2, 4],
             ),

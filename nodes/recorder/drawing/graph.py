@@ -17,6 +17,7 @@ MANY: Final = 12
 Relation = tuple[str, str]
 _RADII: Final = {"centre": 9.0, "entity": 5.0, "place": 6.0, "class": 4.0, "more": 3.0}
 _RELATION_RADIUS: Final = 1.0
+_FEW_LINKS: Final = 14
 
 
 def graph_of(
@@ -30,15 +31,18 @@ def graph_of(
 
 
 def nodes_and_edges(graph: Neighbourhood) -> tuple[rr.GraphNodes, rr.GraphEdges]:
-    """The graph in Rerun's terms. An edge has no label there, so that what it says is a small node on it."""
-    said = [link for link in graph.links if link.label]
+    """The graph in Rerun's terms. An edge has no label there, so that what it says is a small node on it.
+
+    Of a graph with many edges, those would hide what they join, so that they are left out.
+    """
+    said = [link for link in graph.links if link.label] if len(graph.links) <= _FEW_LINKS else []
     nodes = rr.GraphNodes(
         [*(knot.id for knot in graph.knots), *map(_relation_id, said)],
         labels=[*(knot.label for knot in graph.knots), *(link.label for link in said)],
         colors=[*map(_colour, graph.knots), *(GREY for _ in said)],
         radii=[*(_RADII[knot.kind] for knot in graph.knots), *(_RELATION_RADIUS for _ in said)],
     )
-    edges = [pair for link in graph.links for pair in _pairs(link)]
+    edges = [pair for link in graph.links for pair in (_pairs(link) if said else (link[:2],))]
     return nodes, rr.GraphEdges(edges, graph_type="directed")
 
 

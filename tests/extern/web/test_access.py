@@ -161,6 +161,28 @@ def test_what_is_shown_may_fetch_nothing_from_elsewhere():
     assert headers[b"referrer-policy"] == b"no-referrer"
 
 
+def test_a_browser_that_has_gone_is_no_error_and_a_fault_is_one():
+    async def gone():
+        return {"type": "http.disconnect"}
+
+    async def fails(scope, receive, send):
+        await receive()
+        raise RuntimeError("No response returned.")
+
+    async def request():
+        return {"type": "http.request"}
+
+    async def send(message):
+        pass
+
+    scope = {"type": "http", "path": "/", "query_string": b"", "headers": []}
+    scope["headers"] = [(name.encode(), value.encode()) for name, value in (HOST, sent_back())]
+    access = Access(fails, "127.0.0.1", 8080, TOKEN)
+    asyncio.run(access(scope, gone, send))
+    with pytest.raises(RuntimeError):
+        asyncio.run(access(scope, request, send))
+
+
 def test_the_start_and_the_end_of_the_server_pass():
     assert ask(kind="lifespan") == []
 

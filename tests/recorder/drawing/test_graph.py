@@ -25,6 +25,20 @@ def test_without_a_commit_and_for_a_large_one_the_whole_is_shown_by_places():
         assert [knot.label for knot in graph.knots] == ["room1 (1)", f"{MANY + 2} elsewhere"]
 
 
+def test_of_many_edges_it_is_not_written_what_they_say():
+    knots = [
+        Knot("cup1", "cup1", "centre", "Cup"),
+        *(Knot(f"b{i}", f"b{i}", "entity", "B") for i in range(20)),
+    ]
+    nodes, edges = nodes_and_edges(
+        Neighbourhood(tuple(knots), tuple(Link("cup1", f"b{i}", "isNear") for i in range(20)))
+    )
+    assert nodes.node_ids is not None
+    assert edges.edges is not None
+    assert len(nodes.node_ids.as_arrow_array()) == 21
+    assert edges.edges.as_arrow_array().to_pylist()[3] == {"first": "cup1", "second": "b3"}
+
+
 def test_what_an_edge_says_is_a_small_node_on_it():
     knots = (Knot("cup1", "cup1", "centre", "Cup"), Knot("table1", "table1", "entity", "Table"))
     more = Knot("more:cup1:in", "3 more", "more", "")

@@ -80,9 +80,9 @@ def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
 @click.option("--wait", is_flag=True, help="Wait until it is there.")
 @talks
 def drive(client: Client, **fields: Any) -> None:
-    """Drive a robot of the simulator, in a straight line to each point.
+    """Drive a simulated robot to a point.
 
-    It does not look for a way around what stands there.
+    It goes in a straight line, to each point if there are several, and looks for no way around things.
     """
     say(client.drive(**given(fields)).text)
 

@@ -11,7 +11,15 @@ from nodes.drawing.neighbourhood import Neighbourhood, around, by_class, by_plac
 from nodes.extern.web.page import Page
 from nodes.extern.web.panels.redrawing import Redrawing
 from nodes.extern.web.panels.tables import names_of, table
-from nodes.extern.web.views.graph_drawing import QUERY, Relations, options, relations_of, rows_of
+from nodes.extern.web.views.graph_drawing import (
+    FEW_LINKS,
+    FEW_ON_PHONES,
+    QUERY,
+    Relations,
+    options,
+    relations_of,
+    rows_of,
+)
 from nodes.extern.web.views.graph_layout import Positions, arranged
 from schemas import errors
 from schemas.commands import Sparql
@@ -89,8 +97,9 @@ class _Graph:
             return found, arranged(found, before)
 
         self._graph, self._at = await asyncio.to_thread(drawn)
+        few_links = FEW_ON_PHONES if self._page.narrow else FEW_LINKS
         self._chart.options.clear()
-        self._chart.options.update(options(self._graph, self._at, selected))
+        self._chart.options.update(options(self._graph, self._at, selected, few_links=few_links))
         self._chart.update()
         self._table.rows = rows_of(self._graph, entities)
         self._said.text = self._sentence(way, selected)

@@ -21,8 +21,9 @@ _SYMBOLS: Final[dict[Kind, str]] = {
 _LONGEST: Final = 28
 _TEXT: Final = "#8b949e"
 _EDGE: Final = "rgba(139,148,158,.55)"
-_FEW_LINKS: Final = 40
+FEW_LINKS: Final = 30
 """Up to so many links what each says is written on it; beside more, when one points at it."""
+FEW_ON_PHONES: Final = 12
 
 QUERY: Final = (
     "SELECT ?s ?p ?o WHERE { VALUES ?p { "
@@ -49,10 +50,14 @@ def relations_of(entities: Mapping[str, Entity], rows: Iterable[Row]) -> Relatio
 
 
 def options(
-    graph: Neighbourhood, at: Mapping[str, tuple[float, float]], selected: Collection[str]
+    graph: Neighbourhood,
+    at: Mapping[str, tuple[float, float]],
+    selected: Collection[str],
+    *,
+    few_links: int = FEW_LINKS,
 ) -> dict[str, Any]:
     """What ECharts needs to draw the graph; every name is a value, which it draws as text."""
-    few = len(graph.links) <= _FEW_LINKS
+    few = len(graph.links) <= few_links
     return {
         "animationDurationUpdate": 500,
         "animationEasingUpdate": "cubicInOut",
