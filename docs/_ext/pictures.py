@@ -8,8 +8,8 @@ the story is filmed. Needs Debian's chromium and the extras; names on the comman
 from __future__ import annotations
 
 import contextlib
+import io
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -19,6 +19,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from PIL import Image, ImageStat
 from playwright.sync_api import Page, sync_playwright
 
 from nodes.extern.client import Client, connect
@@ -37,6 +38,8 @@ ARGUMENTS = (
 )
 SIZE = {"width": 1440, "height": 900}
 START_S = 90.0
+_BLANK = 12.0
+"""The contrast of a scene in which there is nothing yet is less."""
 BETWEEN_S = 0.5
 """Between two steps of the story: what has fallen has come to rest."""
 
@@ -112,9 +115,16 @@ def browser(endpoint: str) -> Iterator[Page]:
 
 
 def drawn(tab: Page, seconds: float) -> None:
-    """Let it draw: without graphics the scene takes its time."""
+    """Let it draw: without graphics the scene takes its time, and a busy machine loses the connection."""
     tab.mouse.move(SIZE["width"] / 2, SIZE["height"] - 2)
     tab.wait_for_timeout(seconds * 1000)
+    deadline_s = time.monotonic() + START_S
+    while time.monotonic() < deadline_s:
+        frame = Image.open(io.BytesIO(tab.locator("iframe").screenshot())).convert("L")
+        if ImageStat.Stat(frame).stddev[0] > _BLANK:
+            break
+        tab.wait_for_timeout(1000)
+    tab.get_by_text("Connection lost").wait_for(state="hidden")
 
 
 def tell(client: Client) -> None:
@@ -129,6 +139,7 @@ def select(tab: Page, name: str) -> None:
     """Find a thing in the table, and select it."""
     tab.get_by_label("Filter entities by text").fill(name)
     tab.locator(f'.entity-table [row-id="{name}"] [col-id="name"]').first.click()
+    tab.locator(".q-drawer--right").get_by_text(name, exact=True).first.wait_for()
     drawn(tab, 4.0)
 
 
@@ -140,10 +151,9 @@ def page_png(tab: Page, client: Client) -> None:
 
 def page_why_png(tab: Page, client: Client) -> None:
     """Why something holds, step by step."""
-    select(tab, "mug1")
-    why = tab.get_by_role("button", name=re.compile("^Why: "))
-    chosen = tab.get_by_role("button", name=re.compile("^Why: .*(isOn|is on|kitchen)"))
-    (chosen if chosen.count() else why).first.click()
+    select(tab, "counter1")
+    tab.get_by_label("Filter entities by text").fill("")
+    tab.get_by_role("button", name="Why: is a laden thing").click()
     drawn(tab, 3.0)
     tab.screenshot(path=DOCS / "page-why.png")
 
@@ -157,6 +167,7 @@ def page_time_png(tab: Page, client: Client) -> None:
     field = tab.get_by_label("Go to a commit or a time")
     field.fill(str(seq))
     field.press("Enter")
+    tab.get_by_text(f"The past: commit {seq} of ").wait_for()
     drawn(tab, 8.0)
     tab.screenshot(path=DOCS / "page-time.png")
     tab.keyboard.press("Home")

@@ -6,10 +6,14 @@ import math
 import time
 from collections.abc import Mapping
 
-from schemas import agents
+from schemas import agents, changes
 from schemas.commits import Commit
-from schemas.entities import Entity, Pose, Provenance
+from schemas.entities import Entity, Pose, Provenance, distance_m
 from schemas.replies import LoggedCommit
+
+_STILL_M = 0.005
+_NOTED_M = 0.95
+"""From here on a way is told in metres."""
 
 
 def pose_cells(pose: Pose | None) -> tuple[str, str, str, str]:
@@ -44,6 +48,17 @@ def author(p: Provenance | Commit | LoggedCommit) -> str:
 def moment(stamp_ns: int) -> str:
     """A time, local, as `--as-of` takes it."""
     return time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(stamp_ns // 1_000_000_000))
+
+
+def changed_in_short(was: Entity, now: Entity) -> str:
+    """What became of an entity, as short as a label is: `moved 1.2 m`; nothing where it is the same."""
+    found = changes.between(was, now)
+    if [change.kind for change in found] != ["pose"] or was.pose is None or now.pose is None:
+        return changes.in_words(found)
+    moved_m = distance_m(was.pose, now.pose)
+    if moved_m < _STILL_M:
+        return "turned"
+    return f"moved {moved_m:.1f} m" if moved_m >= _NOTED_M else f"moved {round(moved_m * 100)} cm"
 
 
 def plain(value: float, digits: int) -> str:

@@ -9,19 +9,17 @@ from typing import Final
 
 from msgspec import Struct
 
-from nodes.extern.phrasing import author
+from nodes.extern.phrasing import author, changed_in_short
 from nodes.runtime import rhythm
-from schemas import changes, wording
+from schemas import wording
 from schemas.commits import Commit
-from schemas.entities import Entity, Pose, distance_m
+from schemas.entities import Entity, Pose
 
 GLIDE_S: Final = 0.6
 """How long a thing takes from where it was to where it is."""
 LEAST_S: Final = 1.2
 """How long a commit is seen at least: its caption is to be read."""
 FIRST_S: Final = 1.5
-_NOTED_M: Final = 0.95
-_STILL_M: Final = 0.005
 _LABELLED: Final = 8
 """Things whose labels are shown at once."""
 
@@ -93,7 +91,7 @@ def _of_commit(commit: Commit, there: dict[str, Entity], seconds: float) -> Scen
             add.append(entity)
         elif was.pose != entity.pose:
             glide.append((entity.name, was.pose, entity.pose))
-        if text := _in_short(was, entity):
+        if text := changed_in_short(was, entity):
             labels[entity.name] = f"{entity.name} {text}"
     return Scene(
         seconds=seconds,
@@ -103,19 +101,6 @@ def _of_commit(commit: Commit, there: dict[str, Entity], seconds: float) -> Scen
         glide=tuple(glide),
         labels=dict(list(labels.items())[:_LABELLED]),
     )
-
-
-def _in_short(was: Entity, now: Entity) -> str:
-    """What became of an entity that was there, as short as a label is; nothing where it is the same."""
-    found = changes.between(was, now)
-    if [change.kind for change in found] != ["pose"]:
-        return changes.in_words(found)
-    if was.pose is None or now.pose is None:
-        return ""
-    moved_m = distance_m(was.pose, now.pose)
-    if moved_m < _STILL_M:
-        return "turned"
-    return f"moved {moved_m:.1f} m" if moved_m >= _NOTED_M else f"moved {round(moved_m * 100)} cm"
 
 
 def caption(commit: Commit) -> str:

@@ -51,6 +51,11 @@ class _Timeline:
                 self._slider = ui.slider(min=1, max=1, value=1).classes("col")
                 self._slider.props('label aria-label="Commit"')
                 self._slider.on("update:model-value", self._on_slider, **_AT_MOST)
+                self._now = ui.button("Now", on_click=lambda: self._go(None))
+                self._now.props("dense unelevated color=warning text-color=black padding='2px 10px'")
+                self._now.tooltip("Back to now (Home)")
+            with ui.row().classes("w-full items-center no-wrap gap-3"):
+                self._caption = ui.label().props('role="status"').classes("ellipsis col")
                 self._when = ui.input(placeholder="commit or time").classes("w-36 gt-sm")
                 self._when.props(f'{_SMALL} aria-label="Go to a commit or a time, such as 12:30"')
                 self._when.on("keydown.enter", self._go_to_when)
@@ -59,13 +64,8 @@ class _Timeline:
                 compared = ui.select(_COMPARED, value=page.compared, label="marked against")
                 compared.props(_SMALL).classes("w-40 gt-sm")
                 compared.on_value_change(lambda event: self._compare(compared))
-                self._now = ui.button("Now", on_click=lambda: self._go(None))
-                self._now.props("dense unelevated color=warning text-color=black padding='2px 10px'")
-                self._now.tooltip("Back to now (Home)")
-            with ui.row().classes("w-full items-center gap-x-2 gap-y-0"):
-                self._caption = ui.label().props('role="status"').classes("ellipsis")
-                self._differences = ui.row().classes("items-center gap-1")
-                self._differences.props('aria-label="What is different"')
+            self._differences = ui.row().classes("items-center gap-1")
+            self._differences.props('aria-label="What is different"')
         page.on_moment(self._show)
         page.on_change(self._show)
         page.client.on_delete(self._leave)
@@ -140,6 +140,7 @@ class _Timeline:
         except errors.SemmapError as error:
             self._page.tell(error.text, "warning")
             return
+        self._when.value = ""
         self._go(None if commit == self._page.live.commit else commit)
 
     # Playing

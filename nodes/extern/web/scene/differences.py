@@ -7,6 +7,7 @@ from typing import Final
 
 from msgspec import Struct
 
+from nodes.extern.phrasing import changed_in_short
 from nodes.extern.web import differences as of_maps
 from nodes.extern.web.differences import Mark
 from schemas.entities import Entity, Pose, Size
@@ -34,11 +35,17 @@ def drawn(found: Mapping[str, of_maps.Difference]) -> list[Difference]:
             then=_pose(difference.was),
             now=None if _pose(difference.was) == _pose(difference.now) else _pose(difference.now),
             size_m=_size_m(difference),
-            text=f"{name}: {difference.text}",
+            text=f"{name} {_in_short(difference)}",
         )
         for name, difference in found.items()
         if not _is_nowhere(difference)
     ]
+
+
+def _in_short(difference: of_maps.Difference) -> str:
+    if difference.was is None or difference.now is None:
+        return difference.mark
+    return changed_in_short(difference.was, difference.now)
 
 
 def _is_nowhere(difference: of_maps.Difference) -> bool:
