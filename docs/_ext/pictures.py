@@ -139,7 +139,7 @@ def select(tab: Page, name: str) -> None:
     """Find a thing in the table, and select it."""
     tab.get_by_label("Filter entities by text").fill(name)
     tab.locator(f'.entity-table [row-id="{name}"] [col-id="name"]').first.click()
-    tab.locator(".q-drawer--right").get_by_text(name, exact=True).first.wait_for()
+    tab.locator(".q-drawer--right").get_by_text(name).first.wait_for()
     drawn(tab, 4.0)
 
 
