@@ -122,6 +122,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
             robot_name("" if self.single and self.namespace == ALL_ROBOTS else self.namespace)
         except BadRequest as error:
             raise ValueError(error.text) from None
+        if self.robot is not None and not self.sim and not self.only:
+            raise ValueError("--robot puts a robot into the simulator; leave out --no-sim")
         for endpoint in (self.listen, *self.connect):
             if not _is_endpoint(endpoint):
                 raise ValueError(f"'{endpoint}' is not a valid Zenoh endpoint; example: {DEFAULT_ENDPOINT}")

@@ -14,13 +14,16 @@ from nodes.extern.ros import messages
 from nodes.extern.ros.messages import Moment
 from nodes.extern.ros.things import Thing, things_of
 from nodes.extern.ros.types import encode, topic
+from nodes.navigation.grid import occupancy
 from nodes.runtime.following import Follower
 from nodes.runtime.loop import Node
 from nodes.runtime.map_replica import MapReplica
 from schemas import keys
+from schemas.commands import PlanFloor
 from schemas.commits import Effects
 from schemas.entities import Pose
 from schemas.live import LivePoses
+from schemas.plans import HEIGHTS_M, Plan
 from schemas.scenes import Poses, Scene, SceneQuery, Surface, SurfaceQuery, Surfaces
 
 _TICK_S: Final = 0.05
@@ -29,6 +32,8 @@ _AGAIN_S: Final = 1.0
 _WHOLE_S: Final = 0.5
 """What is published as a whole, and a scene to plan in, is so no more often."""
 _GREETING_S: Final = (0.0, 1.0, 4.0)
+_FLOOR_S: Final = 2.0
+_CELL_M: Final = 0.05
 _SURFACES_AT_ONCE: Final = 50
 
 
@@ -39,15 +44,17 @@ class Topics(NamedTuple):
     markers: RosTopic
     transforms: RosTopic
     planning_scene: RosTopic
+    grid: RosTopic
 
 
 def topics(prefix: str = "/semmap", planning_scene: str = "/planning_scene") -> Topics:
-    """Detections and markers are of semmap and latched; transforms and planning scene are where ROS looks."""
+    """Detections, markers and grid are semmap's own and latched; the others are where ROS looks for them."""
     return Topics(
         detections=topic(f"{prefix}/detections", "vision_msgs/msg/Detection3DArray", latched=True),
         markers=topic(f"{prefix}/markers", "visualization_msgs/msg/MarkerArray", latched=True),
         transforms=topic("/tf", "tf2_msgs/msg/TFMessage"),
         planning_scene=topic(planning_scene, "moveit_msgs/msg/PlanningScene"),
+        grid=topic(f"{prefix}/map", "nav_msgs/msg/OccupancyGrid", latched=True),
     )
 
 
@@ -70,6 +77,7 @@ class Bridge:
         self._map = MapReplica[Effects]()
         self._scene = SceneState()
         self._fetching = False
+        self._floor_differs, self._asking_floor = True, False
         self._live: dict[str, Pose] = {}
         self._surfaces: SurfaceCache | None = SurfaceCache() if meshes else None
         self._things: dict[str, Thing] = {}
@@ -77,7 +85,7 @@ class Bridge:
         self._said: dict[str, Thing] | None = None
         self._planned: dict[str, Thing] = {}
         self._transformed: dict[str, Thing] = {}
-        self._due_s = dict.fromkeys(("whole", "transforms", "again"), 0.0)
+        self._due_s = dict.fromkeys(("whole", "transforms", "again", "floor"), 0.0)
         self._publishers: dict[RosTopic, RosPublisher] = {made: ros.publish(made) for made in of}
         self._topics = of
         Follower(node, self._map, keys.EFFECTS, heard=lambda _, __: self._stir(), begun=self._begun)
@@ -160,6 +168,21 @@ class Bridge:
             self._put(self._topics.detections, messages.detections(self._things.values(), at))
             self._put(self._topics.markers, messages.markers(self._things.values(), at))
             self._plan(at)
+            self._floor_differs = True
+        if self._floor_differs and not self._asking_floor and self._is_due("floor", _FLOOR_S):
+            self._ask_floor()
+
+    def _ask_floor(self) -> None:
+        self._floor_differs, self._asking_floor = False, True
+
+        def on_floor(done: Future[Plan]) -> None:
+            self._asking_floor = False
+            if done.exception() is None:
+                at = Moment(self._frame, time.time_ns())
+                grid = occupancy(done.result(), _CELL_M, HEIGHTS_M)
+                self._put(self._topics.grid, messages.occupancy_grid(grid, at))
+
+        self._node.ask_later(keys.CMD, PlanFloor()).add_done_callback(on_floor)
 
     def _transform(self, at: Moment) -> None:
         """Those that moved; and all of them now and then."""

@@ -101,7 +101,7 @@ class _Recording:
     def __init__(self, file: IO[bytes], of: Topics, frame: str) -> None:
         self._writer, self._of, self._frame = Writer(file), of, frame
         self._writer.start(profile="ros2", library=f"semmap {version()}")
-        self._channels = {made: self._channel(made) for made in of}
+        self._channels = {made: self._channel(made) for made in of if made is not of.grid}
         self._count = 0
 
     def _channel(self, made: RosTopic) -> int:

@@ -8,8 +8,9 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from nodes.drawing.palette import colour_of
-from nodes.extern.ros.things import Thing, header, middle, pose_of, transform_of, vector
+from nodes.extern.ros.things import Thing, header, middle, pose_of, time_of, transform_of, vector
 from nodes.extern.ros.types import new
+from nodes.navigation.grid import OccupancyGrid
 from schemas.entities import Pose
 from schemas.scenes import Surface
 
@@ -104,6 +105,20 @@ def transforms(things: Iterable[Thing], at: Moment) -> Any:
             for thing in things
         ],
     )
+
+
+def occupancy_grid(grid: OccupancyGrid, at: Moment) -> Any:
+    """`nav_msgs/OccupancyGrid`: the floor as a robot finds it, furniture included."""
+    frame = grid.frame
+    info = new(
+        "nav_msgs/msg/MapMetaData",
+        map_load_time=time_of(at.stamp_ns),
+        resolution=frame.resolution,
+        width=frame.width,
+        height=frame.height,
+        origin=pose_of(Pose(position_m=(frame.x, frame.y, 0.0))),
+    )
+    return new("nav_msgs/msg/OccupancyGrid", header=at.header, info=info, data=grid.cells.ravel())
 
 
 def planning_scene(

@@ -10,7 +10,15 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node.answers import answers, beginnings, differences, map_then, questions, whereabouts
+from nodes.kb_node.answers import (
+    answers,
+    beginnings,
+    differences,
+    hidden,
+    map_then,
+    questions,
+    whereabouts,
+)
 from nodes.kb_node.answers.accounts import Accounts
 from nodes.kb_node.answers.finding import Finding
 from nodes.kb_node.answers.gone import gone
@@ -278,7 +286,11 @@ class Asking:
         """Where an entity was last; where it is, if it is there."""
         entity = self._map.find(query.name)
         if entity is not None and not self.sightings.is_gone(entity):
-            return self.sightings.there(entity)
+            found = self.sightings.there(entity)
+            closed = hidden.closed_around(self._map, entity)
+            if closed is None:
+                return found
+            return structs.replace(found, text=f"{found.text}; {hidden.in_words(closed)}")
         return self._aside.submit(self.sightings.gone, query.name, entity)
 
     def on_find(self, query: Find) -> Found | Future[Found]:

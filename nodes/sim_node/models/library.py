@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
+
+import numpy as np
 
 from nodes.sim_node.models.forms import shifted
 from nodes.sim_node.models.model_table import MODELS, ModelKind
@@ -28,6 +30,9 @@ SIZES_M = (0.001, 100.0)
 
 DENSITY = 150.0
 """Of a thing that nothing is known of [kg/m^3 of its bounding box]: most are hollow."""
+
+_HOLDS, _GRAVITY = 1.3, 9.81
+"""What holds a lid where it was left is so much more than what pulls it down."""
 
 _BOX_COLOUR = (0.72, 0.66, 0.58)
 
@@ -57,6 +62,11 @@ class Model:
     inertial: Inertial
     size_m: Vec3
     leaves: tuple[Leaf, ...] = ()
+
+    @property
+    def mass_kg(self) -> float:
+        """What all of it weighs."""
+        return self.inertial.mass_kg + sum(leaf.inertial.mass_kg for leaf in self.leaves)
 
     @property
     def frame(self) -> tuple[Part, ...]:
@@ -127,7 +137,18 @@ def assemble(name: str, parts: Sequence[Part], mass_kg: float) -> Model:
 
 
 def _leaf(joint: Joint, parts: Sequence[Part], density: float) -> Leaf:
-    return Leaf(joint, tuple(parts), _weighed(parts, density))
+    weighed = _weighed(parts, density)
+    joint = replace(joint, friction=max(joint.friction, _HOLDS * _torque(joint, weighed)))
+    return Leaf(joint, tuple(replace(part, joint=joint) for part in parts), weighed)
+
+
+def _torque(joint: Joint, weighed: Inertial) -> float:
+    """The greatest by which weight turns a hinge [N m], or pulls at a slide [N]."""
+    weight = _GRAVITY * weighed.mass_kg
+    if joint.kind == "slide":
+        return weight * abs(joint.axis[2])
+    axis, arm = np.asarray(joint.axis), np.subtract(weighed.centre_m, joint.anchor)
+    return weight * float(np.linalg.norm(np.cross(axis, arm)) * np.hypot(axis[0], axis[1]))
 
 
 def _weighed(parts: Sequence[Part], density: float) -> Inertial:

@@ -48,6 +48,84 @@ def cabinet_box(
     return shifted(walls, x=centre[0], y=centre[1], z=centre[2])
 
 
+def framed_box(
+    size: Vec3,
+    centre: Vec3,
+    colour: Colour,
+    hole: tuple[float, float, float, float],
+    *,
+    boards: Sequence[float] = (),
+    depth: float = 1.0,
+) -> Parts:
+    """The same with a front that has a hole in it: its least and greatest y, least and greatest z [m]."""
+    x, y, z = size
+    wall = wall_of(size)
+    left, right, bottom, top = hole
+    low, high = centre[2] - z / 2, centre[2] + z / 2
+    strips = [
+        (centre[1] - y / 2, centre[1] + y / 2, low, bottom),
+        (centre[1] - y / 2, centre[1] + y / 2, top, high),
+        (centre[1] - y / 2, left, bottom, top),
+        (right, centre[1] + y / 2, bottom, top),
+    ]
+    front = [
+        box(
+            (wall, y1 - y0, z1 - z0),
+            (centre[0] + (x - wall) / 2, (y0 + y1) / 2, (z0 + z1) / 2),
+            colour,
+        )
+        for y0, y1, z0, z1 in strips
+        if y1 - y0 > GAP_M and z1 - z0 > GAP_M
+    ]
+    return [*cabinet_box(size, centre, colour, boards=boards, depth=depth), *front]
+
+
+def flap(name: str, parts: Part | Iterable[Part], hinge: Vec3, *, opens: float = math.pi / 2) -> Parts:
+    """What tips forwards and down about a level hinge below it, as the door of an oven."""
+    joint = Joint(name=name, kind="hinge", anchor=hinge, axis=(0.0, 1.0, 0.0), range=(0.0, opens))
+    return moving(joint, _parts(parts))
+
+
+def pull_out(
+    name: str,
+    size: Vec3,
+    centre: Vec3,
+    colour: Colour,
+    *,
+    panel: tuple[float, float],
+    thick: float = 0.012,
+    face: Part | Iterable[Part] = (),
+    travel: float = 0.65,
+) -> Parts:
+    """A drawer: a tray of full extents `size`, with a front panel of width and height `panel` before it.
+
+    It slides out by the share `travel` of its depth; `face` is what is seen on the panel.
+    """
+    x, y, z = size
+    cx, cy, cz = centre
+    wall = 0.008
+    joint = Joint(
+        name=name,
+        kind="slide",
+        anchor=centre,
+        axis=(1.0, 0.0, 0.0),
+        range=(0.0, travel * x),
+        friction=3.0,
+    )
+    tray = [
+        box((x, y, wall), (cx, cy, cz + (wall - z) / 2), shade(colour, 0.8)),
+        box((wall, y, z - wall), (cx + (wall - x) / 2, cy, cz + wall / 2), shade(colour, 0.8)),
+        *(
+            box(
+                (x - wall, wall, z - wall), (cx + wall / 2, cy + side * (y - wall) / 2, cz + wall / 2), colour
+            )
+            for side in (-1, 1)
+        ),
+        box((thick, *panel), (cx + (x + thick) / 2, cy, cz), shade(colour, 1.2)),
+    ]
+    return moving(joint, [*tray, *_parts(face)])
+
+
 def wall_of(size: Vec3) -> float:
     """How thick the walls of a box of this size are [m]."""
     return min(max(WALL_M, 0.018 * max(size[0], size[1])), 0.1 * min(size))

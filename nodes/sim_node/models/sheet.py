@@ -7,11 +7,11 @@ import sys
 from pathlib import Path
 
 import mujoco
-import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from nodes.sim_node.models.library import Model, build
 from nodes.sim_node.models.model_table import MODELS
+from nodes.sim_node.models.parts import Part, bounds, moved
 from nodes.sim_node.physics.build import add_part
 from nodes.sim_node.vision.raycast import raycast
 from nodes.sim_node.vision.view import FROM_THE_FRONT, overview
@@ -20,32 +20,49 @@ _CELL, _LABEL, _COLUMNS, _FINE = 150, 18, 13, 2
 _PAPER, _INK = (242, 242, 240), (40, 40, 44)
 
 
-def portrait(model: Model, pixels: int) -> Image.Image:
-    """The model alone, filling a square picture."""
+def portrait(model: Model, pixels: int, *, is_open: bool | None = None) -> Image.Image:
+    """The model alone, filling a square picture: as it is made, or with all that opens open or shut."""
     spec = mujoco.MjSpec()
     body = spec.worldbody.add_body()
-    for part in model.parts:
+    parts = model.parts if is_open is None else [_stands(part, is_open=is_open) for part in model.parts]
+    for part in parts:
         add_part(body, part)
     compiled = spec.compile()
     data = mujoco.MjData(compiled)
     mujoco.mj_kinematics(compiled, data)
-    x, y, z = model.size_m
-    low, high = np.array([-x / 2, -y / 2, 0.0]), np.array([x / 2, y / 2, z])
+    low, high = bounds(parts)
     view = overview(low, high, _FINE * pixels, _FINE * pixels, FROM_THE_FRONT)
     rgb, depth, _ = raycast(compiled, data, view)
     rgb[depth == 0.0] = _PAPER
     return Image.fromarray(rgb).resize((pixels, pixels), Image.Resampling.BOX)
 
 
+def _stands(part: Part, *, is_open: bool) -> Part:
+    """A part as it stands when its joint is at one end."""
+    if (joint := part.joint) is None:
+        return part
+    lower, upper = joint.range
+    return moved(part, (upper if joint.closed == lower else lower) if is_open else joint.closed)
+
+
 def contact_sheet(names: list[str]) -> Image.Image:
-    """Portraits in rows, each with its name; every one as large as fits, so sizes are not to scale."""
-    rows = math.ceil(len(names) / _COLUMNS)
+    """Portraits in rows, each with its name; every one as large as fits, so sizes are not to scale.
+
+    What opens is shown as it is made, and again in rows of its own, open and shut.
+    """
+    cells: list[tuple[str, Image.Image]] = [(name, portrait(build(name, None), _CELL - 12)) for name in names]
+    opening = [model for name in names if (model := build(name, None)).leaves]
+    cells += [("", Image.new("RGB", (1, 1), _PAPER))] * (-len(cells) % _COLUMNS)
+    for model in opening:
+        for is_open, word in ((False, "shut"), (True, "open")):
+            cells.append((f"{model.name}, {word}", portrait(model, _CELL - 12, is_open=is_open)))
+    rows = math.ceil(len(cells) / _COLUMNS)
     sheet = Image.new("RGB", (_COLUMNS * _CELL, rows * (_CELL + _LABEL)), _PAPER)
     draw = ImageDraw.Draw(sheet)
     font = ImageFont.load_default(12)
-    for place, name in enumerate(names):
+    for place, (name, picture) in enumerate(cells):
         left, top = place % _COLUMNS * _CELL, place // _COLUMNS * (_CELL + _LABEL)
-        sheet.paste(portrait(build(name, None), _CELL - 12), (left + 6, top + 4))
+        sheet.paste(picture, (left + 6, top + 4))
         draw.text((left + _CELL / 2, top + _CELL), name, fill=_INK, font=font, anchor="mt")
     return sheet
 

@@ -106,6 +106,7 @@ def _add_leaf(spec: mujoco.MjSpec, body: mujoco.MjsBody, record: BodyRecord, lea
     name = leaf_name(record.name, leaf.joint.name)
     child = body.add_body(name=name, pos=position)
     child.explicitinertial, child.ipos, child.iquat = True, [0.0] * 3, [1.0, 0.0, 0.0, 0.0]
+    child.gravcomp = 1.0  # as by a spring: friction alone would let a lid creep down
     child.mass, child.inertia = leaf.inertial.mass_kg, list(leaf.inertial.moments)
     joint = child.add_joint(
         name=name,

@@ -86,5 +86,5 @@ class Drives:
             most = float(model.dof_M0[dof]) * _GRIP * _SPEED[kind] + _SPARE[kind]
             gain = _SPARE[kind] * (speed - float(data.qvel[dof])) / _SPEED[kind]
             push = max(-most, min(most, wanted + gain))
-            data.qfrc_applied[dof] = push + friction + float(data.qfrc_bias[dof])
+            data.qfrc_applied[dof] = push + friction + float(data.qfrc_bias[dof] - data.qfrc_gravcomp[dof])
         self.stop(done)

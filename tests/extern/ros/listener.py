@@ -57,12 +57,18 @@ def detected(message: Any) -> list[Any]:
     return [[d.id, d.results[0].hypothesis.class_id] for d in message.detections]
 
 
+def gridded(message: Any) -> list[Any]:
+    """Its size, and what its cells may be."""
+    return [message.info.width, message.info.height, sorted(set(message.data.tolist()))]
+
+
 def main() -> None:
     """Listen until standard input ends."""
     of = topics()
     _kept = [
         subscribe(of.detections.name, of.detections.type, detected),
         subscribe("/latched", of.detections.type, detected, latched=True),
+        subscribe(of.grid.name, of.grid.type, gridded),
         subscribe(of.markers.name, of.markers.type, lambda m: [k.text for k in m.markers]),
         subscribe(of.transforms.name, of.transforms.type, lambda m: [t.child_frame_id for t in m.transforms]),
         subscribe(

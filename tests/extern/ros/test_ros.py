@@ -91,6 +91,9 @@ def test_another_party_sees_the_map_and_its_changes(bridged, router):
         assert ros.hears("/planning_scene", lambda objects: ["cup77", MOVE] in objects)
         assert ["cup77", "Cup"] in ros.hears("/semmap/detections", lambda all_: ["cup77", "Cup"] in all_)
         assert "cup77" in ros.hears("/semmap/markers", lambda texts: "cup77" in texts)
+        width, height, values = ros.hears("/semmap/map")
+        assert (width * 0.05, height * 0.05) == pytest.approx((11.0, 9.0), abs=0.3)  # and half a metre around
+        assert values == [-1, 0, 100]
         client.remove("cup77")
         assert ros.hears("/planning_scene", lambda objects: ["cup77", REMOVE] in objects)
 

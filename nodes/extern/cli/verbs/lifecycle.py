@@ -354,7 +354,12 @@ def _settings(
 def _robot_file(word: str) -> str:
     """The file of a robot, or of the one of that name that comes with semmap. Raises BadFile."""
     shipped = _ROBOTS / f"{word}.xml"
-    return str(shipped) if word.isidentifier() and shipped.is_file() else _existing(Path(word))
+    if word.isidentifier() and shipped.is_file():
+        return str(shipped)
+    if not Path(word).exists():
+        names = ", ".join(sorted(path.stem for path in _ROBOTS.glob("*.xml")))
+        raise errors.BadFile(f"there is no file {word}; the robots that come with semmap: {names}")
+    return _existing(Path(word))
 
 
 def _part(only: str, *, single: bool, without: dict[str, bool]) -> tuple[str, ...]:

@@ -20,17 +20,19 @@ from nodes.sim_node.models.forms import (
     solid,
     turned,
 )
-from nodes.sim_node.models.openings import cabinet_box, side_door
+from nodes.sim_node.models.openings import WIDE, cabinet_box, flap, framed_box, side_door
 from nodes.sim_node.models.parts import (
     ALONG_X,
     ALONG_Y,
     Colour,
+    Joint,
     Parts,
     Vec3,
     about,
     ball,
     box,
     felt,
+    moving,
     pill,
     rod,
     seen,
@@ -95,11 +97,15 @@ def oven(x: float, y: float, z: float, colour: Colour) -> Parts:
         for i in (-1, 1)
         for j in (-1, 1)
     )
+    hole = (-0.4 * y, 0.4 * y, 0.2 * z, 0.7 * z)
+    glass = box((0.02, 0.86 * y, 0.55 * z), (x / 2 - 0.03, 0, 0.45 * z), SCREEN)
+    rail = seen(rod(0.012, 0.76 * y, (x / 2 - 0.012, 0, 0.69 * z), STEEL, ALONG_Y))
     return [
-        *case(x, y, z - 0.006, colour, deep=0.04, boards=(0.4,), depth=0.9),
+        *framed_box(
+            (x - 0.04, y, z - 0.006), (-0.02, 0, (z - 0.006) / 2), colour, hole, boards=(0.4,), depth=0.9
+        ),
         *knobs(x, 0.8 * y, 0.9 * z, 5, 0.022),
-        *front(x / 2 - 0.02, 0.86 * y, 0.55 * z, (0, 0.45 * z), SCREEN, deep=0.02),
-        *seen(rod(0.012, 0.76 * y, (x / 2 - 0.012, 0, 0.77 * z), STEEL, ALONG_Y)),
+        *flap("door", [glass, *rail], (x / 2 - 0.02, 0.0, 0.175 * z)),
         *hobs,
     ]
 
@@ -124,25 +130,43 @@ def stove(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 def dishwasher(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A plain door with a control strip and a rail."""
-    return [
-        *case(x, y, z, shade(colour, 0.85), deep=0.05, boards=(0.5,), depth=0.9),
-        *front(x / 2 - 0.02, 0.97 * y, 0.74 * z, (0, 0.45 * z), colour, deep=0.03),
-        *front(x / 2 - 0.02, 0.97 * y, 0.12 * z, (0, 0.91 * z), DARK, deep=0.03),
+    hole = (-0.46 * y, 0.46 * y, 0.1 * z, 0.94 * z)
+    door = [
+        box((0.03, 0.97 * y, 0.74 * z), (x / 2 - 0.035, 0, 0.45 * z), colour),
+        *seen(box((0.03, 0.97 * y, 0.12 * z), (x / 2 - 0.035, 0, 0.91 * z), DARK)),
+        *felt(box((0.03, 0.97 * y, 0.15 * z), (x / 2 - 0.035, 0, 0.895 * z), DARK)),
         *seen(box((0.02, 0.7 * y, 0.025), (x / 2 - 0.01, 0, 0.78 * z), STEEL)),
         *seen(
             box((0.004, 0.05 * y, 0.02), (x / 2 - 0.016, y * i, 0.91 * z), (0.3, 0.9, 0.4))
             for i in (0.2, 0.3)
         ),
     ]
+    return [
+        *framed_box(
+            (x - 0.05, y, z), (-0.025, 0, z / 2), shade(colour, 0.85), hole, boards=(0.5,), depth=0.9
+        ),
+        *flap("door", door, (x / 2 - 0.02, 0.0, 0.08 * z)),
+    ]
 
 
 def washing_machine(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A round porthole under a control strip."""
     porthole = 0.3 * y
+    half, middle = 0.85 * porthole, 0.45 * z
+    ring = rod(1.15 * porthole, 0.02, (x / 2 - 0.03, 0, middle), STEEL, ALONG_X)
+    joint = Joint(
+        name="door",
+        kind="hinge",
+        anchor=(x / 2 - 0.02, -1.15 * porthole, middle),
+        axis=(0.0, 0.0, -1.0),
+        range=(0.0, WIDE),
+    )
     return [
-        *case(x, y, z, colour, deep=0.04),
-        *seen(rod(1.15 * porthole, 0.02, (x / 2 - 0.03, 0, 0.45 * z), STEEL, ALONG_X)),
-        *seen(ball((0.05, 1.9 * porthole, 1.9 * porthole), (x / 2 - 0.03, 0, 0.45 * z), SCREEN)),
+        *framed_box((x - 0.04, y, z), (-0.02, 0, z / 2), colour, (-half, half, middle - half, middle + half)),
+        *moving(
+            joint,
+            [ring, *seen(ball((0.05, 1.9 * porthole, 1.9 * porthole), (x / 2 - 0.03, 0, middle), SCREEN))],
+        ),
         *front(x / 2 - 0.03, 0.96 * y, 0.13 * z, (0, 0.91 * z), shade(colour, 0.75), deep=0.01),
         *seen(rod(0.045, 0.03, (x / 2 - 0.02, 0.25 * y, 0.91 * z), STEEL, ALONG_X)),
         *front(x / 2 - 0.025, 0.25 * y, 0.08 * z, (-0.3 * y, 0.91 * z), LIGHT, deep=0.01),
@@ -156,10 +180,17 @@ def microwave(x: float, y: float, z: float, colour: Colour) -> Parts:
         for row in range(3)
         for side in (-1, 1)
     )
+    handle = seen(box((0.02, 0.02, 0.7 * z), (x / 2 - 0.01, 0.24 * y, 0.5 * z), STEEL))
     return [
-        *case(x, y, z, colour, deep=0.02),
-        *front(x / 2 - 0.01, 0.68 * y, 0.82 * z, (-0.13 * y, 0.5 * z), SCREEN, deep=0.01),
-        *seen(box((0.02, 0.02, 0.7 * z), (x / 2 - 0.01, 0.24 * y, 0.5 * z), STEEL)),
+        *framed_box((x - 0.02, y, z), (-0.01, 0, z / 2), colour, (-0.45 * y, 0.2 * y, 0.12 * z, 0.88 * z)),
+        *side_door(
+            "door",
+            (0.01, 0.68 * y, 0.82 * z),
+            (x / 2 - 0.015, -0.13 * y, 0.5 * z),
+            SCREEN,
+            handle=handle,
+            hinge=-1,
+        ),
         *front(x / 2 - 0.01, 0.17 * y, 0.18 * z, (0.4 * y, 0.8 * z), (0.1, 0.5, 0.3), deep=0.01),
         *buttons,
     ]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from nodes.sim_node.models.forms import BLACK, DARK, GREY, LIGHT, STEEL, WHITE, front, shade, slab, solid
-from nodes.sim_node.models.parts import ALONG_X, Colour, Parts, Vec3, about, box, rod, seen
+from nodes.sim_node.models.parts import ALONG_X, Colour, Joint, Parts, Vec3, about, box, moving, rod, seen
 
 
 def monitor(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -48,10 +50,16 @@ def laptop(x: float, y: float, z: float, colour: Colour) -> Parts:
     """An open lid at -x over a keyboard."""
     deck, tilt = 0.08 * z, -0.3
     lid: Vec3 = (-0.40 * x - 0.02, 0, z / 2)
-    return [
-        slab(x * 0.86, y, 0, deck, colour),
-        *seen(box((0.4 * x, 0.88 * y, 0.002), (-0.08 * x, 0, deck), DARK)),
-        *seen(box((0.16 * x, 0.34 * y, 0.002), (0.28 * x, 0, deck), shade(colour, 0.8))),
+    shut = math.pi / 2 - tilt
+    joint = Joint(
+        name="lid",
+        kind="hinge",
+        anchor=(lid[0] + math.tan(tilt) * (deck - z / 2), 0.0, deck + 0.012 * x),
+        axis=(0.0, 1.0, 0.0),
+        range=(0.0, shut - 0.02),
+        closed=shut - 0.02,
+    )
+    screen = [
         box((0.02 * x, y, 0.98 * z), lid, colour, about("y", tilt)),
         *seen(
             box(
@@ -61,6 +69,12 @@ def laptop(x: float, y: float, z: float, colour: Colour) -> Parts:
                 about("y", tilt),
             )
         ),
+    ]
+    return [
+        slab(x * 0.86, y, 0, deck, colour),
+        *seen(box((0.4 * x, 0.88 * y, 0.002), (-0.08 * x, 0, deck), DARK)),
+        *seen(box((0.16 * x, 0.34 * y, 0.002), (0.28 * x, 0, deck), shade(colour, 0.8))),
+        *moving(joint, screen),
     ]
 
 

@@ -17,6 +17,7 @@ from nodes.sim_node.models.forms import (
     shade,
     slab,
 )
+from nodes.sim_node.models.openings import cabinet_box, side_door
 from nodes.sim_node.models.parts import ALONG_Y, Colour, Parts, about, ball, box, pill, rod, seen
 
 
@@ -61,14 +62,29 @@ def backpack(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def suitcase(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """Upright, ribbed, on wheels, with a pulled-out handle."""
+    """Upright, ribbed, on wheels, with a pulled-out handle; its front half opens like a door."""
     low, high = 0.05 * z, 0.78 * z
-    return [
-        slab(0.9 * x, y, low, high, colour),
-        *seen(
-            box((x, 0.06 * y, 0.92 * (high - low)), (0, y * k, (low + high) / 2), shade(colour, 1.25))
+    middle, tall = (low + high) / 2, high - low
+    ribs = {
+        side: seen(
+            box((x / 2, 0.06 * y, 0.92 * tall), (side * x / 4, y * k, middle), shade(colour, 1.25))
             for k in (-0.3, -0.1, 0.1, 0.3)
-        ),
+        )
+        for side in (-1, 1)
+    }
+    shell = cabinet_box((0.65 * x, y, tall), (-0.125 * x, 0, middle), colour)
+    lid = side_door(
+        "lid",
+        (0.03 * x, y, tall),
+        (0.435 * x, 0, middle),
+        colour,
+        handle=[*seen(box((0.25 * x, y, tall), (0.325 * x, 0, middle), colour)), *ribs[1]],
+        friction=0.1,
+    )
+    return [
+        *shell,
+        *ribs[-1],
+        *lid,
         *(
             rod(0.025 * z, 0.04, (0.36 * x * i, 0.4 * y * j, 0.025 * z), BLACK, ALONG_Y)
             for i in (-1, 1)

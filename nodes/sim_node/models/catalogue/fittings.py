@@ -17,6 +17,7 @@ from nodes.sim_node.models.forms import (
     shifted,
     slab,
 )
+from nodes.sim_node.models.openings import GAP_M, side_door
 from nodes.sim_node.models.parts import (
     ALONG_X,
     ALONG_Y,
@@ -47,7 +48,15 @@ def door(x: float, y: float, z: float, colour: Colour) -> Parts:
     )
     jambs = [box((x, jamb, z), (0, side * (y - jamb) / 2, z / 2), shade(colour, 1.25)) for side in (-1, 1)]
     lintel = box((x, y - 2 * jamb, jamb), (0, 0, z - jamb / 2), shade(colour, 1.25))
-    return [slab(0.6 * x, y - 2 * jamb, 0, z - jamb, colour), *panels, *handles, *jambs, lintel]
+    leaf = side_door(
+        "leaf",
+        (0.6 * x, y - 2 * jamb - 2 * GAP_M, z - jamb - 0.01),
+        (0.0, 0.0, (z - jamb) / 2 + 0.003),
+        colour,
+        handle=[*panels, *handles],
+        hinge=-1,
+    )
+    return [*leaf, *jambs, lintel]
 
 
 def window(x: float, y: float, z: float, colour: Colour) -> Parts:

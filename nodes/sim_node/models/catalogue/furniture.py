@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from nodes.sim_node.models.forms import DARK, STEEL, WHITE, column, front, legs, shade, slab
+from nodes.sim_node.models.forms import DARK, STEEL, WHITE, column, legs, shade, slab
+from nodes.sim_node.models.openings import cabinet_box, pull_out, wall_of
 from nodes.sim_node.models.parts import ALONG_X, Colour, Parts, ball, box, rod, seen
 
 
@@ -59,35 +60,31 @@ def table(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def desk(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A top on a drawer block at one side and two legs at the other."""
+    """A top on a block of drawers at one side, the first at the top, and two legs at the other."""
     thick, block = 0.035, 0.3 * y
     left = -(y - block) / 2
+    case = (0.9 * x, block, z - thick)
+    deep = 0.94 * (case[0] - wall_of(case))
     drawers = [
         part
         for row in range(3)
-        for part in front(
-            0.45 * x + 0.012,
-            0.86 * block,
-            0.24 * z,
-            (left, (0.17 + 0.3 * row) * z),
-            shade(colour, 1.25),
-            deep=0.012,
+        for part in pull_out(
+            f"drawer_{3 - row}",
+            (deep, 0.8 * block, 0.18 * z),
+            (0.45 * x - deep / 2, left, (0.17 + 0.3 * row) * z),
+            colour,
+            panel=(0.86 * block, 0.24 * z),
+            face=seen(rod(0.012, 0.03, (0.45 * x + 0.02, left, (0.17 + 0.3 * row) * z), STEEL, ALONG_X)),
         )
-    ]
-    knobs = [
-        part
-        for row in range(3)
-        for part in seen(rod(0.012, 0.03, (0.45 * x + 0.02, left, (0.17 + 0.3 * row) * z), STEEL, ALONG_X))
     ]
     posts = [
         box((0.05, 0.05, z - thick), (side * 0.42 * x, 0.46 * y, (z - thick) / 2), DARK) for side in (-1, 1)
     ]
     return [
         slab(x, y, z - thick, z, colour),
-        box((0.9 * x, block, z - thick), (0, left, (z - thick) / 2), shade(colour, 0.9)),
+        *cabinet_box(case, (0, left, (z - thick) / 2), shade(colour, 0.9)),
         *posts,
         *drawers,
-        *knobs,
     ]
 
 

@@ -16,7 +16,11 @@ from nodes.sim_node.models.forms import (
     shade,
     slab,
 )
+from nodes.sim_node.models.openings import cabinet_box, pull_out, side_door, wall_of
 from nodes.sim_node.models.parts import ALONG_Y, Colour, Parts, about, ball, box, felt, product, rod, seen
+
+_SIDES = ((-1, "left"), (1, "right"))
+"""Of who stands before it."""
 
 
 def counter(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -40,37 +44,34 @@ def counter(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def _with_doors(x: float, y: float, z: float, colour: Colour, *, foot: float, panels: bool) -> Parts:
-    leaf = 0.47 * y
-    doors = [
-        part
-        for side in (-1, 1)
-        for part in front(
-            x / 2, leaf, 0.94 * (z - foot), (side * 0.24 * y, (z + foot) / 2), shade(colour, 1.15), deep=0.012
+    leaf, tall = 0.47 * y, 0.94 * (z - foot)
+    doors: Parts = []
+    for side, name in _SIDES:
+        decor = [
+            part
+            for half in (0.28, 0.72)
+            for part in front(
+                x / 2 + 0.001,
+                0.7 * leaf,
+                0.36 * (z - foot),
+                (side * 0.24 * y, foot + half * (z - foot)),
+                shade(colour, 0.95),
+                deep=0.004,
+            )
+        ]
+        knob = seen(ball((0.03,) * 3, (x / 2 - 0.002, side * 0.03, z * 0.52), BRASS))
+        doors += side_door(
+            name,
+            (0.012, leaf, tall),
+            (x / 2 - 0.006, side * 0.24 * y, (z + foot) / 2),
+            shade(colour, 1.15),
+            handle=[*(decor if panels else []), *knob],
+            hinge=side,
         )
-    ]
-    inner = [
-        part
-        for side in (-1, 1)
-        for half in (0.28, 0.72)
-        for part in front(
-            x / 2 + 0.001,
-            0.7 * leaf,
-            0.36 * (z - foot),
-            (side * 0.24 * y, foot + half * (z - foot)),
-            shade(colour, 0.95),
-            deep=0.004,
-        )
-    ]
-    knobs = [
-        part
-        for side in (-1, 1)
-        for part in seen(ball((0.03,) * 3, (x / 2 - 0.002, side * 0.03, z * 0.52), BRASS))
-    ]
-    shelves = _shelves(z - foot)
-    body = closed_box(
-        (x - 0.012, y, z - foot), (-0.006, 0, (z + foot) / 2), colour, boards=shelves, depth=0.9
+    body = cabinet_box(
+        (x - 0.012, y, z - foot), (-0.006, 0, (z + foot) / 2), colour, boards=_shelves(z - foot), depth=0.9
     )
-    return [*body, *doors, *(inner if panels else []), *knobs]
+    return [*body, *doors]
 
 
 def _shelves(height: float) -> list[float]:
@@ -93,14 +94,18 @@ def cupboard(x: float, y: float, z: float, colour: Colour) -> Parts:
     low = 0.45 * z
     glass = [
         part
-        for side in (-1, 1)
-        for part in front(
-            0.15 * x + 0.012, 0.42 * y, 0.44 * z, (side * 0.23 * y, 0.74 * z), (0.7, 0.85, 0.9), deep=0.012
+        for side, name in _SIDES
+        for part in side_door(
+            f"upper_{name}",
+            (0.012, 0.48 * y, 0.52 * z),
+            (0.15 * x + 0.006, side * 0.245 * y, 0.725 * z),
+            (0.7, 0.85, 0.9),
+            hinge=side,
         )
     ]
     return [
         *_with_doors(x, y, low, colour, foot=0.0, panels=False),
-        *closed_box(
+        *cabinet_box(
             (0.65 * x, y, z - low),
             (-0.175 * x, 0, (z + low) / 2),
             shade(colour, 0.9),
@@ -121,21 +126,24 @@ def closet(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def drawer(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A chest of drawers."""
+    """A chest of drawers, the first at the top."""
     rows = max(2, min(5, round(z / 0.25)))
     pitch = 0.94 * z / rows
-    fronts, handles = [], []
+    case = (x - 0.032, y, z)
+    wall = wall_of(case)
+    pulled: Parts = []
     for row in range(rows):
         height = 0.04 * z + pitch * (row + 0.5)
-        fronts += front(x / 2 - 0.02, 0.92 * y, 0.86 * pitch, (0, height), shade(colour, 1.2), deep=0.012)
-        handles += seen(box((0.02, 0.3 * y, 0.02), (x / 2 - 0.01, 0, height), STEEL))
-    body = closed_box(
-        (x - 0.032, y, z),
-        (-0.016, 0, z / 2),
-        colour,
-        boards=[(0.04 * z + row * pitch) / z for row in range(1, rows)],
-    )
-    return [*body, *fronts, *handles]
+        pulled += pull_out(
+            f"drawer_{rows - row}",
+            (0.94 * (case[0] - wall), 0.9 * y, 0.7 * pitch),
+            (x / 2 - 0.032 - 0.47 * (case[0] - wall), 0, height),
+            colour,
+            panel=(0.92 * y, 0.86 * pitch),
+            face=seen(box((0.02, 0.3 * y, 0.02), (x / 2 - 0.01, 0, height), STEEL)),
+        )
+    body = cabinet_box(case, (-0.016, 0, z / 2), colour)
+    return [*body, *pulled]
 
 
 def bedstand(x: float, y: float, z: float, colour: Colour) -> Parts:

@@ -1,0 +1,51 @@
+"""What is in something closed is known and cannot be seen; and since when."""
+
+import re
+
+import pytest
+
+from nodes.kb_node.answers.hidden import closed_around, in_words
+from ontology import vocabulary as v
+from schemas.commits import Edit, NewEntity, Statement, Transaction
+from schemas.entities import Pose
+from tests.kb_node import home
+
+
+@pytest.fixture
+def kitchen(tmp_path):
+    """Milk in a fridge; a cup on the floor beside it."""
+    made = home.new_map(tmp_path, home.household())
+    at = {"fridge1": (0.0, 0.0, 0.0), "carton1": (-0.1, 0.0, 0.645), "cup1": (2.0, 0.0, 0.0)}
+    classes = {"fridge1": "Fridge", "carton1": "Milk", "cup1": "Cup"}
+    new = tuple(
+        NewEntity(name=name, class_iri=v.bare(v.dm(classes[name])), pose=Pose(position_m=at[name]))
+        for name in at
+    )
+    made.commit(Transaction(id="1", source="operator", add=new))
+    yield made
+    home.close(made)
+
+
+def say(kitchen, number, value):
+    edit = Edit(name="fridge1", set=(Statement(property="isOpen", values=(value,)),))
+    kitchen.commit(Transaction(id=str(number), source="operator", edit=(edit,)))
+
+
+def test_of_a_fridge_of_which_nobody_said_that_it_is_closed_nothing_is_claimed(kitchen):
+    assert closed_around(kitchen, kitchen.entity("carton1")) is None
+
+
+def test_milk_in_a_closed_fridge_cannot_be_seen_since_it_was_closed(kitchen):
+    say(kitchen, 2, "false")
+    closed = closed_around(kitchen, kitchen.entity("carton1"))
+    assert closed is not None
+    said = r"it cannot be seen there: fridge1 has been closed since commit 2, \d+ s ago"
+    assert re.fullmatch(said, in_words(closed))
+    assert closed_around(kitchen, kitchen.entity("cup1")) is None
+    assert closed_around(kitchen, kitchen.entity("fridge1")) is None
+
+
+def test_once_it_is_open_it_can(kitchen):
+    say(kitchen, 2, "false")
+    say(kitchen, 3, "true")
+    assert closed_around(kitchen, kitchen.entity("carton1")) is None

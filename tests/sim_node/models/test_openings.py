@@ -1,0 +1,83 @@
+"""Models that open: in the simulator, by hand, with what is in them."""
+
+import pytest
+
+from nodes.sim_node.models.library import build
+from nodes.sim_node.models.model_table import MODELS
+from nodes.sim_node.world import World
+from schemas.scenes import JointOrder
+from tests.sim_node.orders import bodies, order, pose, spawned
+
+OPENING = {
+    "door": {"leaf"},
+    "fridge": {"door", "freezer"},
+    "oven": {"door"},
+    "microwave": {"door"},
+    "dishwasher": {"door"},
+    "washing_machine": {"door"},
+    "cabinet": {"left", "right"},
+    "cupboard": {"left", "right", "upper_left", "upper_right"},
+    "wardrobe": {"left", "right"},
+    "drawer": {"drawer_1", "drawer_2", "drawer_3", "drawer_4"},
+    "desk": {"drawer_1", "drawer_2", "drawer_3"},
+    "laptop": {"lid"},
+    "suitcase": {"lid"},
+}
+
+
+def test_these_models_open():
+    found = {name: {leaf.joint.name for leaf in build(name, None).leaves} for name in MODELS}
+    assert {name: joints for name, joints in found.items() if joints} == OPENING
+
+
+@pytest.mark.parametrize("model", OPENING)
+def test_it_opens_and_shuts_stays_so_and_sleeps(model):
+    world = spawned(order("it", model, pose(0.0, 0.0), fixed=model == "door"))
+    world.step(1.0)
+    before = bodies(world)["it"].pose
+    for share in (1.0, 0.5, 0.0):
+        assert world.move_joints([JointOrder(name="it", openness=share)]).failed == {}
+        world.step(5.0)
+        it = bodies(world)["it"]
+        assert [joint.openness for joint in it.joints] == pytest.approx([share] * len(it.joints), abs=0.03)
+        assert it.resting
+        assert world.asleep
+        assert it.pose.position_m == pytest.approx(before.position_m, abs=0.03)
+
+
+@pytest.mark.parametrize("size_m", [(0.6, 1.5, 0.9), (1.5, 0.6, 0.9), (0.3, 0.3, 0.3)])
+def test_its_joints_are_as_large_as_it_is_and_turn_with_it(size_m):
+    world = World()
+    world.spawn([order("it", "drawer", pose(0.0, 0.0, yaw=1.0), size_m=size_m)])
+    world.step(1.0)
+    world.move_joints([JointOrder(name="it", openness=1.0, joint="drawer_1")])
+    world.step(4.0)
+    assert bodies(world)["it"].joints[-1].openness == pytest.approx(1.0, abs=0.02)
+
+
+def test_what_is_in_a_drawer_moves_with_it():
+    chest = build("drawer", None)
+    (top,) = (leaf for leaf in chest.leaves if leaf.joint.name == "drawer_1")
+    x, y, z = top.parts[0].centre
+    world = spawned(order("chest", "drawer", pose(0.0, 0.0)))
+    world.spawn([order("apple1", "apple", pose(x, y, z + 0.01))])
+    world.step(2.0)
+    before = bodies(world)["apple1"].pose.position_m
+    world.move_joints([JointOrder(name="chest", joint="drawer_1", openness=1.0)])
+    world.step(4.0)
+    after, travel = bodies(world)["apple1"].pose.position_m, top.joint.range[1]
+    assert after[0] - before[0] == pytest.approx(travel, abs=0.12)
+    assert after[2] == pytest.approx(before[2], abs=0.02)
+    assert bodies(world)["apple1"].resting
+
+
+def test_milk_stays_in_the_fridge_while_its_door_opens_and_shuts():
+    world = spawned(
+        order("fridge1", "fridge", pose(0.0, 0.0)), order("milk1", "carton", pose(-0.1, 0.0, 0.9))
+    )
+    world.step(2.0)
+    before = bodies(world)["milk1"].pose.position_m
+    for share in (1.0, 0.0):
+        world.move_joints([JointOrder(name="fridge1", openness=share)])
+        world.step(4.0)
+    assert bodies(world)["milk1"].pose.position_m == pytest.approx(before, abs=0.02)
