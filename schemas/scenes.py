@@ -266,7 +266,8 @@ class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     world: str
     bodies: tuple[Body, ...]
     left_out: tuple[str, ...] = ()
-    """The named bodies of the world that are none of these, but only parts of them."""
+    """The bodies of the world that are none of these, but only parts of them: names, or what is told of those
+    without a name."""
 
 
 class SceneQuery(Call[Scene], frozen=True, kw_only=True, forbid_unknown_fields=True):
