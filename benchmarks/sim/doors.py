@@ -14,6 +14,7 @@ from time import thread_time
 from benchmarks.sim.made import p50_p95_ms
 from benchmarks.sim.system import Watch
 from benchmarks.table import Row
+from nodes import bus
 from nodes.extern.client import Client
 from nodes.extern.testing import own_system
 from nodes.sim_node.models.library import Model, assemble, build
@@ -21,9 +22,10 @@ from nodes.sim_node.models.parts import Vec3
 from nodes.sim_node.orders import ModelSource
 from nodes.sim_node.physics import sleep
 from nodes.sim_node.world import World
+from schemas import keys
 from schemas.entities import Entity
 from schemas.joints import IS_OPEN, OPEN_FROM, openness, stated
-from schemas.scenes import BodyOrder, JointOrder
+from schemas.scenes import BodyOrder, JointOrder, Scene, SceneQuery
 
 CLASSES = ("Fridge", "Oven", "Microwave", "Dishwasher", "WashingMachine", "Cabinet", "Wardrobe", "Desk")
 _DOORS = 40
@@ -205,7 +207,9 @@ def _quiet(client: Client) -> list[str]:
     deadline_s = time.monotonic() + _PATIENCE_S
     agreed = 0
     while agreed < _IN_A_ROW and time.monotonic() < deadline_s:
-        agreed = agreed + 1 if client.status().in_agreement else 0
+        scene = bus.ask(client.session, keys.SIM, SceneQuery.VERB, SceneQuery(), Scene)
+        rests = all(body.resting for body in scene.bodies)
+        agreed = agreed + 1 if rests and client.status().in_agreement else 0
         time.sleep(0.2)
     return [name for i in range(_DOORS) if not agrees(client.get(name := f"door{i}"))]
 

@@ -97,6 +97,12 @@ class World:
         """About how many bodies do not sleep: a step costs time in proportion."""
         return self._engine.awake
 
+    @property
+    def joints_at_rest(self) -> int:
+        """How many joints belong to bodies that rest."""
+        engine = self._engine
+        return int(np.count_nonzero(engine.resting[engine.index.joint_body]))
+
     # what is asked
 
     def spawn(self, ordered: Sequence[BodyOrder]) -> Spawned:
