@@ -444,13 +444,15 @@ class TabScene:
         """Ask for the body to be put where it was let go; what is refused goes back."""
         thing = self._things[name]
         before = self.page.state.poses.get(name, thing.pose)
+        body = self._bodies_by_name().get(name)
+        was_ghost = body is not None and body.ghost
         if still(before, pose):  # a click at the arrows
             self.break_off()
             return
         target = put_down(pose, thing.size_m, self._solids(without=name))
         self._copy(target)
         done = await self.page.change(Move(name=name, at=target.position_m, yaw=target.yaw_rad, carry=True))
-        if done is not None and thing.look != "ghost" and await self._is_ghost(name):
+        if done is not None and not was_ghost and await self._is_ghost(name):
             back = Move(name=name, at=before.position_m, yaw=before.yaw_rad, carry=True)
             if await self.page.change(back) is not None:
                 self.page.tell(_NO_ROOM.format(name=name), "warning")
