@@ -139,7 +139,7 @@ def select(tab: Page, name: str) -> None:
     """Find a thing in the table, and select it."""
     tab.get_by_label("Filter entities by text").fill(name)
     tab.locator(f'.entity-table [row-id="{name}"] [col-id="name"]').first.click()
-    tab.locator(".q-drawer--right").get_by_text(name, exact=True).first.wait_for()
+    tab.locator(".q-drawer--right").get_by_text(f"{name} ·").first.wait_for()
     drawn(tab, 4.0)
 
 
@@ -153,7 +153,9 @@ def page_why_png(tab: Page, client: Client) -> None:
     """Why something holds, step by step."""
     select(tab, "counter1")
     tab.get_by_label("Filter entities by text").fill("")
-    tab.get_by_role("button", name="Why: is a laden thing").click()
+    why = tab.get_by_role("button", name="Why: is a laden thing")
+    why.click()
+    why.evaluate("button => button.scrollIntoView()")
     drawn(tab, 3.0)
     tab.screenshot(path=DOCS / "page-why.png")
 
