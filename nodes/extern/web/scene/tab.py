@@ -62,6 +62,8 @@ _NO_ROOM: Final = (
     "There is no room for {name} there: it would stand in something else. It is back where it was."
 )
 _RENDER_S: Final = (0.3, 1.0, 3.0, 8.0)
+_MEASURES: Final = 8
+"""Of so many relations, the nearest things first, it is written what they are."""
 _NAMED: Final = 50
 """Of so many selected things the names are written, whether or not there is room."""
 
@@ -504,7 +506,9 @@ class TabScene:
             f"{number} of {len(lines)}": (each.text, _between(each.a, each.b))
             for number, each in enumerate(lines)
         }
-        chosen = [] if self._client is None else uncrowded(self._view(self._client), written)
+        chosen = (
+            [] if self._client is None else uncrowded(self._view(self._client), written, written, _MEASURES)
+        )
         self._measures = {key: written[key] for key in chosen}
         self._line_labels.show(self._measures)
         self._label_soon()
