@@ -15,8 +15,9 @@ from fastapi import FastAPI
 from msgspec import Struct
 
 from nodes import bus
-from nodes.extern.web.access import TOKEN, Access, new_token
+from nodes.extern.web.access import TOKEN, Access
 from nodes.identity import Identity
+from nodes.runtime.web_token import new_token
 from schemas import errors
 
 HOST: Final = "127.0.0.1"
