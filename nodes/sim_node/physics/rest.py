@@ -63,7 +63,7 @@ class JointWatch:
         return np.asarray(time_s - self._since_s >= ASLEEP_S)
 
     def arrive(self, rows: list[int], positions: Floats, time_s: float) -> None:
-        """These have been brought to where they are to stand, and stopped: they rest, unless they move anew."""
+        """These have been brought where they are to stand, and stopped: they rest unless they move anew."""
         self._anchor[rows] = positions[rows]
         self._since_s[rows] = time_s - ASLEEP_S
 
