@@ -34,6 +34,7 @@ _ROUND_S = 0.25
 _PATIENCE_S = 60.0
 _IN_A_ROW = 5
 _STEP_S = 0.01
+_THERE_RAD = 0.001
 _OFF = 0.01
 """A joint that stands so far [rad, m] from where the map states it is in disagreement."""
 
@@ -154,14 +155,13 @@ def _lasts_s(fridge: Entity, swings: Sequence[float]) -> list[float]:
     world.step(2.0)
     lasts = []
     for to in swings:
-        began_s = ended_s = world.data.time
-        before = world.poses().joints
         world.move_joints([JointOrder(name=fridge.name, joint="door", openness=to)])
+        stood = []
         for _ in range(500):
             world.step(_STEP_S)
-            if (now := world.poses().joints) != before:
-                before, ended_s = now, world.data.time
-        lasts.append(float(ended_s - began_s))
+            stood.append(world.poses().joints[0])
+        there = next(i for i, position in enumerate(stood) if abs(position - stood[-1]) < _THERE_RAD)
+        lasts.append(_STEP_S * (there + 1))
     return lasts
 
 
