@@ -133,6 +133,16 @@ def carried(pose: Pose, was: Pose, now: Pose) -> Pose:
     return rounded(Pose(position_m=(x, y, z), orientation_wxyz=(qw, qx, qy, qz)))
 
 
+def relative(pose: Pose, to: Pose) -> Pose:
+    """A pose of the map frame in the frame that stands at `to`."""
+    return carried(pose, to, Pose(position_m=(0.0, 0.0, 0.0)))
+
+
+def composed_pose(frame: Pose, pose: Pose) -> Pose:
+    """The other way round: `pose`, given in the frame that stands at `frame`, in the map frame."""
+    return carried(pose, Pose(position_m=(0.0, 0.0, 0.0)), frame)
+
+
 def _product(a: Quaternion, b: Quaternion) -> Quaternion:
     """The rotation `b`, then `a`."""
     aw, ax, ay, az = a
@@ -233,7 +243,7 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     that was journalled, and `live`, which replies fill in, the newest.
     `pose_provenance` says what last changed its pose, `shape_provenance` its class or size,
     `reference_provenance` what it is called, `joint_provenance` how far open it is and how its joints stand
-    (None if that was never stated). `properties` are the data and object properties asserted of it.
+    (None if that was never stated), `grip_provenance` who or what holds it. `properties` are the data and object properties asserted of it.
     """
 
     name: str
@@ -259,6 +269,7 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     shape_provenance: Provenance
     reference_provenance: Provenance
     joint_provenance: Provenance | None = None
+    grip_provenance: Provenance | None = None
 
 
 class ClassInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

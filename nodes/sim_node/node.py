@@ -29,6 +29,8 @@ from schemas.scenes import (
     Deleted,
     DriveBase,
     Driven,
+    Grip,
+    Gripped,
     JointsMoving,
     MoveBodies,
     MoveJoints,
@@ -83,6 +85,7 @@ class Simulator:
                 Delete.answered_by(self._delete),
                 MoveBodies.answered_by(self._move),
                 MoveJoints.answered_by(self._move_joints),
+                Grip.answered_by(self._grip),
                 SceneQuery.answered_by(self._snapshot),
                 DriveBase.answered_by(self._drive),
                 Pause.answered_by(self._pause),
@@ -134,6 +137,9 @@ class Simulator:
 
     def _move_joints(self, message: MoveJoints) -> JointsMoving:
         return self._told(self._world.move_joints(message.orders))
+
+    def _grip(self, message: Grip) -> Gripped:
+        return self._told(self._world.grip(message.orders))
 
     def _drive(self, message: DriveBase) -> Driven | Future[Driven]:
         self._world.drive(message)
