@@ -209,6 +209,33 @@ class Track(Command[Changed], frozen=True, tag="track"):
     dry_run: bool = False
 
 
+class Attach(Command[Changed], frozen=True, tag="attach"):
+    """Have an entity held by another, such as a robot's gripper or a tray: from now on it goes with that.
+
+    It is held where it is just now, or `at` a position in the frame of its holder (whose origin is the bottom
+    centre [m]), turned there by `yaw` [rad]. Where it was taken is committed, and the map states
+    `isGraspedBy` and `graspPose`. Refused for places, for what is fixed or part of something or held by something else, and
+    for what holds the holder.
+    """
+
+    name: Word
+    to: Word
+    at: Vector | None = None
+    yaw: Angle | None = None
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
+    dry_run: bool = False
+
+
+class Detach(Command[Changed], frozen=True, tag="detach"):
+    """Let go of what something holds: it is put where it is just now, which is committed."""
+
+    name: Word
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
+    dry_run: bool = False
+
+
 class Remove(Command[Changed], frozen=True, tag="remove"):
     """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
 

@@ -243,7 +243,8 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     that was journalled, and `live`, which replies fill in, the newest.
     `pose_provenance` says what last changed its pose, `shape_provenance` its class or size,
     `reference_provenance` what it is called, `joint_provenance` how far open it is and how its joints stand
-    (None if that was never stated), `grip_provenance` who or what holds it. `properties` are the data and object properties asserted of it.
+    (None if that was never stated), and `grip_provenance` what holds it (likewise). `properties` are the data
+    and object properties asserted of it.
     """
 
     name: str

@@ -50,6 +50,8 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
         "load",
         "undo",
         "track",
+        "attach",
+        "detach",
         "submit",
         "approve",
         "move",

@@ -41,8 +41,8 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     world's own furniture. `size_m` is what it really measures. `joints` are those that move parts of it, and
     `joint_commit` is the commit whose positions these were last ordered to take. It rests when these do, too.
     `part_of` names the body that carries it, as a kitchen does its oven in an MJCF world. `held_by` names the
-    body that holds it and `grip` is where, in that body's frame; `grip_commit` is the commit that last ordered
-    it to be held or let go, 0 for a hand, and -1 while nobody has done either.
+    body that holds it and `grip` is where, in that body's frame; `grip_commit` is the commit that last
+    ordered it to be held or let go, 0 for a hand, and -1 while nobody has done either.
     """
 
     name: str
@@ -154,7 +154,7 @@ class MoveJoints(Call[JointsMoving], frozen=True, kw_only=True, forbid_unknown_f
 class GripOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Have a body held by another (`holder`), or by nobody (""): then it is let go where it is.
 
-    `grip` is where it is to be in the frame of its holder's bottom centre; without one it is held as it is now.
+    `grip` is where it is to be in the frame of its holder's bottom centre; without one it is held as it is.
     With a `commit` it is the map's order, without one it is a hand.
     """
 

@@ -105,8 +105,8 @@ class Answers:
             return word
 
     def _with_body(self, entity: E) -> E:
-        """With what has become of its body, and where it is just now if it is tracked."""
-        if entity.tracked:
+        """With what has become of its body, and where it is just now if it is tracked or held."""
+        if entity.tracked or entity.name in self._door.map.held:
             entity = structs.replace(entity, live=self._live.of(entity))
         state, body = self._keeping.body_state(entity), self._keeping.scene.bodies.get(entity.name)
         if entity.size_m is not None or state.status == "none":

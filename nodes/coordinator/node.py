@@ -21,6 +21,7 @@ from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
 from nodes.coordinator.live.feed import LiveFeed
 from nodes.coordinator.scene.among_walls import AmongWalls
+from nodes.coordinator.scene.gripping import Gripping
 from nodes.coordinator.scene.opening import Opening
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
@@ -69,6 +70,9 @@ class Coordinator:
         among_walls = AmongWalls(self._keeping, self._ask_sim, self._bridge.ask_later)
         running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
         self._opening = Opening(door, self._keeping, self._ask_sim)
+        scene = self._keeping.scene
+        self._gripping = Gripping(config.truth, door, scene, self._turns.change, self._ask_sim)
+        door.map.where, door.map.bodies = self._live.where, lambda: scene.bodies
         relay = self._bridge.relay
         of_the_map = calls.by_verb(
             c.Add.answered_by(self._with_body),
@@ -83,6 +87,8 @@ class Coordinator:
             c.List.answered_by(answers.list),
             c.Get.answered_by(answers.get),
             c.Move.answered_by(running.move),
+            c.Attach.answered_by(self._gripping.attach),
+            c.Detach.answered_by(self._gripping.detach),
             c.Open.answered_by(self._opening.move),
             c.Close.answered_by(self._opening.move),
             c.Drive.answered_by(running.drive),

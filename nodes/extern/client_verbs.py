@@ -323,6 +323,8 @@ class Verbs:
     # To run
     move = Verb(commands.Move)
     drive = Verb(commands.Drive)
+    attach = Verb(commands.Attach)
+    detach = Verb(commands.Detach)
     open = Verb(commands.Open)
     close = Verb(commands.Close)
     pause = Verb(commands.Pause)

@@ -22,7 +22,7 @@ _MODULES = {
     "run": ("run",),
     "perceive": ("perceive",),
     "navigation": ("floorplan", "route"),
-    "scene": ("move", "drive", "open", "close", "pause", "step", "reset", "picture"),
+    "scene": ("move", "drive", "attach", "detach", "open", "close", "pause", "step", "reset", "picture"),
     "replay": ("replay",),
     "movie": ("movie",),
     "lifecycle": ("up", "down", "node", "repair"),

@@ -94,7 +94,7 @@ class Engine:
         jointed = grips.concerned(names, self.records) or jointed
         for record in self.records.values():
             if record.held_by in names:
-                record.held_by, record.grip = "", None
+                record.held_by, record.grip, record.grip_commit = "", None, -1
         for name in names:
             self._drives.stop(self.records[name].joint_names)
             self._leave(name)

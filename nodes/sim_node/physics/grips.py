@@ -1,6 +1,6 @@
 """Grips: bodies that are held by others, as welds of MuJoCo between them.
 
-A weld is part of the compiled model: who takes or lets go compiles anew, and whatever else does finds them again.
+A weld is part of the compiled model, so taking and letting go compile it anew; later compilations keep it.
 """
 
 from __future__ import annotations
@@ -19,11 +19,13 @@ _HARD = (0.99, 0.999, 0.001, 0.5, 2.0)
 
 
 def add_grips(spec: mujoco.MjSpec, records: Mapping[str, BodyRecord]) -> None:
-    """Weld who is held to who holds it; they do not collide, nor does it with what else its holder carries."""
+    """Weld what is held to its holder; the two do not collide, nor does it with the holder's other parts."""
     for record in held(records):
         holder = records[record.held_by]
         body = spec.body(holder.name)
-        spec.body(record.name).gravcomp = 1.0  # whatever holds it bears it: an arm that droops would be no help
+        spec.body(
+            record.name
+        ).gravcomp = 1.0  # whatever holds it bears it: an arm that droops would be no help
         weld = spec.add_equality(
             type=mujoco.mjtEq.mjEQ_WELD,
             objtype=mujoco.mjtObj.mjOBJ_BODY,

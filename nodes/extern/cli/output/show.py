@@ -24,6 +24,7 @@ from schemas import wording
 from schemas.changes import value_in_words
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, PropertyInfo, Value
+from schemas.grips import holder_of
 from schemas.joints import in_words
 from schemas.relations import Described, Relation
 from schemas.replies import SystemStatus
@@ -75,7 +76,7 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "class": e.class_,
         "types": ", ".join(e.types),
         "pose": pose_text(e.pose),
-        **({"live": _live(e)} if e.tracked else {}),
+        **({"live": _live(e)} if e.tracked or e.live is not None else {}),
         "size": (size_text(e) or "unknown") + own_size,
         **({"where": where} if (where := _where(e)) else {}),
         **({"but": "; ".join(doubts)} if (doubts := (*(r.text for r in e.denied), *e.withheld)) else {}),
@@ -101,7 +102,10 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
 
 def _live(e: Entity) -> str:
     """Where it is just now, how old that is and where it comes from."""
-    source = "the simulator" if e.tracked == "sim" else "a stream of poses"
+    if by := holder_of(e):
+        source = f"where {by} holds it"
+    else:
+        source = "the simulator" if e.tracked == "sim" else "a stream of poses"
     if e.live is None:
         return f"tracked from {source}, which has told nothing yet"
     stale = " (stale)" if e.live.stale else ""

@@ -76,9 +76,7 @@ def _whereabouts_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
     return _of_nobody_held(survey, found)
 
 
-def _of_nobody_held(
-    survey: Survey, found: list[tuple[About, ...] | None]
-) -> list[tuple[About, ...] | None]:
+def _of_nobody_held(survey: Survey, found: list[tuple[About, ...] | None]) -> list[tuple[About, ...] | None]:
     if held := survey.held:
         for row, solid in enumerate(survey.solids):
             if solid.name in held:
