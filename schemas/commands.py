@@ -214,8 +214,8 @@ class Attach(Command[Changed], frozen=True, tag="attach"):
 
     It is held where it is just now, or `at` a position in the frame of its holder (whose origin is the bottom
     centre [m]), turned there by `yaw` [rad]. Where it was taken is committed, and the map states
-    `isGraspedBy` and `graspPose`. Refused for places, for what is fixed or part of something or held by something else, and
-    for what holds the holder.
+    `isGraspedBy` and `graspPose`. Refused for places, for what is fixed, part of something or held already,
+    and for what holds the holder.
     """
 
     name: Word
