@@ -22,6 +22,7 @@ from ontology.model_shapes import own_size_m
 from schemas import bridge, errors
 from schemas import commands as c
 from schemas.entities import Entity, Size
+from schemas.grips import holder_of
 from schemas.moments import When
 from schemas.relations import Described
 from schemas.replies import SystemStatus
@@ -106,7 +107,7 @@ class Answers:
 
     def _with_body(self, entity: E) -> E:
         """With what has become of its body, and where it is just now if it is tracked or held."""
-        if entity.tracked or entity.name in self._door.map.held:
+        if entity.tracked or holder_of(entity):
             entity = structs.replace(entity, live=self._live.of(entity))
         state, body = self._keeping.body_state(entity), self._keeping.scene.bodies.get(entity.name)
         if entity.size_m is not None or state.status == "none":

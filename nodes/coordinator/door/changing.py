@@ -189,6 +189,8 @@ def attach(view: KnownMap, command: Attach) -> Talk[Changed]:
     """Have an entity held by another. Raises Refused where it cannot be."""
     entity, holder = view.entity(command.name), view.entity(holding.named(command.to, view.entities))
     holding.require_graspable(entity, holder, view.entities, view.bodies())
+    if holder_of(entity) == holder.name and command.at is None and command.yaw is None:
+        return changed(None, f"unchanged: {holder.name} holds {entity.name} already", names=(entity.name,))
     grip = holding.grip(view.where(entity.name), view.where(holder.name), command.at, command.yaw)
     pose = view.where(entity.name)
     made = yield from commit(view, transactions.attach(command, holder.name, grip, pose and rounded(pose)))

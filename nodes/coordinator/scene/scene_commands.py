@@ -9,7 +9,6 @@ from typing import TypeVar
 
 from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
-from nodes.coordinator.holding import require_free
 from nodes.coordinator.plausibility import require_carrying
 from nodes.coordinator.scene.reconciler import GHOSTLY, AskSim, Keeping
 from nodes.runtime.futures import OwnFuture, settle, then
@@ -46,8 +45,6 @@ class Running:
         if body is None:
             state = self._keeping.body_state(self._door.map.entity(command.name))
             raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
-        if self._truth != "perceived" and (entity := self._door.map.entities.get(command.name)) is not None:
-            require_free(entity)
         if not command.carry:
             return self._put(command, body, ())
         future: Future[Moved] = OwnFuture()
