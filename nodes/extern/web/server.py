@@ -95,7 +95,15 @@ def _serve(
         stage.show(page)
         layout(page)
 
-    ui.run_with(app, title="semmap", dark=None, show_welcome_message=False, reconnect_timeout=30.0)
+    ui.run_with(
+        app,
+        title="semmap",
+        dark=None,
+        tailwind=False,  # it works out styles in the browser, with every change; page.css has what is used
+        gzip_middleware_factory=None,  # nothing goes further than this machine, and it takes longer than to send it
+        show_welcome_message=False,
+        reconnect_timeout=30.0,
+    )
     uvicorn.Server(_uvicorn(Access(app, config.host, port, token))).run(sockets=[listening])
 
 
