@@ -100,7 +100,7 @@ def _serve(
         title="semmap",
         dark=None,
         tailwind=False,  # it works out styles in the browser, with every change; page.css has what is used
-        gzip_middleware_factory=None,  # nothing goes further than this machine, and it takes longer than to send it
+        gzip_middleware_factory=None,  # it takes longer than to send it within this machine
         show_welcome_message=False,
         reconnect_timeout=30.0,
     )
