@@ -120,8 +120,8 @@ def profile(chromium):
 def open_tab(profile):
     """A function that opens the page in a tab of its own: `open_tab(web)`, `open_tab(web, width=390)`.
 
-    It draws the scene only with `scene=True`, for software does that slowly, on the thread of all else. No tab may
-    ask anything of another machine, nor report an error; that is looked at in the end.
+    It draws the scene only with `scene=True`, for software does that slowly, on the thread of all else.
+    No tab may ask anything of another machine, nor report an error; that is looked at in the end.
     """
     tabs, asked, complained = [], [], []
 
