@@ -99,7 +99,7 @@ def _serve(
         app,
         title="semmap",
         dark=None,
-        tailwind=False,  # it works out styles in the browser, with every change; page.css has what is used
+        tailwind=False,  # it works out styles in the browser; page.css has those that are used
         gzip_middleware_factory=None,  # it takes longer than to send it within this machine
         show_welcome_message=False,
         reconnect_timeout=30.0,
