@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 @click.option("--format", "format", type=click.Choice(["tree", "json"]), default="tree", show_default=True)
 @talks
 def frames(client: Client, name: str | None, format: str) -> None:
-    """Show the tree of frames: the map, entities, cameras, and what others publish.
+    """Show the tree of frames, each with its pose in its parent.
 
-    With NAME that frame, those above it and those below it. Each has its pose in the one above.
+    Frames are the map, entities, cameras, and what others publish. With NAME that frame, those above it and those below it.
     """
     found = client.frames(name)
     if format == "json":
