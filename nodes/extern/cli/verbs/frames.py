@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 def frames(client: Client, name: str | None, format: str) -> None:
     """Show the tree of frames, each with its pose in its parent.
 
-    Frames are the map, entities, cameras, and what others publish. With NAME that frame, those above it and those below it.
+    Frames are the map, entities, cameras, and what others publish. With NAME that frame, those above it and
+    those below it.
     """
     found = client.frames(name)
     if format == "json":
