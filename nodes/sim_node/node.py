@@ -236,7 +236,10 @@ class Simulator:
     def _advance(self) -> None:
         now = time.monotonic()
         if not self._paused:
+            before = self._world.joints_at_rest
             self._world.step(min(now - self._clock_s, _LAG_S, self._turn_s()))
+            if self._world.joints_at_rest > before:
+                self._publish()  # whoever waits for the end of a motion hears of it at once
         self._clock_s = now
         self._tell_ended()
 

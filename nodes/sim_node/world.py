@@ -71,7 +71,7 @@ class World:
         """What the world declares in vain, each with the reason."""
         self._engine = Engine(ground, meanwhile, is_class)
         self.left_out = base_scene.left_out(ground, self._engine.records)
-        """The named bodies of the world that are only parts of others."""
+        """The bodies of the world that are only parts of others, each by name or by what it is part of."""
         self._settling = Settling(self._engine)
         self._models, self._meanwhile = models, meanwhile
         self.name = name
@@ -97,6 +97,12 @@ class World:
     def awake(self) -> int:
         """About how many bodies do not sleep: a step costs time in proportion."""
         return self._engine.awake
+
+    @property
+    def joints_at_rest(self) -> int:
+        """How many joints belong to bodies that rest."""
+        engine = self._engine
+        return int(np.count_nonzero(engine.resting[engine.index.joint_body]))
 
     # what is asked
 

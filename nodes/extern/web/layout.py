@@ -53,7 +53,7 @@ KEYS: Final = {
     "Del": "delete what is selected, after a confirmation",
     "u": "undo the last change",
     "Home": "back to now",
-    "Esc": "select nothing",
+    "Esc": "leave a drag or pointing at a place; otherwise select nothing",
     "?": "this list",
 }
 
@@ -67,9 +67,9 @@ def layout(page: Page) -> None:
     dark = ui.dark_mode(None)
     with ui.header(elevated=False).classes("semmap-header") as header:
         pass
-    with ui.left_drawer(bordered=False, value=True).props("width=340 breakpoint=760") as left:
+    with ui.left_drawer(bordered=False, value=True).props("width=340 breakpoint=960") as left:
         _Tabs(page, LEFT, "What there is").draw()
-    with ui.right_drawer(bordered=False, value=True).props("width=370 breakpoint=760") as right:
+    with ui.right_drawer(bordered=False, value=True).props("width=370 breakpoint=960") as right:
         details = _Tabs(page, RIGHT, "Details of what is selected, and adding")
         details.draw()
     with ui.column().classes("semmap-centre"):
@@ -169,7 +169,7 @@ def _keys(page: Page) -> None:
     page.on_key("u", lambda: page.later(undo(page)))
     page.on_key("Delete", lambda: page.later(delete_selected(page)))
     page.on_key("Home", lambda: page.go_to(None))
-    page.on_key("Escape", lambda: page.select(()))
+    page.on_key("Escape", page.escape)
     page.on_key("?", help_)
     ui.on("semmap_key", lambda event: page.press(_told(event).get("key", "")))
 

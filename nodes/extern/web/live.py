@@ -18,6 +18,7 @@ from typing import Any, Final, Literal, TypeVar
 from msgspec import Struct
 
 from nodes import bus
+from nodes.drawing.bending import Bends, bends_of
 from nodes.drawing.scene_state import SceneState
 from nodes.extern.client import Client
 from nodes.extern.sparql_client import StandingQuery
@@ -90,8 +91,11 @@ class Live:
         self._poses_heard = 0
         self._entities: dict[str, Entity] = {}
         self._poses: dict[str, Pose] = {}
+        self._bends: dict[str, Bends] = {}
         self.entities: Mapping[str, Entity] = MappingProxyType(self._entities)
         self.poses: Mapping[str, Pose] = MappingProxyType(self._poses)
+        self.bends: Mapping[str, Bends] = MappingProxyType(self._bends)
+        """Of bodies with joints: which are not at 0, and where."""
         self._told: list[Told] = []
         self._loop: asyncio.AbstractEventLoop | None = None
         self._threads = ThreadPoolExecutor(_ASKED_AT_ONCE, thread_name_prefix="ask")
@@ -198,12 +202,17 @@ class Live:
         if news.scene is not None:
             self.scene = news.scene.now
             self._poses.clear()
+            self._bends.clear()
             if self.scene is not None:
                 self._poses.update((body.name, body.pose) for body in self.scene.bodies)
+                self._bends.update(
+                    (body.name, bends_of(body.joints)) for body in self.scene.bodies if body.joints
+                )
             yield Happening(kind="scene")
         self._poses_heard += news.poses_heard
         if news.moved:
             self._poses.update(news.moved)
+            self._bends.update(news.bends)
             yield Happening(kind="poses", names=tuple(news.moved))
         if news.why_not is not None and (self.connected, self.why_not) != (not news.why_not, news.why_not):
             self.connected, self.why_not = not news.why_not, news.why_not
@@ -246,6 +255,7 @@ class _News:
         self.commits: list[Commit] = []
         self.scene: _Bodies | None = None
         self.moved: dict[str, Pose] = {}
+        self.bends: dict[str, Bends] = {}
         self.poses_heard = 0
         self.health: dict[str, Health] = {}
         self.why_not: str | None = None
@@ -327,6 +337,7 @@ class _Following:
         if self._scene.known and time.monotonic() - self._poses_s > _SCENE_LOST_S:
             self._scene = SceneState()
             self._news.scene, self._news.moved = _Bodies(now=None), {}
+            self._news.bends.clear()
 
     def _why_not(self) -> str:
         if time.monotonic() - self._kb_s > _SILENT_S:
@@ -346,6 +357,8 @@ class _Following:
         moved = dict(self._scene.follow(poses))
         if moved:
             self._news.moved.update(moved)
+            bodies = (self._scene.bodies[name] for name in moved)
+            self._news.bends.update((body.name, bends_of(body.joints)) for body in bodies if body.joints)
             self._is_new = True
 
     def _fetch_scene(self) -> None:
@@ -358,6 +371,7 @@ class _Following:
             if future.exception() is None:
                 self._scene.take(future.result())
                 self._news.scene, self._news.moved = _Bodies(now=future.result()), {}
+                self._news.bends.clear()
                 self._is_new = True
 
         self._node.ask_later(keys.SIM, SceneQuery()).add_done_callback(on_scene)
