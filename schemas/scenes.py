@@ -245,6 +245,23 @@ class PictureQuery(Call[Picture], frozen=True, kw_only=True, forbid_unknown_fiel
     height: Annotated[int, Meta(ge=16, le=4096)] = 640
 
 
+class CameraPose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where a camera of the world is just now: its optical frame (x right, y down, z into the scene).
+
+    `part_of` names the body that carries it; "" for one that stays where it is.
+    """
+
+    camera: str
+    part_of: str
+    pose: Pose
+
+
+class CamerasQuery(Call[tuple[CameraPose, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where all cameras are."""
+
+    VERB: ClassVar[str] = "cameras"
+
+
 class CameraFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What goes with each raw plane of a camera, as its attachment.
 
@@ -282,7 +299,8 @@ class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     world: str
     bodies: tuple[Body, ...]
     left_out: tuple[str, ...] = ()
-    """The named bodies of the world that are none of these, but only parts of them."""
+    """The bodies of the world that are none of these, but only parts of them: names, or what is told of those
+    without a name."""
 
 
 class SceneQuery(Call[Scene], frozen=True, kw_only=True, forbid_unknown_fields=True):

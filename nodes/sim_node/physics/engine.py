@@ -280,7 +280,8 @@ class Engine:
             else:
                 before, most = self.data.qpos.copy(), _STEPS_A_LOOK
                 if self._drives:
-                    self._drives.push(self.model, self.data, self.index)
+                    arrived = self._drives.push(self.model, self.data, self.index)
+                    self._joint_rest.arrive(arrived, self.positions(), self.data.time)
                     most = STEPS_A_PUSH
                 if self.courses:
                     self.courses.steer(self.model, self.data, self.index)
