@@ -133,14 +133,37 @@ def carried(pose: Pose, was: Pose, now: Pose) -> Pose:
     return rounded(Pose(position_m=(x, y, z), orientation_wxyz=(qw, qx, qy, qz)))
 
 
-def relative(pose: Pose, to: Pose) -> Pose:
-    """A pose of the map frame in the frame that stands at `to`."""
-    return carried(pose, to, Pose(position_m=(0.0, 0.0, 0.0)))
+def compose(frame: Pose, pose: Pose) -> Pose:
+    """Where a thing that is at `pose` in a frame is in that in which the frame itself is at `frame`.
+
+    `map_from_lidar = compose(map_from_robot, robot_from_lidar)`.
+    """
+    turn = frame.orientation_wxyz
+    _, *offset = _product(_product(turn, (0.0, *pose.position_m)), _inverse(turn))
+    x, y, z = (o + d for o, d in zip(frame.position_m, offset, strict=True))
+    turned = _product(turn, pose.orientation_wxyz)
+    length = math.hypot(*turned)
+    qw, qx, qy, qz = (value / length for value in turned)
+    return Pose(position_m=(x, y, z), orientation_wxyz=(qw, qx, qy, qz))
 
 
-def composed_pose(frame: Pose, pose: Pose) -> Pose:
-    """The other way round: `pose`, given in the frame that stands at `frame`, in the map frame."""
-    return carried(pose, Pose(position_m=(0.0, 0.0, 0.0)), frame)
+def inverse(frame: Pose) -> Pose:
+    """Where the outer frame is in the one that is at `frame` in it."""
+    back = _inverse(frame.orientation_wxyz)
+    x, y, z = frame.position_m
+    origin = Pose(position_m=(-x, -y, -z))
+    return compose(Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=_unit(back)), origin)
+
+
+def relative(pose: Pose, frame: Pose) -> Pose:
+    """A pose as seen from a frame; both are given in one and the same."""
+    return compose(inverse(frame), pose)
+
+
+def _unit(q: Quaternion) -> Quaternion:
+    length = math.hypot(*q)
+    w, x, y, z = q
+    return w / length, x / length, y / length, z / length
 
 
 def _product(a: Quaternion, b: Quaternion) -> Quaternion:

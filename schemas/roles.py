@@ -43,6 +43,7 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
             "properties",
         ),
         *("status", "history", "last-seen", "sparql", "watch", "renew", "picture", "floorplan", "route"),
+        "frames",
     ),
     _OBSERVERS: ("add", "update", "set", "unset", "remove"),
     _OPERATORS: (
@@ -96,6 +97,7 @@ GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.POSES, publish=frozenset(("robot",))),
     *_topic(keys.LIVE_POSE, publish=frozenset(("robot",))),
     *_topic(keys.LIVE_POSES),
+    *_topic(keys.FRAME, publish=frozenset(("robot",))),
     *_topic(keys.HEALTH),
     *_topic(keys.OBSERVATIONS, publish=frozenset(("perception",))),
     *_topic(keys.CLOUD, publish=frozenset(("perception",))),

@@ -207,17 +207,33 @@ class DriveBase(Call[Driven], frozen=True, kw_only=True, forbid_unknown_fields=T
     wait: bool = False
 
 
+class Leaf(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What one joint moves of a surface: `count` rows of its points from row `first` on.
+
+    A hinge turns them about `axis` through `anchor` [m], a slide shifts them along it, in the body's frame.
+    """
+
+    joint: str
+    kind: Literal["hinge", "slide"]
+    axis: Vector
+    anchor: Vector
+    first: int
+    count: int
+
+
 class Surface(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A body's surface in triangles, for those who draw it: arrays as raw little-endian bytes, row by row.
 
     `points` (N, 3) float32 [m] in the body's frame, whose origin is the bottom centre; outward `normals`
     (N, 3) float32; `colours` (N, 3) uint8, red, green, blue; `triangles` (M, 3) uint32, rows of the points.
+    It is with all joints at 0; `leaves` are what these move.
     """
 
     points: bytes
     normals: bytes
     colours: bytes
     triangles: bytes
+    leaves: tuple[Leaf, ...] = ()
 
 
 class Surfaces(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -263,6 +279,23 @@ class PictureQuery(Call[Picture], frozen=True, kw_only=True, forbid_unknown_fiel
     height: Annotated[int, Meta(ge=16, le=4096)] = 640
 
 
+class CameraPose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where a camera of the world is just now: its optical frame (x right, y down, z into the scene).
+
+    `part_of` names the body that carries it; "" for one that stays where it is.
+    """
+
+    camera: str
+    part_of: str
+    pose: Pose
+
+
+class CamerasQuery(Call[tuple[CameraPose, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where all cameras are."""
+
+    VERB: ClassVar[str] = "cameras"
+
+
 class CameraFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What goes with each raw plane of a camera, as its attachment.
 
@@ -300,7 +333,8 @@ class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     world: str
     bodies: tuple[Body, ...]
     left_out: tuple[str, ...] = ()
-    """The named bodies of the world that are none of these, but only parts of them."""
+    """The bodies of the world that are none of these, but only parts of them: names, or what is told of those
+    without a name."""
 
 
 class SceneQuery(Call[Scene], frozen=True, kw_only=True, forbid_unknown_fields=True):

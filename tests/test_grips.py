@@ -7,7 +7,7 @@ import pytest
 
 from nodes import bus
 from schemas import errors, keys
-from schemas.entities import composed_pose, distance_m
+from schemas.entities import compose, distance_m
 from schemas.grips import grip_of, holder_of
 from schemas.scenes import Grip, GripOrder, Gripped, Scene, SceneQuery
 from tests.conftest import running, until
@@ -40,7 +40,7 @@ def in_agreement(client):
 def live_off_m(client):
     """How far the cup's live pose is from where its holder has it."""
     cup, tray = client.get("cup1"), client.get("tray1")
-    return distance_m(cup.live.pose, composed_pose(tray.pose, grip_of(cup)))
+    return distance_m(cup.live.pose, compose(tray.pose, grip_of(cup)))
 
 
 def test_it_is_taken_carried_and_put(client):

@@ -1,4 +1,4 @@
-"""`python -m benchmarks.sim [--quick] [--parts alone,frames,...] [--minutes N] [--json FILE]`."""
+"""`python -m benchmarks.sim [--quick] [--parts NAMES] [--minutes N] [--worlds DIR] [--json FILE]`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from benchmarks.sim import alone, drive, endurance, live, system
+from benchmarks.sim import alone, doors, drive, endurance, live, system, worlds
 from benchmarks.table import Row, lines
 
 
@@ -19,8 +19,11 @@ def main() -> None:
     words = _arguments()
     load_before = os.getloadavg()[0]
     rows: list[Row] = []
-    for part in words.parts.split(","):
-        rows += PARTS[part](words)
+    if words.worlds:
+        rows += worlds.measure(words.worlds)
+    else:
+        for part in words.parts.split(","):
+            rows += PARTS[part](words)
     print(lines(rows))
     print(f"load average: {load_before:.1f} before, {os.getloadavg()[0]:.1f} now")
     if words.json_file:
@@ -55,6 +58,11 @@ def _live(words: argparse.Namespace) -> list[Row]:
         return live.measure(Path(folder), seconds=6.0 if words.quick else 15.0)
 
 
+def _doors(words: argparse.Namespace) -> list[Row]:
+    with tempfile.TemporaryDirectory() as folder:
+        return doors.measure(Path(folder), words.door_minutes, quick=words.quick)
+
+
 def _drive(_: argparse.Namespace) -> list[Row]:
     with tempfile.TemporaryDirectory() as folder:
         return drive.measure(Path(folder))
@@ -66,6 +74,7 @@ PARTS: dict[str, Callable[[argparse.Namespace], list[Row]]] = {
     "system": _system,
     "loads": _loads,
     "live": _live,
+    "doors": _doors,
     "drive": _drive,
     "endurance": lambda words: endurance.endure(words.minutes),
 }
@@ -75,6 +84,14 @@ def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.sim", description="Speed and memory.")
     parser.add_argument("--parts", default=",".join(PARTS), help=f"of: {','.join(PARTS)}")
     parser.add_argument("--minutes", type=float, default=60.0, help="simulated minutes of endurance")
+    parser.add_argument(
+        "--door-minutes", type=float, default=1.0, metavar="N",
+        help="simulated minutes in which 40 doors open and close (the whole: 10)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--worlds", type=Path, metavar="DIR",
+        help="instead of the parts: what becomes of the bodies of every MJCF file in this folder",
+    )  # fmt: skip
     parser.add_argument("--quick", action="store_true", help="small and rough: a look, no figures to cite")
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     words = parser.parse_args()

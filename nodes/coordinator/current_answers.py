@@ -12,6 +12,7 @@ from nodes import bus
 from nodes.coordinator import formats
 from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
+from nodes.coordinator.frames.feed import Frames
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
 from nodes.coordinator.live.feed import LiveFeed
@@ -45,6 +46,7 @@ class Answers:
         health: HealthView,
         bridge: Bridge,
         live: LiveFeed,
+        frames: Frames,
     ) -> None:
         self._truth = truth
         self._door = door
@@ -52,6 +54,7 @@ class Answers:
         self._health = health
         self._bridge = bridge
         self._live = live
+        self._frames = frames
 
     def list(self, query: c.List) -> Listed | Future[Listed]:
         """The entities of a class, with what has become of their bodies."""
@@ -83,7 +86,7 @@ class Answers:
             bodies=len(self._keeping.scene.bodies),
             in_agreement=self._keeping.in_agreement(),
             nodes=self._health.nodes(),
-            problems=(*self._keeping.problems(), *self._live.problems()),
+            problems=(*self._keeping.problems(), *self._live.problems(), *self._frames.problems()),
             version=version(),
         )
 

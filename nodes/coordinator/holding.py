@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 
 from schemas import errors, wording
-from schemas.entities import Entity, Pose, composed_pose, orientation_from_yaw, relative
+from schemas.entities import Entity, Pose, compose, orientation_from_yaw, relative
 from schemas.grips import bearers, grip_of, holder_of
 from schemas.scenes import Body
 
@@ -64,7 +64,7 @@ def carried_pose(entity: Entity, where: Where) -> Pose | None:
     if not by or gripped is None:
         return None
     holder = where(by)
-    return None if holder is None else composed_pose(holder, gripped)
+    return None if holder is None else compose(holder, gripped)
 
 
 def require_free(entity: Entity) -> None:

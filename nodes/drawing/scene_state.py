@@ -13,6 +13,8 @@ from schemas.scenes import Body, Poses, Scene
 
 _STIR = 2e-4
 """A coordinate [m] or a quaternion's component that changed by less has not changed."""
+_JOINT_STIR = 1e-3
+"""The same of a joint [rad, m]."""
 
 
 class SceneState:
@@ -39,7 +41,7 @@ class SceneState:
         return self.known and (poses.run, poses.version) == (self._run, self._version)
 
     def follow(self, poses: Poses) -> Iterator[tuple[str, Pose]]:
-        """Take over new poses of known bodies, and tell which have moved."""
+        """Take over new poses of known bodies, and tell which have moved, as a whole or in their joints."""
         self.sim_time_s = poses.sim_time_s
         rows = np.array(poses.poses, dtype=float).reshape(-1, 7)
         if poses.names != self._names:
@@ -54,4 +56,22 @@ class SceneState:
                 x, y, z, *wxyz = rows[i].tolist()
                 pose = Pose(position_m=(x, y, z), orientation_wxyz=(wxyz[0], wxyz[1], wxyz[2], wxyz[3]))
                 self.bodies[body.name] = structs.replace(body, pose=pose)
-                yield body.name, pose
+        moved = {poses.names[i] for i in stirred.tolist()} | set(self._follow_joints(poses))
+        for name in poses.names:
+            if name in moved and name in self.bodies:
+                yield name, self.bodies[name].pose
+
+    def _follow_joints(self, poses: Poses) -> Iterator[str]:
+        """Take over where joints stand, and tell of which bodies any has moved."""
+        first = 0
+        for name in poses.names if poses.joints else ():
+            body = self.bodies.get(name)
+            if body is None or not body.joints:
+                continue
+            now = poses.joints[first : first + len(body.joints)]
+            first += len(now)
+            joints = list(zip(body.joints, now, strict=False))
+            if any(abs(joint.position - at) > _JOINT_STIR for joint, at in joints):
+                placed = tuple(structs.replace(joint, position=at) for joint, at in joints)
+                self.bodies[name] = structs.replace(body, joints=placed)
+                yield name

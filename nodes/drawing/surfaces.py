@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from nodes.drawing.bending import bends_of, bent
 from schemas.entities import Size
 from schemas.scenes import Body, Surface
 
@@ -17,8 +18,9 @@ class SurfaceCache:
         self._known: dict[Kind, Surface | None] = {}
 
     def of(self, body: Body | None) -> Surface | None:
-        """The surface of a body, if it is known."""
-        return None if body is None else self._known.get(_kind(body))
+        """The surface of a body with its joints as they stand, if it is known."""
+        surface = None if body is None else self._known.get(_kind(body))
+        return surface if surface is None or body is None else bent(surface, bends_of(body.joints))
 
     def of_kind(self, model: str, size_m: Size) -> Surface | None:
         """The surface of a model at a size, if it is known."""

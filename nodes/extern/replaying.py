@@ -28,6 +28,7 @@ def replay(
     world: Path | None = None,
     sim: bool = True,
     record: bool = True,
+    web: int | None = None,
     say: Callable[[str], None],
 ) -> None:
     """Run the map of the data folder `data` again, from one commit or time to another, until Ctrl-C.
@@ -35,13 +36,20 @@ def replay(
     It has a knowledge base, a simulator and a recorder of its own, in a folder that is deleted at the end;
     `data` is only read, also while its own system runs. Commits come with the waits that were between them,
     divided by `speed`, and none longer than `longest_s` [s]. `world` is the scene file, by default the map's.
+    `web` is the port of a page that shows it: 0 is any that is free, None no page.
 
     Raises BadFile when there is no map, Refused when it is damaged or the span is not in its history,
     BadRequest for a span or speed that is none; and what `semmap up` raises.
     """
     rhythm.require_speed(speed)
     rhythm.require_longest(longest_s)
-    extras.require("semmap replay", "kb", *(["sim"] if sim else []), *(["record"] if record else []))
+    extras.require(
+        "semmap replay",
+        "kb",
+        *(["sim"] if sim else []),
+        *(["record"] if record else []),
+        *([] if web is None else ["web"]),
+    )
     from nodes.kb_node.storage.replay.preparing import prepare
     from nodes.supervisor.up import up
 
@@ -54,6 +62,8 @@ def replay(
             truth="replayed",
             sim=sim,
             record=record,
+            web=web is not None,
+            web_port=web or 0,
             replay=Replay(of=str(data), since=span.since, until=span.until, speed=speed, longest_s=longest_s),
         )
         up(settings, say=say)

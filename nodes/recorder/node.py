@@ -154,8 +154,12 @@ class Recorder:
             self._fetch_scene()
             return
         self._at(poses.stamp_ns)
+        jointed = []
         for name, pose in self._scene.follow(poses):
             self._stage.move(name, pose)
+            if self._scene.bodies[name].joints:
+                jointed.append(name)
+        self._stage.show(jointed, self._map.entities, self._scene.bodies, simulated=True)
 
     def _on_live(self, live: LivePoses) -> None:
         """Of what is tracked from elsewhere; the simulator's own poses come by themselves."""

@@ -25,6 +25,8 @@ from schemas.plans import Outline, WallsQuery
 from schemas.replies import Done
 from schemas.scenes import (
     BodiesMoved,
+    CameraPose,
+    CamerasQuery,
     Delete,
     Deleted,
     DriveBase,
@@ -87,6 +89,7 @@ class Simulator:
                 MoveJoints.answered_by(self._move_joints),
                 Grip.answered_by(self._grip),
                 SceneQuery.answered_by(self._snapshot),
+                CamerasQuery.answered_by(self._cameras),
                 DriveBase.answered_by(self._drive),
                 Pause.answered_by(self._pause),
                 StepOnce.answered_by(self._step),
@@ -160,6 +163,9 @@ class Simulator:
 
     def _snapshot(self, _: SceneQuery) -> Scene:
         return self._world.scene()
+
+    def _cameras(self, _: CamerasQuery) -> tuple[CameraPose, ...]:
+        return self._world.cameras()
 
     def _pause(self, message: Pause) -> Done:
         state = "running" if message.off else "paused"
@@ -236,7 +242,10 @@ class Simulator:
     def _advance(self) -> None:
         now = time.monotonic()
         if not self._paused:
+            before = self._world.joints_at_rest
             self._world.step(min(now - self._clock_s, _LAG_S, self._turn_s()))
+            if self._world.joints_at_rest > before:
+                self._publish()  # whoever waits for the end of a motion hears of it at once
         self._clock_s = now
         self._tell_ended()
 

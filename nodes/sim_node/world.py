@@ -23,7 +23,7 @@ from nodes.sim_node.physics.engine import Engine
 from nodes.sim_node.physics.walls import walls
 from nodes.sim_node.placement.settling import Settling
 from nodes.sim_node.robots.courses import ACTUATORS, Outcome, actuators
-from nodes.sim_node.vision.view import bulk, overview
+from nodes.sim_node.vision.view import bulk, camera_names, optical_pose, overview
 from schemas.entities import Pose, relative
 from schemas.errors import Refused
 from schemas.plans import Outline
@@ -31,6 +31,7 @@ from schemas.scenes import (
     BodiesMoved,
     Body,
     BodyOrder,
+    CameraPose,
     Deleted,
     DriveBase,
     GripOrder,
@@ -72,7 +73,7 @@ class World:
         """What the world declares in vain, each with the reason."""
         self._engine = Engine(ground, meanwhile, is_class)
         self.left_out = base_scene.left_out(ground, self._engine.records)
-        """The named bodies of the world that are only parts of others."""
+        """The bodies of the world that are only parts of others, each by name or by what it is part of."""
         self._settling = Settling(self._engine)
         self._models, self._meanwhile = models, meanwhile
         self.name = name
@@ -98,6 +99,12 @@ class World:
     def awake(self) -> int:
         """About how many bodies do not sleep: a step costs time in proportion."""
         return self._engine.awake
+
+    @property
+    def joints_at_rest(self) -> int:
+        """How many joints belong to bodies that rest."""
+        engine = self._engine
+        return int(np.count_nonzero(engine.resting[engine.index.joint_body]))
 
     # what is asked
 
@@ -296,6 +303,15 @@ class World:
             self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
         model, names = self._copy
         return model, copy.copy(self.data), names
+
+    def cameras(self) -> tuple[CameraPose, ...]:
+        """Where the cameras of the world are, and which bodies carry them."""
+        model, data = self.model, self.data
+        carriers = self.names_of(model.cam_bodyid)
+        return tuple(
+            CameraPose(camera=name, part_of=carrier, pose=optical_pose(data, number))
+            for number, (name, carrier) in enumerate(zip(camera_names(model), carriers, strict=True))
+        )
 
     def body_names(self) -> list[str]:
         """(ngeom,) for each geom of `model` the name of the body that it belongs to, or ""."""

@@ -6,7 +6,6 @@ import contextlib
 import fcntl
 import os
 import re
-import secrets
 import shlex
 import signal
 import socket
@@ -20,6 +19,7 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.identity import SUPERVISOR, Identity
+from nodes.runtime.web_token import new_token
 from nodes.supervisor import presence, registry
 from nodes.supervisor.control import LONGEST_STOP_S, Supervisor
 from nodes.supervisor.notices import Notices
@@ -28,6 +28,7 @@ from nodes.supervisor.watchdog import Watchdog
 from schemas import errors, keys
 from schemas.calls import reply_type
 from schemas.commands import Classes, Status
+from schemas.endpoints import WEB_TOKEN_VARIABLE
 from schemas.health import Health
 
 _START_TIMEOUT_S = 120.0
@@ -56,7 +57,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
         _require_free(settings.listen)
         if settings.record and settings.secure is None:  # anybody on this machine may look at a live view
             settings = structs.replace(settings, live_view=_live_view())
-        token = secrets.token_urlsafe(24) if settings.web else ""
+        token = new_token(os.environ.get(WEB_TOKEN_VARIABLE, "")) if settings.web else ""
         if settings.web:
             settings = structs.replace(settings, web_port=_web_port(settings.web_port))
         with presence.announced(settings.reachable):

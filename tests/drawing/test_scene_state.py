@@ -1,4 +1,7 @@
+from msgspec import structs
+
 from nodes.drawing.scene_state import SceneState
+from schemas.joints import Joint
 from tests.recorder.messages import body, pose, poses, scene
 
 
@@ -38,3 +41,14 @@ def test_a_scene_may_become_empty():
     list(state.follow(poses({"a": pose(), "b": pose(1.0)})))
     state.take(scene())
     assert dict(state.follow(poses({}))) == {}
+
+
+def test_a_joint_that_moves_is_told_though_its_body_stands():
+    state = SceneState()
+    door = Joint(name="door", kind="hinge")
+    state.take(scene(body("a"), body("b", joints=(door,))))
+    still = poses({"a": pose(), "b": pose()})
+    list(state.follow(structs.replace(still, joints=(0.0,), joint_commits=(1,))))
+    moved = dict(state.follow(structs.replace(still, joints=(0.5,), joint_commits=(1,))))
+    assert moved == {"b": pose()}
+    assert state.bodies["b"].joints[0].position == 0.5

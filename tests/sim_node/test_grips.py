@@ -10,7 +10,7 @@ from nodes.sim_node.models.sources import Models
 from nodes.sim_node.robots.robot import SHIPPED
 from nodes.sim_node.world import World
 from nodes.sim_node.world_file import open_world
-from schemas.entities import Pose, angle_rad, composed_pose, distance_m, relative
+from schemas.entities import Pose, angle_rad, compose, distance_m, relative
 from schemas.scenes import DriveBase, GripOrder
 from tests.sim_node.orders import bodies, hand, order, pose, spawned
 
@@ -36,7 +36,7 @@ def off_m(world: World, name: str) -> float:
     """How far a held body is from where it is held."""
     there = bodies(world)
     body = there[name]
-    return distance_m(body.pose, composed_pose(there[body.held_by].pose, body.grip))
+    return distance_m(body.pose, compose(there[body.held_by].pose, body.grip))
 
 
 def test_it_is_held_where_it_is_and_sleeps(world):

@@ -120,3 +120,17 @@ def test_poses_tell_joints_in_the_order_of_the_bodies(world):
     told = world.poses()
     assert [round(position, 2) for position in told.joints] == [0.0, 0.0, 1.75, 0.0]
     assert len(told.joint_commits) == 2
+
+
+def test_a_door_that_has_arrived_rests_at_once(world):
+    world.move_joints([JointOrder(name="fridge1", joint="door", openness=0.5)])
+    seen = []
+    for _ in range(300):
+        world.step(0.01)
+        seen.append((world.poses().joints[0], all(world.poses().resting)))
+    end = seen[-1][0]
+    assert end == pytest.approx(math.radians(50.0), abs=0.004)
+    arrived = next(i for i, (position, _) in enumerate(seen) if abs(position - end) < 0.001)
+    rested = next(i for i, (_, rests) in enumerate(seen) if rests)
+    assert arrived - 1 <= rested <= arrived + 2
+    assert all(rests for _, rests in seen[rested:])

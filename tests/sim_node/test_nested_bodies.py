@@ -45,7 +45,7 @@ def test_by_a_text_or_a_name_like_a_class_a_part_is_a_body_of_its_own(kitchen):
 
 
 def test_what_is_left_out_and_what_is_declared_in_vain_is_named(kitchen):
-    assert set(kitchen.left_out) == {"leaf", "cup 2", "hand"}
+    assert set(kitchen.left_out) == {"leaf", "cup 2", "hand", "a nameless part of desk"}
     assert kitchen.ignored == [
         "ghost (no such body)",
         "nothing (no such joint)",
@@ -108,3 +108,12 @@ def test_a_thousand_nested_bodies_are_read():
     world = World(mujoco.MjSpec.from_string(f"<mujoco><worldbody>{floor}{chains}</worldbody></mujoco>"))
     assert len(world) + len(world.left_out) == 1000
     assert len(world) == 100
+
+
+def test_what_has_no_name_is_a_body_if_anything_of_it_moves_and_else_is_told():
+    ball = '<body><joint type="ball"/><geom size=".1"/></body>'
+    nameless = f'<body pos="0 0 1"><geom size=".1"/>{ball}</body><body><geom size=".1" pos="3 0 0"/></body>'
+    world = World(mujoco.MjSpec.from_string(f"<mujoco><worldbody>{nameless}</worldbody></mujoco>"))
+    assert list(bodies(world)) == ["body_1"]
+    assert [joint.kind for joint in bodies(world)["body_1"].joints] == ["ball"]
+    assert world.left_out == ("a nameless part of body_1", "a nameless part of the ground")

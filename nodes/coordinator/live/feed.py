@@ -60,6 +60,10 @@ class LiveFeed:
         """The simulator has just told where bodies are."""
         self._scene_heard_s = time.monotonic()
 
+    def scene_age_s(self) -> float:
+        """How long ago the simulator told where bodies are [s]."""
+        return time.monotonic() - self._scene_heard_s
+
     def of(self, entity: Entity) -> Live | None:
         """Where a tracked entity is just now, if that was ever heard."""
         if not entity.tracked:

@@ -245,7 +245,26 @@ class Keeping:
             for name, (commit, reason) in self._ungripped.items()
             if (e := self._door.map.entities.get(name)) is not None and grip_order(e).commit == commit
         )
-        return amiss + seen + [f"{name}: {why}" for name, why in foreign] + self._of_the_world()
+        return (
+            amiss
+            + seen
+            + [f"{name}: {why}" for name, why in foreign]
+            + self._awaited()
+            + self._of_the_world()
+        )
+
+    def _awaited(self) -> list[str]:
+        """Which bodies are to become entities, and what they wait for."""
+        if self._config.truth != "scene":
+            return []
+        entities, bodies = self._door.map.entities, self.scene.bodies
+        waiting = [b for b in bodies.values() if b.name not in entities and b.name not in self._foreign]
+        moving = [body for body in waiting if not body.resting]
+        parts = [body for body in waiting if body.resting and self._whole_of(body) not in {"", *entities}]
+        return [
+            *(f"{body.name}: a scene body that becomes an entity when it comes to rest" for body in moving),
+            *(f"{body.name}: a part of {self._whole_of(body)}, which is no entity yet" for body in parts),
+        ]
 
     def _of_the_world(self) -> list[str]:
         """Which bodies of the world are no entities, though the scene is the truth."""

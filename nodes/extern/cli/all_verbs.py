@@ -17,6 +17,7 @@ _MODULES = {
         *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
         *("classes", "properties", "status", "sparql", "watch"),
     ),
+    "frames": ("frames",),
     "words": ("find", "tell", "understand"),
     "past": ("undo", "history", "diff", "when", "last-seen"),
     "run": ("run",),

@@ -7,16 +7,11 @@ from __future__ import annotations
 
 import hmac
 import ipaddress
-import re
-import secrets
 import socket
 from collections.abc import Awaitable, Callable, MutableMapping
 from http.cookies import CookieError, SimpleCookie
 from typing import Any, Final
 from urllib.parse import parse_qs, urlsplit
-
-from schemas import errors
-from schemas.endpoints import WEB_TOKEN_VARIABLE
 
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
@@ -24,7 +19,6 @@ Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 TOKEN: Final = "token"
-SHORTEST_TOKEN: Final = 16
 _HTTP: Final = 80
 _LOOPBACK: Final = frozenset(("127.0.0.1", "localhost", "::1"))
 _POLICY: Final = (
@@ -36,17 +30,6 @@ _HEADERS: Final = (
     (b"referrer-policy", b"no-referrer"),
     (b"x-content-type-options", b"nosniff"),
 )
-
-
-def new_token(said: str = "") -> str:
-    """The token that somebody chose, or one that nobody can guess. Raises BadRequest for one too short."""
-    if not said:
-        return secrets.token_urlsafe(24)
-    if len(said) < SHORTEST_TOKEN or not re.fullmatch(r"[A-Za-z0-9_.~-]*", said):
-        raise errors.BadRequest(
-            f"{WEB_TOKEN_VARIABLE} must have at least {SHORTEST_TOKEN} letters, digits, '-', '_', '.' or '~'"
-        )
-    return said
 
 
 class Access:

@@ -53,7 +53,7 @@ KEYS: Final = {
     "Del": "delete what is selected, after a confirmation",
     "u": "undo the last change",
     "Home": "back to now",
-    "Esc": "select nothing",
+    "Esc": "leave a drag or pointing at a place; otherwise select nothing",
     "?": "this list",
 }
 
@@ -67,18 +67,16 @@ def layout(page: Page) -> None:
     dark = ui.dark_mode(None)
     with ui.header(elevated=False).classes("semmap-header") as header:
         pass
-    with ui.left_drawer(bordered=False, value=True).props("width=340 breakpoint=760") as left:
+    with ui.left_drawer(bordered=False, value=True).props("width=340 breakpoint=960") as left:
         _Tabs(page, LEFT, "What there is").draw()
-    with ui.right_drawer(bordered=False, value=True).props("width=370 breakpoint=760") as right:
+    with ui.right_drawer(bordered=False, value=True).props("width=370 breakpoint=960") as right:
         details = _Tabs(page, RIGHT, "Details of what is selected, and adding")
         details.draw()
     with ui.column().classes("semmap-centre"):
         _away(page)
         centre = _Tabs(page, CENTRE, "Views")
         centre.draw()
-        with centre.containers["Scene"].classes("semmap-scene"):
-            if page.draw_scene is not None:
-                page.draw_scene()
+        stage = centre.containers["Scene"].classes("semmap-scene")
         with ui.element("div").classes("semmap-time"):
             timeline(page)
 
@@ -90,12 +88,21 @@ def layout(page: Page) -> None:
         _header(page, left, right, dark, open_add)
     _keys(page)
     _look(page, left, right)
+    page.on_look(lambda: _begin_scene(page, stage))
     ui.timer(0.05, lambda: _ready(page), once=True)
 
 
 def _ready(page: Page) -> None:
-    """Everything is drawn: whoever waits for that, such as a test, sees it."""
+    """Everything but the scene is drawn: whoever waits for that, such as a test, sees it."""
     page.client.run_javascript("semmapStart(); document.body.classList.add('semmap-ready')")
+
+
+def _begin_scene(page: Page, stage: ui.element) -> None:
+    """The scene begins when the browser has drawn the rest, for both are drawn on the same thread there."""
+    draw, page.draw_scene = page.draw_scene, None
+    if draw is not None:
+        with stage:
+            draw()
 
 
 def _header(
@@ -169,7 +176,7 @@ def _keys(page: Page) -> None:
     page.on_key("u", lambda: page.later(undo(page)))
     page.on_key("Delete", lambda: page.later(delete_selected(page)))
     page.on_key("Home", lambda: page.go_to(None))
-    page.on_key("Escape", lambda: page.select(()))
+    page.on_key("Escape", page.escape)
     page.on_key("?", help_)
     ui.on("semmap_key", lambda event: page.press(_told(event).get("key", "")))
 

@@ -25,14 +25,14 @@
   function tellLook() {
     emitEvent("semmap_look", {
       dark: document.body.classList.contains("body--dark"),
-      narrow: window.innerWidth <= 760,
+      narrow: window.innerWidth <= 960,
     });
   }
 
   document.addEventListener("keydown", onKey);
   window.semmapStart = () => {
     new MutationObserver(tellLook).observe(document.body, { attributeFilter: ["class"] });
-    window.matchMedia("(max-width: 760px)").addEventListener("change", tellLook);
+    window.matchMedia("(max-width: 960px)").addEventListener("change", tellLook);
     tellLook();
   };
 })();

@@ -57,9 +57,11 @@ class Page:
         self.watch: Callable[[str, bool], object] | None = None
         """Watches a query, with what follows or without; set by the panel of standing queries."""
         self.draw_scene: Callable[[], None] | None = None
-        """Draws the scene with its switches where it is called; set by the scene."""
+        """Draws the scene with its switches where it is called, once; set by the scene."""
         self.pick: Callable[[], Awaitable[Place | None]] | None = None
         """Lets a person point at a place; set by the scene."""
+        self.break_off: Callable[[], bool] | None = None
+        """Ends pointing or dragging in the scene, and tells whether there was any; set by the scene."""
         self.look: Callable[[], ViewPoint | None] | None = None
         """Whence the scene is seen; set by the scene."""
         self._on_select: list[Callable[[], None]] = []
@@ -112,6 +114,11 @@ class Page:
     async def pick_place(self) -> Place | None:
         """The place that a person clicks at in the scene next; None for none, as when there is no scene."""
         return None if self.pick is None else await self.pick()
+
+    def escape(self) -> None:
+        """Leave what is half done in the scene; where nothing is, select nothing."""
+        if self.break_off is None or not self.break_off():
+            self.select(())
 
     @property
     def viewpoint(self) -> ViewPoint | None:

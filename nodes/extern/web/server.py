@@ -15,8 +15,9 @@ from fastapi import FastAPI
 from msgspec import Struct
 
 from nodes import bus
-from nodes.extern.web.access import TOKEN, Access, new_token
+from nodes.extern.web.access import TOKEN, Access
 from nodes.identity import Identity
+from nodes.runtime.web_token import new_token
 from schemas import errors
 
 HOST: Final = "127.0.0.1"
@@ -95,8 +96,23 @@ def _serve(
         stage.show(page)
         layout(page)
 
-    ui.run_with(app, title="semmap", dark=None, show_welcome_message=False, reconnect_timeout=30.0)
+    logging.getLogger("uvicorn.error").addFilter(_is_news)
+    ui.run_with(
+        app,
+        title="semmap",
+        dark=None,
+        tailwind=False,  # it works out styles in the browser; page.css has those that are used
+        gzip_middleware_factory=None,  # it takes longer than to send it within this machine
+        show_welcome_message=False,
+        reconnect_timeout=30.0,
+    )
     uvicorn.Server(_uvicorn(Access(app, config.host, port, token))).run(sockets=[listening])
+
+
+def _is_news(record: logging.LogRecord) -> bool:
+    """A tab that is closed while it is answered is none, though NiceGUI's middleware makes an error of it."""
+    error = record.exc_info[1] if record.exc_info else None
+    return not (isinstance(error, RuntimeError) and str(error) == "No response returned.")
 
 
 def _uvicorn(app: Any) -> uvicorn.Config:

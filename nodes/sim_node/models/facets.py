@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -9,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.sim_node.models.library import Model
-from nodes.sim_node.models.parts import Floats, Part, Role, Shape, rotation_matrix
-from schemas.scenes import Surface
+from nodes.sim_node.models.parts import Floats, Joint, Part, Role, Shape, rotation_matrix
+from schemas.scenes import Leaf, Surface
 
 _SLICES = 14
 _RINGS = 7
@@ -38,6 +39,21 @@ def surface_of(model: Model) -> Surface:
         normals=np.concatenate([piece.normals for piece in pieces]).astype("<f4").tobytes(),
         colours=np.round(255.0 * colours).astype("u1").tobytes(),
         triangles=np.concatenate(triangles).astype("<u4").tobytes(),
+        leaves=tuple(_leaf(leaf.joint, seen, [*starts.tolist(), sum(counts)]) for leaf in model.leaves),
+    )
+
+
+def _leaf(joint: Joint, seen: Sequence[Part], starts: Sequence[int]) -> Leaf:
+    """What a joint moves: its parts follow one another. `starts` has where each begins, and the end."""
+    rows = [row for row, part in enumerate(seen) if part.joint == joint]
+    first, end = (starts[rows[0]], starts[rows[-1] + 1]) if rows else (0, 0)
+    return Leaf(
+        joint=joint.name,
+        kind=joint.kind,
+        axis=joint.axis,
+        anchor=joint.anchor,
+        first=first,
+        count=end - first,
     )
 
 

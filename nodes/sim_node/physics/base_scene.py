@@ -33,6 +33,12 @@ _KINDS: dict[int, Literal["hinge", "slide", "ball"]] = {
     int(mujoco.mjtJoint.mjJNT_SLIDE): "slide",
     int(mujoco.mjtJoint.mjJNT_BALL): "ball",
 }
+_SLEEP_WITH = {
+    int(mujoco.mjtEq.mjEQ_CONNECT),
+    int(mujoco.mjtEq.mjEQ_WELD),
+    int(mujoco.mjtEq.mjEQ_JOINT),
+}
+"""The equality constraints whose bodies MuJoCo can put to sleep; with another it would stop with an error."""
 _DEFAULT_IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
 
 OVERVIEW = "overview"
@@ -82,8 +88,14 @@ def read_mjcf(path: Path, *, compiles: bool = True) -> mujoco.MjSpec:
 
 
 def prepare(spec: mujoco.MjSpec) -> None:
-    """Set what the simulator relies on: bodies at rest sleep, one bad body does not reset the world."""
-    spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
+    """Set what the simulator relies on: one bad body does not reset the world, and bodies at rest sleep.
+
+    In a world with equality constraints on tendons or flexible things nothing sleeps: MuJoCo cannot do it.
+    """
+    if all(int(equality.type) in _SLEEP_WITH for equality in spec.equalities):
+        spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
+    else:
+        spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
     if spec.option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL and spec.option.impratio == 1.0:
         # what a file does not choose: with these, things that lean on one another do not creep
@@ -102,11 +114,16 @@ def prepare(spec: mujoco.MjSpec) -> None:
 
 
 def _add_names(spec: mujoco.MjSpec) -> None:
-    """Bodies that move, joints and cameras that lack a name are called after their place among the rest."""
-    _name(spec.worldbody.bodies, "body", spec.bodies, lambda body: bool(body.name or not body.joints))
+    """Bodies that move, or parts of which do, joints and cameras get a name if they lack one."""
+    _name(spec.worldbody.bodies, "body", spec.bodies, lambda body: bool(body.name) or not _has_joints(body))
     _name(spec.joints, "joint", spec.joints, lambda joint: bool(joint.name))
     # a camera's is a part of the keys of its planes
     _name(spec.cameras, "camera", spec.cameras, lambda camera: bool(re.match(NAME_PATTERN, camera.name)))
+
+
+def _has_joints(body: mujoco.MjsBody) -> bool:
+    """Whether it moves, or any part of it."""
+    return bool(body.joints) or any(_has_joints(part) for part in body.bodies)
 
 
 def _name(elements: Sequence[Any], stem: str, kin: Iterable[Any], is_named: Callable[[Any], bool]) -> None:
@@ -194,10 +211,19 @@ def ignored(spec: mujoco.MjSpec) -> list[str]:
 
 
 def left_out(spec: mujoco.MjSpec, records: Collection[str]) -> tuple[str, ...]:
-    """The named bodies of a world that are none of `records`, but only parts of what is above them."""
+    """The bodies of a world that are none of `records`, by name; one without a name by what it is part of."""
     model, _ = _compiled(spec)
-    names = (model.body(number).name for number in range(1, model.nbody))
-    return tuple(name for name in names if name and name not in records)
+    names = [model.body(number).name for number in range(model.nbody)]
+    told = []
+    above = [""] * model.nbody
+    for number in range(1, model.nbody):  # wholes have lower numbers than their parts
+        whole = above[model.body_parentid[number]]
+        above[number] = names[number] or whole
+        if not names[number]:
+            told.append(f"a nameless part of {whole or 'the ground'}")
+        elif names[number] not in records:
+            told.append(names[number])
+    return tuple(told)
 
 
 def names_classes(spec: mujoco.MjSpec) -> bool:

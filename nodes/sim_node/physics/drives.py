@@ -60,9 +60,12 @@ class Drives:
         """The joints that are under way, as rows of the index."""
         return [index.joint_row[name] for name in self._under_way if name in index.joint_row]
 
-    def push(self, model: mujoco.MjModel, data: mujoco.MjData, index: BodyIndex) -> None:
-        """Set the forces for the next steps; what has arrived, or is stuck, is let go of."""
-        done = []
+    def push(self, model: mujoco.MjModel, data: mujoco.MjData, index: BodyIndex) -> list[int]:
+        """Set the forces for the next steps; what has arrived, or is stuck, is let go of.
+
+        Gives those that have arrived, as rows of the index: they stand still.
+        """
+        done, arrived = [], []
         for name, drive in self._under_way.items():
             row = index.joint_row.get(name)
             if row is None:
@@ -78,6 +81,7 @@ class Drives:
                 data.qvel[dof] = 0.0
                 if abs(way) <= _THERE[kind]:
                     data.qpos[index.joint_qpos[row]] = drive.target
+                    arrived.append(row)
                 done.append(name)
                 continue
             speed = max(-_SPEED[kind], min(_SPEED[kind], _APPROACH * way))
@@ -88,3 +92,4 @@ class Drives:
             push = max(-most, min(most, wanted + gain))
             data.qfrc_applied[dof] = push + friction + float(data.qfrc_bias[dof] - data.qfrc_gravcomp[dof])
         self.stop(done)
+        return arrived

@@ -17,7 +17,7 @@ from nodes.sim_node.physics.rest import JointWatch, RestWatch
 from nodes.sim_node.placement.obstacles import Stage
 from nodes.sim_node.robots.courses import Courses
 from nodes.sim_node.vision.view import View
-from schemas.entities import Pose, composed_pose
+from schemas.entities import Pose, compose
 
 _STEPS_A_LOOK = 25
 
@@ -138,7 +138,7 @@ class Engine:
                 continue
             mujoco.mj_kinematics(self.model, self.data)
             holder = pose_of(self.poses()[self.index.row[record.held_by]])
-            self.put({record.name: composed_pose(holder, record.grip)})
+            self.put({record.name: compose(holder, record.grip)})
         mujoco.mj_kinematics(self.model, self.data)
 
     def drive(self, name: str, targets: Mapping[str, float]) -> None:
@@ -302,7 +302,8 @@ class Engine:
             else:
                 before, most = self.data.qpos.copy(), _STEPS_A_LOOK
                 if self._drives:
-                    self._drives.push(self.model, self.data, self.index)
+                    arrived = self._drives.push(self.model, self.data, self.index)
+                    self._joint_rest.arrive(arrived, self.positions(), self.data.time)
                     most = STEPS_A_PUSH
                 if self.courses:
                     self.courses.steer(self.model, self.data, self.index)

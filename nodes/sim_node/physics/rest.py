@@ -62,6 +62,11 @@ class JointWatch:
         self._since_s[moved] = time_s
         return np.asarray(time_s - self._since_s >= ASLEEP_S)
 
+    def arrive(self, rows: list[int], positions: Floats, time_s: float) -> None:
+        """These have been brought where they are to stand, and stopped: they rest unless they move anew."""
+        self._anchor[rows] = positions[rows]
+        self._since_s[rows] = time_s - ASLEEP_S
+
     def disturb(self, rows: list[int], time_s: float) -> None:
         """These were taken in hand: they do not rest before they have been still anew."""
         self._since_s[rows] = time_s

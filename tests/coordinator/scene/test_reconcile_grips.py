@@ -5,7 +5,7 @@ from msgspec import structs
 
 from nodes.coordinator import holding
 from nodes.coordinator.scene.reconcile import reconcile
-from schemas.entities import Pose, composed_pose, relative
+from schemas.entities import Pose, compose, relative
 from schemas.errors import Refused
 from schemas.grips import grip_of, holder_of, pose_of_text, pose_text
 from schemas.scenes import GripOrder
@@ -76,7 +76,7 @@ def test_a_grip_is_a_text_and_back():
     assert pose_of_text(pose_text(turned)) == turned
     assert [pose_of_text(text) for text in ("", "1 2 3", "a b c d e f g", "0 0 0 9 0 0 0")] == [None] * 4
     frame = Pose(position_m=(1.0, 2.0, 0.0), orientation_wxyz=(0.8, 0.0, 0.0, 0.6))
-    assert composed_pose(frame, relative(turned, frame)).position_m == pytest.approx(turned.position_m)
+    assert compose(frame, relative(turned, frame)).position_m == pytest.approx(turned.position_m)
 
 
 def test_circles_are_refused():

@@ -31,6 +31,14 @@ _path = click.Path(path_type=Path)
 @click.option("--world", type=_path, help="Scene file. Default: the one that the map was last run with.")
 @click.option("--no-sim", is_flag=True, help="Replay the map without a scene.")
 @click.option("--no-record", is_flag=True, help="Do not record the replay.")
+@click.option(
+    "--web",
+    type=click.IntRange(0, 65_535),
+    is_flag=False,
+    flag_value=0,
+    metavar="[PORT]",
+    help="Show the replay in the page, too. Default: a free port.",
+)
 @click.option("--check", is_flag=True, help="Of a recording: verify that its commits are those of the map.")
 @click.option("--data", type=_path, help="With --check: the map's data folder. Default: a running system.")
 @connect_option
@@ -70,7 +78,9 @@ def replay(
             **options,
         )
         return
-    if given := [f"--{name.replace('_', '-')}" for name, value in options.items() if value]:
+    if given := [
+        f"--{name.replace('_', '-')}" for name, value in options.items() if value not in (None, False)
+    ]:
         raise errors.BadRequest(f"{given[0]} is for a data folder, and {what} is not one")
     if check:
         from nodes.extern.replaying import check as verify

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from nodes.extern.cli.angles import yaw_option
-from nodes.extern.cli.calling import carrying, given, print_lines, talks, vector_option
+from nodes.extern.cli.calling import carrying, frame_option, given, print_lines, talks, vector_option
 from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.output import lines
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("name", shell_complete=entity_names)
 @vector_option("--at", metavar="X Y Z", required=True, help="Where to put it: bottom centre [m].")
+@frame_option("The frame of --at and --yaw, instead of the map's")
 @yaw_option
 @carrying
 @talks

@@ -78,7 +78,6 @@ class Fields:
             self._class.set_options(classes, value=chosen)
 
     async def _pick(self) -> None:
-        self._page.tell("Click in the scene where it is to be.")
         place = await self._page.pick_place()
         if place is not None:
             for field, value in zip(self._at, place, strict=False):

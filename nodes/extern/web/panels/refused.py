@@ -15,13 +15,16 @@ from schemas.commands import Command
 
 
 def refused(page: Page, command: Command[Any], error: errors.SemmapError) -> None:
-    """Open it in this tab."""
+    """Open it in this tab; a sentence that says all is shown for some seconds instead."""
     view = View.of(page)
     ways = [
         mend
         for mend in mends(command, error, page.live.entities, page.live.classes)
         if all(page.may(step.VERB) for step in mend.commands)
     ]
+    if error.explanation is None and not ways:
+        page.tell(error.text, "negative")
+        return
     with ui.dialog(value=True).props('aria-label="Refused"') as dialog, ui.card().classes("semmap-refused"):
         ui.label("This was refused; nothing has changed").classes("text-subtitle1 text-weight-medium")
         ui.label(errors.shortened(error.text, 2000)).classes("semmap-sentence").props('role="alert"')

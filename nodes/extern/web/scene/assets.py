@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
+from nodes.drawing.bending import Bends, bent
 from nodes.drawing.surfaces import Kind, SurfaceCache
 from nodes.extern.web.live import Live
 from nodes.extern.web.scene.meshes import glb
@@ -28,18 +29,21 @@ class Assets:
         self._fetched: Scene | None = None
         self.walls: Surface | None = None
 
-    def surface_of(self, model: str, size_m: Size) -> Surface | None:
-        """What a model looks like at a size, if that is known."""
-        return None if model == BOX else self._surfaces.of_kind(model, size_m)
+    def surface_of(self, model: str, size_m: Size, bends: Bends = ()) -> Surface | None:
+        """What a model looks like at a size, with its joints moved, if that is known."""
+        surface = None if model == BOX else self._surfaces.of_kind(model, size_m)
+        return surface if surface is None else bent(surface, bends)
 
     def glb(self, key: Key) -> bytes:
         """The glTF file of a model at a size and with a look; it must be known."""
         if (known := self._glbs.get(key)) is not None:
             return known
-        look, model, size_m = key
-        surface = self._surfaces.of_kind(model, size_m)
+        look, model, size_m, bends = key
+        surface = self.surface_of(model, size_m, bends)
         assert surface is not None
-        made = self._glbs[key] = glb(surface, look)
+        made = glb(surface, look)
+        if not bends:  # ways to stand open are many
+            self._glbs[key] = made
         return made
 
     async def fetch(self) -> None:

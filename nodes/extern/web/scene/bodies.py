@@ -13,27 +13,19 @@ from nodes.extern.web.scene.meshes import cube, opacity_of
 from nodes.extern.web.scene.shown import BOX, Batch, Key, Shown, batches
 from schemas.entities import Pose
 
-MODIFIERS: Final = (None, "shift", "cmd/ctrl", "cmd/ctrl+shift")
 _MANY: Final = 400
 """Of more things, what is far away is drawn coarser, and nothing casts a shadow."""
 
 Handle = BatchedGlbHandle | BatchedMeshHandle
-Pixel = tuple[float, float]
-"""Where on the picture, as shares of its width and height."""
-Clicked = Callable[[str, bool, Pixel], None]
-"""Called on viser's thread, with the name, whether it is to be selected beside others, and where."""
 
 
 class Bodies:
     """What of the map and the scene has a place, in one tab's view."""
 
-    def __init__(
-        self, scene: SceneApi, glb_of: Callable[[Key], bytes], clicked: Clicked | None, path: str = "/bodies"
-    ) -> None:
-        """`glb_of(key)` is the glTF file of a batch with a model. Without `clicked` nothing is to click."""
+    def __init__(self, scene: SceneApi, glb_of: Callable[[Key], bytes], path: str = "/bodies") -> None:
+        """`glb_of(key)` is the glTF file of a batch with a model."""
         self._scene = scene
         self._glb_of = glb_of
-        self._clicked = clicked
         self._path = path
         self._batches: dict[Key, Batch] = {}
         self._handles: dict[Key, Handle] = {}
@@ -81,7 +73,7 @@ class Bodies:
         handle.batched_wxyzs = batch.wxyzs
 
     def _add(self, key: Key, batch: Batch, *, many: bool) -> Handle:
-        look, model, _ = key
+        look, model, _, _ = key
         name = f"{self._path}/{next(self._numbers)}"
         is_clear = opacity_of(look) < 1.0
         common: dict[str, Any] = {
@@ -108,19 +100,7 @@ class Bodies:
             handle = self._scene.add_batched_glb(
                 name, self._glb_of(key), lod="auto" if many else "off", **common
             )
-        if self._clicked is not None:
-            self._listen(handle, key, self._clicked)
         return handle
-
-    def _listen(self, handle: Handle, key: Key, clicked: Clicked) -> None:
-        async def on_click(event: Any) -> None:
-            batch = self._batches.get(key)
-            row = event.instance_index or 0
-            if batch is not None and row < len(batch.names):
-                clicked(batch.names[row], event.modifier is not None, event.screen_pos)
-
-        for modifier in MODIFIERS:
-            handle.on_click(modifier=modifier)(on_click)
 
 
 def _is_like(before: Batch, now: Batch) -> bool:

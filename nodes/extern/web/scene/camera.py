@@ -26,6 +26,7 @@ _FAR_M: Final = 100.0
 _UNKNOWN_SIZE_M: Final = (0.1, 0.1, 0.1)
 _LABEL_PX: Final = 17.0
 _LETTER_PX: Final = 7.0
+_CAPITAL_PX: Final = 10.0
 _NEAREST_M: Final = 0.05
 
 
@@ -119,7 +120,7 @@ def uncrowded(
         x, y, ahead = (float(value) for value in at[row])
         if ahead <= _NEAREST_M or not (0.0 <= x <= view.width and 0.0 <= y <= view.height):
             continue
-        half = len(labels[keys[row]][0]) * _LETTER_PX / 2.0 + 5.0
+        half = _width_px(labels[keys[row]][0]) / 2.0 + 5.0
         box = (x - half, y - _LABEL_PX, x + half, y)
         if any(_overlap(box, other) for other in taken):
             continue
@@ -128,6 +129,11 @@ def uncrowded(
         if len(chosen) >= most:
             break
     return chosen
+
+
+def _width_px(text: str) -> float:
+    """About how wide a text is written; rooms have capitals, and larger ones."""
+    return sum(_CAPITAL_PX if letter.isupper() else _LETTER_PX for letter in text)
 
 
 def _overlap(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from viser import LabelHandle, LineSegmentsHandle, SceneApi
 
+from nodes.extern.web.scene.meshes import linear
 from schemas.entities import Vector
 
 Rgb = tuple[int, int, int]
@@ -63,7 +64,7 @@ class Lines:
         """Have these lines, (N, 2, 3) [m] of one colour each, and no others."""
         segments = joined(piece for piece, _ in pieces)
         colours = np.concatenate(
-            [np.empty((0, 2, 3), np.uint8), *(np.tile(rgb, (len(piece), 2, 1)) for piece, rgb in pieces)]
+            [np.empty((0, 2, 3)), *(np.tile(_light(rgb), (len(piece), 2, 1)) for piece, rgb in pieces)]
         ).astype(np.uint8)
         if (now := segments.tobytes() + colours.tobytes()) == self._drawn:
             return
@@ -76,6 +77,11 @@ class Lines:
         self._handle = self._scene.add_line_segments(
             self._path, segments, colours, thickness=self._width, thickness_units="screen"
         )
+
+
+def _light(rgb: Rgb) -> NDArray[np.float32]:
+    """A colour as viser's lines have it: as light, not as sRGB."""
+    return np.asarray(np.round(255.0 * linear(np.array(rgb, dtype=np.uint8))))
 
 
 def line(a: Vector, b: Vector) -> Segments:

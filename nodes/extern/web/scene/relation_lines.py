@@ -48,8 +48,9 @@ class RelationLine(Struct, frozen=True):
 def relation_lines(
     of: str, relations: Iterable[Relation], middles: Mapping[str, Vector]
 ) -> list[RelationLine]:
-    """One line for each other thing that `of` is related to; `middles` has those that can be drawn [m].
+    """One line for each other thing that `of` is related to, the nearest first.
 
+    `middles` has what can be drawn [m].
     Places, which are not among them, are left out.
     """
     by_other: dict[str, list[Relation]] = {}
@@ -59,7 +60,7 @@ def relation_lines(
                 by_other.setdefault(other, []).append(relation)
     return [
         RelationLine(middles[of], middles[other], _text(of, found))
-        for other, found in by_other.items()
+        for other, found in sorted(by_other.items(), key=lambda each: min(r.gap_m for r in each[1]))
         if other in middles and of in middles
     ]
 

@@ -9,10 +9,12 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
+from nodes.drawing.bending import Bends
 from nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of
 from nodes.drawing.palette import GREY, colour_of
 from nodes.extern.web.scene.meshes import Look, linear, srgb, veiled
 from schemas.entities import Entity, Pose, Size
+from schemas.joints import JOINT_POSITIONS, positions_of
 from schemas.scenes import Body, Surface
 
 Floats = NDArray[np.float32]
@@ -25,21 +27,22 @@ SurfaceOf = Callable[[str, Size], Surface | None]
 
 
 class Shown(Struct, frozen=True, gc=False):
-    """One thing as it is drawn. `size_m` is along its own axes, from its bottom centre up."""
+    """One thing as it is drawn. `size_m` is along its own axes, from its bottom centre up, with all shut."""
 
     look: Look
     model: str
     size_m: Size
     rgb: tuple[int, int, int]
     pose: Pose
+    bends: Bends = ()
 
     @property
     def key(self) -> Key:
         """Those with the same key are one batch: boxes of all sizes are."""
-        return (self.look, self.model, UNKNOWN_SIZE_M if self.model == BOX else self.size_m)
+        return (self.look, self.model, UNKNOWN_SIZE_M if self.model == BOX else self.size_m, self.bends)
 
 
-Key = tuple[Look, str, Size]
+Key = tuple[Look, str, Size, Bends]
 
 
 class Batch(Struct, frozen=True):
@@ -60,10 +63,12 @@ def shown(
     *,
     simulated: bool,
     past: bool = False,
+    bends: Bends | None = None,
 ) -> Shown | None:
     """How an entity, a body, or an entity with its body is drawn; None for what is a place or nowhere.
 
-    `pose` is where the body stands by now. In the `past` there are entities only.
+    `pose` is where the body stands by now, and `bends` where its joints do; without them they stand as the
+    map states. In the `past` there are entities only.
     """
     figure = figure_of(entity, body, simulated=simulated and not past)
     pose = pose or pose_of(entity, body)
@@ -75,7 +80,19 @@ def shown(
         model = BOX
     look: Look = "past" if past else _look_of(figure)
     rgb = GREY if figure.look == "furniture" else colour_of(figure.class_)
-    return Shown(look, model, size_m, rgb, pose)
+    if model == BOX:
+        bends = ()
+    elif bends is None:
+        bends = _stated(entity)
+    return Shown(look, model, size_m, rgb, pose, bends)
+
+
+def _stated(entity: Entity | None) -> Bends:
+    """How the map states that joints stand."""
+    said = None if entity is None else entity.properties.get(JOINT_POSITIONS)
+    if not isinstance(said, str):
+        return ()
+    return tuple((name, at) for name, at in positions_of(said).items() if at)
 
 
 def _look_of(figure: Figure) -> Look:

@@ -7,12 +7,14 @@ import contextlib
 from collections.abc import Callable, Mapping
 from typing import Any, Final, Literal
 
+from msgspec import structs
 from viser import ClientHandle
 
+from nodes.drawing.figures import still
 from nodes.extern.web.differences import Mark
 from nodes.extern.web.page import Page, Place
 from nodes.extern.web.scene.assets import Assets
-from nodes.extern.web.scene.bodies import MODIFIERS, Bodies, Pixel
+from nodes.extern.web.scene.bodies import Bodies
 from nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, uncrowded
 from nodes.extern.web.scene.differences import drawn
 from nodes.extern.web.scene.dragging import Gizmo, Phase, put_down
@@ -21,12 +23,12 @@ from nodes.extern.web.scene.picking import Solid, edges_of, first_hit
 from nodes.extern.web.scene.relation_lines import relation_lines
 from nodes.extern.web.scene.rooms import Rooms
 from nodes.extern.web.scene.seen import Seen
-from nodes.extern.web.scene.shown import Key, Shown, shown
-from schemas import errors
+from nodes.extern.web.scene.shown import BOX, Key, Shown, shown
+from schemas import errors, keys
 from schemas.commands import Move, Relations
-from schemas.entities import Entity, Pose, Size, Vector
+from schemas.entities import Pose, Size, Vector
 from schemas.relations import Relation, ViewPoint
-from schemas.scenes import Body
+from schemas.scenes import Body, SceneQuery
 
 Switch = Literal["names", "walls", "relations", "from here", "boxes", "observations", "cloud", "cameras"]
 SWITCHES: Final[dict[Switch, str]] = {
@@ -53,10 +55,15 @@ _CHANGED: Final[dict[Mark, Rgb]] = {
 _SKY: Final[Rgb] = (255, 255, 255)
 _GROUND: Final[Rgb] = (190, 180, 170)
 _LABELS_S: Final = 0.25
-_CLICK_S: Final = 0.15
+_MODIFIERS: Final = (None, "shift", "cmd/ctrl", "cmd/ctrl+shift")
 _TOLD_S: Final = 0.2
 """After so long it is known that a body stands where it was put."""
+_NO_ROOM: Final = (
+    "There is no room for {name} there: it would stand in something else. It is back where it was."
+)
 _RENDER_S: Final = (0.3, 1.0, 3.0, 8.0)
+_MEASURES: Final = 8
+"""Of so many relations, the nearest things first, it is written what they are."""
 _NAMED: Final = 50
 """Of so many selected things the names are written, whether or not there is room."""
 
@@ -73,7 +80,7 @@ class TabScene:
         self._loop = asyncio.get_running_loop()
         self._client: ClientHandle | None = None
         self._things: dict[str, Shown] = {}
-        self._known: dict[str, tuple[Entity | None, Body | None, Pose | None, Shown | None]] = {}
+        self._known: dict[str, tuple[tuple[object, ...], Shown | None]] = {}
         self._bodies_of: tuple[object, dict[str, Body]] = (None, {})
         self._relations: tuple[Relation, ...] = ()
         self._measures: dict[str, Written] = {}
@@ -81,7 +88,6 @@ class TabScene:
         self._asked = 0
         self._dragging = ""
         self._picking: asyncio.Future[Place | None] | None = None
-        self._clicked_at: Pixel = (-1.0, -1.0)
         self._labels_due = False
         self._camera: tuple[Any, ...] | None = None
         """The last camera of this tab, for a frame that has to connect again."""
@@ -89,7 +95,7 @@ class TabScene:
         page.on_poses(self._on_poses)
         page.on_select(self._on_select)
         page.on_look(self._on_look)
-        page.pick, page.look = self.pick_place, self.viewpoint
+        page.pick, page.look, page.break_off = self.pick_place, self.viewpoint, self.break_off
 
     # A frame comes and goes
 
@@ -99,7 +105,7 @@ class TabScene:
         scene.configure_default_lights(cast_shadow=False)
         scene.configure_environment_map(None)
         scene.add_light_hemisphere("/sky", sky_color=_SKY, ground_color=_GROUND, intensity=1.6)
-        self._bodies = Bodies(scene, self._glb_of, self._hop(self._on_click))
+        self._bodies = Bodies(scene, self._glb_of)
         self._rooms = Rooms(scene)
         self._labels = Labels(scene, "/names", depth_test=False)
         self._strong_labels = Labels(scene, "/selected/names", scale=1.15)
@@ -109,7 +115,7 @@ class TabScene:
         self._relation_lines = Lines(scene, "/relations/lines", width=2.5)
         self._differences = Lines(scene, "/differences/lines", width=2.5)
         self._difference_labels = Labels(scene, "/differences/names")
-        self._dragged = Bodies(scene, self._glb_of, None, "/dragged")
+        self._dragged = Bodies(scene, self._glb_of, "/dragged")
         self._nudge = scene.add_frame("/nudge", show_axes=False)
         self._gizmo = Gizmo(scene, self._hop(self._on_drag), lambda: self._is_open(client.client_id))
         self._seen = Seen(scene, self.page.live)
@@ -154,9 +160,9 @@ class TabScene:
         on_ray, on_camera = self._hop(self._on_ray), self._hop(self._on_camera)
 
         async def clicked(event: Any) -> None:
-            on_ray(event.ray_origin, event.ray_direction, event.screen_pos)
+            on_ray(event.ray_origin, event.ray_direction, event.modifier is not None)
 
-        for modifier in MODIFIERS:
+        for modifier in _MODIFIERS:
             client.scene.on_click(modifier=modifier)(clicked)  # type: ignore[arg-type]
 
         @client.camera.on_update
@@ -201,21 +207,25 @@ class TabScene:
         state, now = self.page.state, self.page.moment.is_now
         bodies, known = self._bodies_by_name(), self._known
         simulated = self.page.live.scene is not None
-        wanted, after = {}, {}
+        wanted: dict[str, Shown] = {}
+        after: dict[str, tuple[tuple[object, ...], Shown | None]] = {}
         for name in [*state.entities, *(name for name in bodies if name not in state.entities)]:
             entity, body, pose = state.entities.get(name), bodies.get(name), state.poses.get(name)
+            bends = self.page.live.bends.get(name) if now else None
             before = known.get(name)
-            if before is not None and before[0] is entity and before[1] is body and before[2] is pose:
-                thing = before[3]
+            told = (entity, body, pose, bends)
+            if before is not None and all(a is b for a, b in zip(before[0], told, strict=True)):
+                thing = before[1]
             else:
-                thing = shown(entity, body, pose, self._assets.surface_of, simulated=simulated, past=not now)
-            after[name] = (entity, body, pose, thing)
+                surface_of = self._assets.surface_of
+                thing = shown(entity, body, pose, surface_of, simulated=simulated, past=not now, bends=bends)
+            after[name] = (told, thing)
             if thing is not None:
                 wanted[name] = thing
         self._known = after
         if self._dragging in wanted:
             thing = wanted[self._dragging]
-            wanted[self._dragging] = Shown("ghost", thing.model, thing.size_m, thing.rgb, thing.pose)
+            wanted[self._dragging] = structs.replace(thing, look="ghost")
         return wanted
 
     def _draw(self) -> None:
@@ -238,15 +248,22 @@ class TabScene:
     def _on_poses(self, names: tuple[str, ...]) -> None:
         if self._client is None:
             return
+        if any(self._is_bent_otherwise(name) for name in names):
+            self._draw()
+            return
         poses = self.page.state.poses
         moved = {name: poses[name] for name in names if name in self._things and name in poses}
         for name, pose in moved.items():
-            thing = self._things[name]
-            self._things[name] = Shown(thing.look, thing.model, thing.size_m, thing.rgb, pose)
+            self._things[name] = structs.replace(self._things[name], pose=pose)
         self._bodies.move(moved)
         if not moved.keys().isdisjoint(self.page.selected) or "boxes" in self.on:
             self._mark()
         self._label_soon()
+
+    def _is_bent_otherwise(self, name: str) -> bool:
+        """Has it been opened or shut since it was drawn?"""
+        thing, bends = self._things.get(name), self.page.live.bends.get(name)
+        return bends is not None and thing is not None and thing.model != BOX and thing.bends != bends
 
     def _mark(self) -> None:
         """Outlines, the gizmo and labels, as things stand."""
@@ -328,30 +345,21 @@ class TabScene:
 
     # Selecting
 
-    def _on_click(self, name: str, beside: bool, at: Pixel) -> None:
-        self._clicked_at = at
-        if self._picking is not None or self._dragging:
+    def _on_ray(self, origin: Vector, direction: Vector, beside: bool) -> None:
+        """A click. What it meets is worked out here: batches of viser 1.1 also have something at 0, 0, 0."""
+        if self._dragging:
             return
+        hit = first_hit(origin, direction, self._solids())
+        if self._picking is not None:
+            self._end_picking(None if hit is None else (*hit.at, 0.0))
+            return
+        name = "" if hit is None else hit.name
         if not beside:
-            self.page.select((name,), by="scene")
+            self.page.select((name,) if name else (), by="scene")
         elif name in self.page.selected:
             self.page.select((other for other in self.page.selected if other != name), by="scene")
-        else:
+        elif name:
             self.page.select((*self.page.selected, name), by="scene")
-
-    def _on_ray(self, origin: Vector, direction: Vector, at: Pixel) -> None:
-        """A click anywhere. If something is there, the same click is told of that, too."""
-        if self._picking is not None:
-            hit = first_hit(origin, direction, self._solids())
-            self._end_picking(None if hit is None else (*hit.at, 0.0))
-        elif not self._dragging:
-            self._loop.call_later(_CLICK_S, self._deselect, at)
-
-    def _deselect(self, at: Pixel) -> None:
-        """Nothing is there where a person has clicked."""
-        if self._clicked_at != at:
-            with self.page.client:
-                self.page.select((), by="scene")
 
     def _on_select(self) -> None:
         if self._client is not None:
@@ -367,7 +375,7 @@ class TabScene:
             return None
         picking: asyncio.Future[Place | None] = self._loop.create_future()
         self._picking = picking
-        self.page.tell("Click in the scene where it is to stand.")
+        self.page.tell("Click in the scene where it is to stand; Esc leaves it.")
         return await picking
 
     def _end_picking(self, place: Place | None) -> None:
@@ -375,10 +383,26 @@ class TabScene:
         if picking is not None and not picking.done():
             picking.set_result(place)
 
+    def break_off(self) -> bool:
+        """End pointing or dragging, with nothing done; whether there was any."""
+        was_busy = self._picking is not None or bool(self._dragging)
+        self._end_picking(None)
+        if self._dragging and self._client is not None:
+            self._dragging = ""
+            self._dragged.show({})
+            self._gizmo.remove()
+            self._draw()
+        return was_busy
+
     def _solids(self, without: str = "") -> list[Solid]:
         surface_of = self._assets.surface_of
         return [
-            Solid(name, thing.pose, thing.size_m, surface_of(thing.model, thing.size_m))
+            Solid(
+                name,
+                thing.pose,
+                _room_of(thing),
+                surface_of(thing.model, thing.size_m, thing.bends),
+            )
             for name, thing in self._things.items()
             if name != without
         ]
@@ -415,21 +439,39 @@ class TabScene:
         """The thing as it is dragged; where it stands there is a ghost."""
         thing = self._things.get(self._dragging)
         if thing is not None:
-            solid = Shown("solid", thing.model, thing.size_m, thing.rgb, pose)
+            solid = structs.replace(thing, look="solid", pose=pose)
             self._dragged.show({self._dragging: solid})
 
     async def _move(self, name: str, pose: Pose) -> None:
         """Ask for the body to be put where it was let go; what is refused goes back."""
         thing = self._things[name]
+        before = self.page.state.poses.get(name, thing.pose)
+        body = self._bodies_by_name().get(name)
+        was_ghost = body is not None and body.ghost
+        if still(before, pose):  # a click at the arrows
+            self.break_off()
+            return
         target = put_down(pose, thing.size_m, self._solids(without=name))
         self._copy(target)
         done = await self.page.change(Move(name=name, at=target.position_m, yaw=target.yaw_rad, carry=True))
+        if done is not None and not was_ghost and await self._is_ghost(name):
+            back = Move(name=name, at=before.position_m, yaw=before.yaw_rad, carry=True)
+            if await self.page.change(back) is not None:
+                self.page.tell(_NO_ROOM.format(name=name), "warning")
         if done is not None:
             await asyncio.sleep(_TOLD_S)
         self._dragging = ""
         if self._client is not None:
             self._dragged.show({})
             self._draw()
+
+    async def _is_ghost(self, name: str) -> bool:
+        """Does its body not collide, because it was put where something else is?"""
+        try:
+            scene = await self.page.live.query(keys.SIM, SceneQuery())
+        except errors.SemmapError:
+            return False
+        return any(body.name == name and body.ghost for body in scene.bodies)
 
     # Relations
 
@@ -464,7 +506,9 @@ class TabScene:
             f"{number} of {len(lines)}": (each.text, _between(each.a, each.b))
             for number, each in enumerate(lines)
         }
-        chosen = [] if self._client is None else uncrowded(self._view(self._client), written)
+        chosen = (
+            [] if self._client is None else uncrowded(self._view(self._client), written, written, _MEASURES)
+        )
         self._measures = {key: written[key] for key in chosen}
         self._line_labels.show(self._measures)
         self._label_soon()
@@ -483,6 +527,12 @@ class TabScene:
         else:
             self._mark()
             self._ask_relations()
+
+
+def _room_of(thing: Shown) -> Size:
+    """The box that a ray has to meet: what stands open reaches out of its own."""
+    x, y, z = thing.size_m
+    return (3.0 * x + y, 3.0 * y + x, 1.5 * z) if thing.bends else thing.size_m
 
 
 def _middle(pose: Pose, size_m: Size) -> Vector:

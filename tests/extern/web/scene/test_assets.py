@@ -71,6 +71,6 @@ def test_what_could_not_be_had_is_asked_for_again_and_another_simulator_has_othe
 def test_a_file_is_made_once_for_each_look(made):
     assets, _, _ = made
     asyncio.run(assets.fetch())
-    key = ("solid", "chair", (0.5, 0.5, 1.0))
+    key = ("solid", "chair", (0.5, 0.5, 1.0), ())
     assert assets.glb(key) is assets.glb(key)
-    assert assets.glb(("past", "chair", (0.5, 0.5, 1.0))) != assets.glb(key)
+    assert assets.glb(("past", "chair", (0.5, 0.5, 1.0), ())) != assets.glb(key)

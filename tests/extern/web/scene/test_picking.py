@@ -111,3 +111,10 @@ def test_a_chair_that_is_dragged_under_a_table_stays_on_the_floor():
 def test_what_is_lifted_stays_lifted_and_what_is_large_goes_where_it_was_let_go():
     assert put_down(pose(2.0, 3.0, 1.4), (0.1, 0.1, 0.1), [table()]) == pose(2.0, 3.0, 1.4)
     assert put_down(pose(2.0, 3.0, 0.0), (2.0, 1.0, 0.4), [table()]) == pose(2.0, 3.0, 0.0)
+
+
+def test_of_many_things_off_the_ray_none_is_met():
+    grid = [Solid(f"s{i}", pose(2.0 * (i % 30), 2.0 * (i // 30)), (0.5, 0.5, 1.0)) for i in range(900)]
+    hit = first_hit((10.0, 10.0, 5.0), (0.0, 0.0, -1.0), grid)
+    assert (hit.name, hit.at) == ("s155", pytest.approx((10.0, 10.0, 1.0)))
+    assert first_hit((11.0, 11.0, 5.0), (0.0, 0.0, -1.0), grid).name == ""

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from msgspec import structs
 
 from nodes.extern.web.scene.shown import BOX, batches, shown
 from tests.extern.web.scene.things import body, entity, pose, surface
@@ -70,3 +71,11 @@ def test_a_large_map_is_batched_quickly_and_whole():
     (batch,) = batches(things).values()
     assert len(batch.names) == 5000
     assert np.array_equal(batch.positions[:, 0], np.arange(5000, dtype=np.float32))
+
+
+def test_a_door_is_drawn_as_its_joint_stands_and_in_the_past_as_the_map_states():
+    ajar = structs.replace(entity("chair1"), properties={"jointPositions": "door=1.2 freezer=0"})
+    assert show(ajar, None, past=True).bends == (("door", 1.2),)
+    open_wide = show(ajar, body("chair1"), bends=(("door", 1.5),))
+    assert open_wide.bends == (("door", 1.5),)
+    assert open_wide.key != show(ajar, body("chair1"), bends=()).key

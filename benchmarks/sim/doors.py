@@ -1,0 +1,226 @@
+"""Doors: what joints cost at rest, how soon the map follows, and whether map and scene agree in the end."""
+
+from __future__ import annotations
+
+import json
+import random
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from statistics import median
+from time import thread_time
+
+from benchmarks.sim.made import p50_p95_ms
+from benchmarks.sim.system import Watch
+from benchmarks.table import Row
+from nodes import bus
+from nodes.extern.client import Client
+from nodes.extern.testing import own_system
+from nodes.sim_node.models.library import Model, assemble, build
+from nodes.sim_node.models.parts import Vec3
+from nodes.sim_node.orders import ModelSource
+from nodes.sim_node.physics import sleep
+from nodes.sim_node.world import World
+from schemas import keys
+from schemas.entities import Entity
+from schemas.joints import IS_OPEN, OPEN_FROM, openness, stated
+from schemas.scenes import BodyOrder, JointOrder, Scene, SceneQuery
+
+CLASSES = ("Fridge", "Oven", "Microwave", "Dishwasher", "WashingMachine", "Cabinet", "Wardrobe", "Desk")
+_DOORS = 40
+_CHECK_S = 30.0
+_ROUND_S = 0.25
+_PATIENCE_S = 60.0
+_IN_A_ROW = 5
+_STEP_S = 0.01
+_OFF = 0.01
+"""A joint that stands so far [rad, m] from where the map states it is in disagreement."""
+
+
+def measure(folder: Path, minutes: float, *, quick: bool) -> list[Row]:
+    """All rows about doors; random ones take `minutes` of simulated time, which passes as real time does."""
+    with own_system(folder / "flat", "--no-record", "--no-sim") as client:
+        things = [e for e in client.list() if e.pose is not None and not e.place]
+    rows = at_rest(things, 20 if quick else 200)
+    words = ("--no-record", "--world", "empty", "--abox", "none")
+    with own_system(folder / "fridge", *words) as client:
+        rows += soon(client, 6 if quick else 30)
+    with own_system(folder / "doors", *words) as client:
+        rows.append(at_random(client, folder, 0.2 if quick else minutes))
+    return rows
+
+
+def at_rest(things: Sequence[Entity], trials: int) -> list[Row]:
+    """Real-time factors at rest of a map with all its joints and without any, in turn; and while awake."""
+    worlds = [_furnished(things, models) for models in (build, rigid)]
+    joints = len(worlds[0].poses().joints)
+    factors = [_in_turn(worlds, trials, awake=awake) for awake in (False, True)]
+    with_, without = factors[0]
+    return [
+        Row(f"real-time factor at rest, the flat with its {joints} joints", with_, "times"),
+        Row("  the same without joints", without, "times"),
+        Row("  of the one to the other", with_ / without, "", 0.8, 0.95, more=True),
+        Row("  likewise while all of it is kept awake", factors[1][0] / factors[1][1], ""),
+    ]
+
+
+def rigid(name: str, size_m: Vec3 | None) -> Model:
+    """A shipped model none of whose parts move."""
+    model = build(name, size_m)
+    if not model.leaves:
+        return model
+    return assemble(name, [replace(part, joint=None) for part in model.parts], model.mass_kg)
+
+
+def _furnished(things: Sequence[Entity], models: ModelSource) -> World:
+    world = World(models=models)
+    world.spawn([_order(thing) for thing in things])
+    world.step(5.0)
+    return world
+
+
+def _order(thing: Entity) -> BodyOrder:
+    assert thing.pose is not None
+    return BodyOrder(
+        name=thing.name,
+        class_=thing.class_,
+        model=thing.model,
+        pose=thing.pose,
+        size_m=thing.size_m,
+        fixed=thing.fixed,
+        commit=1,
+    )
+
+
+def _in_turn(worlds: Sequence[World], trials: int, *, awake: bool) -> tuple[float, float]:
+    """The real-time factors [times] of two worlds, as the simulator lets time pass: in steps of 10 ms."""
+    took: list[list[float]] = [[] for _ in worlds]
+    for _ in range(trials):
+        for world, times in zip(worlds, took, strict=True):
+            if awake:
+                mark_awake(world)
+            started = thread_time()
+            for _ in range(5):
+                world.step(0.01)
+            world.poses()
+            times.append(thread_time() - started)
+    first, second = (0.05 / median(times) for times in took)
+    return first, second
+
+
+def mark_awake(world: World) -> None:
+    """Wake all that can move."""
+    for tree in range(world.model.ntree):
+        sleep.wake(world.data, tree)
+
+
+def soon(client: Client, trials: int) -> list[Row]:
+    """From the end of a fridge door's motion to the commit that states it, as it comes in here.
+
+    How long the motion takes is known from the same door in this process, whose simulated time is exact.
+    """
+    client.add("Fridge", "fridge1", at=(0.0, 0.0, 0.0), wait=True)
+    watch = Watch(client)
+    swings = (0.5, 0.0)
+    try:
+        # one way and back, twice, before anything counts: the door begins where the map states it
+        for to in swings:
+            client.open("fridge1", to=to, joint="door", wait=True)
+        lasts_s = dict(zip(swings, _lasts_s(client.get("fridge1"), swings), strict=True))
+        late = []
+        for trial in range(trials):
+            to = swings[trial % 2]
+            watch.followed_ns.pop("fridge1", None)
+            started_ns = time.time_ns()
+            client.open("fridge1", to=to, joint="door")
+            watch.wait(lambda: "fridge1" in watch.followed_ns)
+            late.append((watch.followed_ns["fridge1"] - started_ns) * 1e-9 - lasts_s[to])
+            time.sleep(0.3)
+    finally:
+        watch.close()
+    p50, p95 = p50_p95_ms(late)
+    return [
+        Row("joint command to map, fridge door: after it rests, p50", p50, "ms", 50.0, 20.0),
+        Row("  p95", p95, "ms"),
+        Row("  the door's own motion", 1e3 * lasts_s[swings[0]], "ms"),
+    ]
+
+
+def _lasts_s(fridge: Entity, swings: Sequence[float]) -> list[float]:
+    """How long the door takes for each of these openings in turn [s of simulated time]."""
+    world = World()
+    world.spawn([_order(fridge)])
+    world.step(2.0)
+    lasts = []
+    for to in swings:
+        began_s = ended_s = world.data.time
+        before = world.poses().joints
+        world.move_joints([JointOrder(name=fridge.name, joint="door", openness=to)])
+        for _ in range(500):
+            world.step(_STEP_S)
+            if (now := world.poses().joints) != before:
+                before, ended_s = now, world.data.time
+        lasts.append(float(ended_s - began_s))
+    return lasts
+
+
+def at_random(client: Client, folder: Path, minutes: float) -> Row:
+    """Hands and words open and close doors; how often, when all was quiet, map and joints did not agree."""
+    described = [
+        {"class": CLASSES[i % len(CLASSES)], "name": f"door{i}", "at": [3.0 * (i % 8), 3.0 * (i // 8), 0.0]}
+        for i in range(_DOORS)
+    ]
+    path = folder / "doors.json"
+    path.write_text(json.dumps({"entities": described}))
+    client.load(path)
+    _quiet(client)
+    dice, wrong, done = random.Random(0), 0, 0
+    end_s = time.monotonic() + 60.0 * minutes
+    while time.monotonic() < end_s:
+        check_s = min(end_s, time.monotonic() + _CHECK_S)
+        while time.monotonic() < check_s:
+            _turn(client, f"door{dice.randrange(_DOORS)}", dice)
+            done += 1
+            time.sleep(_ROUND_S)
+        wrong += len(_quiet(client))
+    what = f"{_DOORS} doors, {minutes:g} simulated minutes, {done} orders: map and joints disagree"
+    return Row(what, float(wrong), "", 0.0, 0.0)
+
+
+def _turn(client: Client, name: str, dice: random.Random) -> None:
+    to = dice.choice((0.0, 1.0, round(dice.random(), 2)))
+    match dice.randrange(3):
+        case 0:
+            client.open(name, to=to)
+        case 1:
+            client.set(name, "openness", to)
+        case _:
+            client.set(name, "isOpen", to > 0.5)
+
+
+def _quiet(client: Client) -> list[str]:
+    """Wait until nothing moves and all is followed; the names of which map and joints do not agree.
+
+    Those that are still not in agreement after a while count.
+    """
+    deadline_s = time.monotonic() + _PATIENCE_S
+    agreed = 0
+    while agreed < _IN_A_ROW and time.monotonic() < deadline_s:
+        scene = bus.ask(client.session, keys.SIM, SceneQuery.VERB, SceneQuery(), Scene)
+        rests = all(body.resting for body in scene.bodies)
+        agreed = agreed + 1 if rests and client.status().in_agreement else 0
+        time.sleep(0.2)
+    return [name for i in range(_DOORS) if not agrees(client.get(name := f"door{i}"))]
+
+
+def agrees(entity: Entity) -> bool:
+    """Whether its joints stand where the map states, or the map states nothing and they are as made."""
+    if entity.body is None or not entity.body.joints:
+        return False
+    joints = entity.body.joints
+    wanted = stated(joints, entity.properties) or {joint.name: joint.initial for joint in joints}
+    said = entity.properties.get(IS_OPEN)
+    share = openness(joints)
+    right = said is None or share is None or said is (share >= OPEN_FROM) or abs(share - OPEN_FROM) < _OFF
+    return right and all(abs(j.position - wanted.get(j.name, j.position)) < _OFF for j in joints)

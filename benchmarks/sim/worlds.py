@@ -1,0 +1,111 @@
+"""Worlds of others: of every MJCF file below a folder, what becomes of its bodies in a system of its own."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+import time
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import NamedTuple
+
+import mujoco
+
+from benchmarks.table import Row
+from nodes import bus
+from nodes.extern.client import Client
+from nodes.extern.testing import own_system
+from nodes.sim_node.physics.base_scene import read_mjcf
+from schemas import errors, keys
+from schemas.scenes import Scene, SceneQuery
+
+_PATIENCE_S = 60.0
+_CALM_S = 2.0
+
+
+class Outcome(NamedTuple):
+    """What becomes of the bodies of one world."""
+
+    bodies: int
+    entities: int
+    named: int
+    """How many are no entities, and are said not to be."""
+    lost: tuple[str, ...]
+
+
+def measure(folder: Path) -> list[Row]:
+    """A row for each MJCF file that has bodies; what does not load is told with the reason, and not counted.
+
+    Raises BadFile if there is no such file in the folder.
+    """
+    rows, lost, worlds = [], 0, 0
+    for path in sorted(folder.rglob("*.xml")):
+        if not is_scene(path):
+            continue
+        where = path.relative_to(folder)
+        try:
+            names = _bodies(path)
+        except errors.BadFile as error:
+            print(f"{where}: not counted: {error}")
+            continue
+        if not names:
+            print(f"{where}: not counted: it has no bodies")
+            continue
+        outcome = try_out(path, names)
+        worlds, lost = worlds + 1, lost + len(outcome.lost)
+        told = f"{outcome.entities} entities, {outcome.named} named as left out"
+        print(
+            f"{where}: {outcome.bodies} bodies: {told}; lost: {', '.join(outcome.lost) or 'none'}", flush=True
+        )
+        rows.append(Row(f"{path.name}: bodies neither entity nor named", float(len(outcome.lost)), "", 0.0))
+    if not worlds:
+        raise errors.BadFile(f"{folder} contains no MJCF file with bodies")
+    return [
+        *rows,
+        Row(f"{worlds} worlds: bodies neither entity nor named as left out", float(lost), "", 0.0, 0.0),
+    ]
+
+
+def is_scene(path: Path) -> bool:
+    """Whether a file is MJCF by its root, and no part that others include."""
+    try:
+        root = next(ElementTree.iterparse(path, ("start",)))[1]
+    except (ElementTree.ParseError, OSError):
+        return False
+    return str(root.tag) == "mujoco"
+
+
+def _bodies(path: Path) -> list[str]:
+    """The names of the bodies in a file, "" for those without one. Raises BadFile."""
+    model: mujoco.MjModel = read_mjcf(path).compile()
+    return [model.body(number).name for number in range(1, model.nbody)]
+
+
+def try_out(path: Path, names: list[str]) -> Outcome:
+    """Begin with this world, and compare what map and `semmap status` say with the names of its bodies.
+
+    A body without a name is accounted for by a name that the system gave it, or by what is told of it.
+    """
+    words = ("--world", str(path), "--truth", "scene", "--no-record")
+    with tempfile.TemporaryDirectory() as folder, own_system(Path(folder) / "data", *words) as client:
+        entities, scene = _settled(client)
+        problems = client.status().problems
+    told = [name for name in scene.left_out if any(name in problem for problem in problems)]
+    told += [b.name for b in scene.bodies if any(problem.startswith(f"{b.name}: ") for problem in problems)]
+    named = entities | set(told)
+    lost = [name for name in names if name and name not in named]
+    nameless = [name for name in (*entities, *told) if name not in names]
+    lost += ["(without a name)"] * (names.count("") - len(nameless))
+    return Outcome(len(names), len(entities), len(names) - len(entities) - len(lost), tuple(lost))
+
+
+def _settled(client: Client) -> tuple[set[str], Scene]:
+    """The names of the entities, once no more come, and the scene as it is then."""
+    deadline, since = time.monotonic() + _PATIENCE_S, math.inf
+    before: set[str] = set()
+    while time.monotonic() < min(deadline, since + _CALM_S):
+        time.sleep(0.2)
+        names = {entity.name for entity in client.list()}
+        if client.status().in_agreement is not None and (names != before or since == math.inf):
+            before, since = names, time.monotonic()
+    return before, bus.ask(client.session, keys.SIM, SceneQuery.VERB, SceneQuery(), Scene)

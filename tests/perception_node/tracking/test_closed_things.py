@@ -1,0 +1,76 @@
+"""What is in a fridge that was closed stays in the map; what is gone from an open one goes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from nodes.perception_node.input.projection import cloud_of
+from nodes.perception_node.tracking.occupancy import occupancy_in
+from nodes.sim_node.vision.raycast import raycast
+from nodes.sim_node.vision.view import look_at
+from nodes.sim_node.world import World
+from schemas.commands import Remove
+from schemas.entities import Pose
+from schemas.scenes import BodyOrder, JointOrder
+from tests.perception_node.things import CONFIG, Table, entity
+
+ORIGIN = Pose(position_m=(0.0, 0.0, 0.0))
+MILK_M = (0.08, 0.08, 0.2)
+
+
+class LooksAt(Table):
+    """A map of which a depth picture tells what is where; nothing else is seen."""
+
+    def _occupancy(self, pose, size_m):
+        return self.occupancy(pose, size_m)
+
+
+def kitchen():
+    """A fridge at the origin, with its door open and milk on a board in it."""
+    world = World()
+    world.spawn(
+        [BodyOrder(name="fridge1", class_="Fridge", model="fridge", pose=ORIGIN, fixed=True, commit=1)]
+    )
+    swing(world, 1.0)
+    carton = Pose(position_m=(-0.05, 0.0, 0.75))
+    world.spawn([BodyOrder(name="milk1", class_="Milk", model="box", pose=carton, size_m=MILK_M, commit=1)])
+    world.step(2.0)
+    return world
+
+
+def swing(world, to):
+    world.move_joints([JointOrder(name="fridge1", openness=to)])
+    world.step(3.0)
+
+
+def occupancy(world):
+    """What a camera before the fridge sees of places."""
+    view = look_at(np.array([1.6, 0.1, 1.2]), np.array([0.0, 0.0, 0.85]), 320, 240, 1.0)
+    _, depth, _ = raycast(world.model, world.data, view)
+    intrinsics = np.asarray(view.intrinsics)
+    return occupancy_in([cloud_of(depth, None, intrinsics, view.map_from_camera)])
+
+
+def test_a_place_in_a_fridge_is_free_occupied_or_out_of_sight():
+    world = kitchen()
+    milk = world.pose("milk1")
+    assert occupancy(world)(milk, MILK_M) == "occupied"
+    swing(world, 0.0)
+    assert occupancy(world)(milk, MILK_M) == "unknown"
+    swing(world, 1.0)
+    world.delete(["milk1"])
+    assert occupancy(world)(milk, MILK_M) == "free"
+
+
+@pytest.mark.parametrize(("door", "removed"), [(0.0, False), (1.0, True)])
+def test_perception_removes_what_is_gone_only_where_it_can_look(door, removed):
+    world = kitchen()
+    milk = world.pose("milk1")
+    world.delete(["milk1"])
+    swing(world, door)
+    table = LooksAt().told([entity("milk1", "Bottle", milk, MILK_M, source="perception")])
+    table.occupancy = occupancy(world)
+    commands = table.looks(3 * CONFIG.gone_looks)
+    assert [type(command) for command in commands] == ([Remove] if removed else [])
+    assert ("milk1" in table.entities) is not removed
