@@ -194,6 +194,10 @@ OPENNESS: Final = dm("openness")
 JOINT_POSITIONS: Final = dm("jointPositions")
 """How far open a thing is and how its joints stand; each says more than the one before."""
 
+IS_GRASPED_BY: Final = dm("isGraspedBy")
+GRASP_POSE: Final = dm("graspPose")
+"""What holds a thing, and where in the frame of that."""
+
 CONFLICTING_OBSERVATION: Final = dm("conflictingObservation")
 TRACKED_FROM: Final = dm("trackedFrom")
 """Annotation of an entity: what perception sees against what the map says of it."""

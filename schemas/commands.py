@@ -33,6 +33,7 @@ from schemas.entities import (
     composed,
 )
 from schemas.explanations import Explanation
+from schemas.frames import Frame, FrameName
 from schemas.happenings import Difference, KeptRelation, Spells
 from schemas.language import Account, Found, Language, Understood
 from schemas.moments import When
@@ -104,7 +105,8 @@ class Add(Command[Changed], frozen=True, tag="add"):
     pose; with `default` it also gets the class's label as reference. `set` are properties, each written
     `PROPERTY=VALUE`. With `track` it is tracked from the start (see `Track`). `wait` delays the reply until
     its body stands in the scene. `extent` is for places: with it only the z of `at`
-    counts, the height of the floor, and the z of `size`, how high the place is.
+    counts, the height of the floor, and the z of `size`, how high the place is. With a `frame` (see `frames`)
+    `at` and the angle are in it; without an angle only the position is.
 
     Like every command that changes entities, it is refused with PreconditionFailed where one of those that
     are to be `unchanged` is gone, or was changed by a commit after `since`.
@@ -115,6 +117,7 @@ class Add(Command[Changed], frozen=True, tag="add"):
     at: Vector | None = None
     yaw: Angle | None = None
     orientation: Quaternion | None = None
+    frame: FrameName | None = None
     size: Size | None = None
     extent: ExtentText | None = None
     ref: Text | None = None
@@ -136,8 +139,8 @@ class Update(Command[Changed], frozen=True, tag="update"):
     `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values; both of one
     property replace its values. A class that would make an object a place, or a place an object, is refused
     without `force`. With `carry`, what stands on the entity or is inside it moves with it as one rigid body,
-    in the same commit; not what `leave` names, and what stands on that. `extent` is as for `add`; who has one
-    is moved by another.
+    in the same commit; not what `leave` names, and what stands on that. `extent` and `frame` are as for
+    `add`; who has an extent is moved by another.
     """
 
     name: Word
@@ -145,6 +148,7 @@ class Update(Command[Changed], frozen=True, tag="update"):
     at: Vector | None = None
     yaw: Angle | None = None
     orientation: Quaternion | None = None
+    frame: FrameName | None = None
     size: Size | None = None
     extent: ExtentText | None = None
     ref: Text | None = None
@@ -209,6 +213,33 @@ class Track(Command[Changed], frozen=True, tag="track"):
     dry_run: bool = False
 
 
+class Attach(Command[Changed], frozen=True, tag="attach"):
+    """Have an entity held by another, such as a robot's gripper or a tray: from now on it goes with that.
+
+    It is held where it is just now, or `at` a position in the frame of its holder (whose origin is the bottom
+    centre [m]), turned there by `yaw` [rad]. Where it was taken is committed, and the map states
+    `isGraspedBy` and `graspPose`. Refused for places, for what is fixed, part of something or held already,
+    and for what holds the holder.
+    """
+
+    name: Word
+    to: Word
+    at: Vector | None = None
+    yaw: Angle | None = None
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
+    dry_run: bool = False
+
+
+class Detach(Command[Changed], frozen=True, tag="detach"):
+    """Let go of what something holds: it is put where it is just now, which is committed."""
+
+    name: Word
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
+    dry_run: bool = False
+
+
 class Remove(Command[Changed], frozen=True, tag="remove"):
     """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
 
@@ -264,8 +295,10 @@ class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"
 
     Of these, those that stand `on` a thing (directly or on what is on it), are `in` a place or a container,
     are `near` a thing or `within` so many metres of it, or the `nearest` so many `to` it; worked out from
-    poses, sizes and shapes. Things and places are given by name, reference or class. Answered with the
-    entities, or with the document of another format than `json`.
+    poses, sizes and shapes. Things and places are given by name, reference or class; `near` (with `within`)
+    and `to` may be positions instead, written `2.5,1,0.8` [m]. With a `frame` such positions are in it,
+    and so are the poses that are answered. Answered with the entities, or with the document of another format
+    than `json`.
     """
 
     class_: ClassName | None = field(name="class", default=None)
@@ -277,6 +310,7 @@ class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"
     within: Annotated[float, Meta(gt=0.0, le=20_000.0)] | None = None
     nearest: Annotated[int, Meta(ge=1, le=10_000)] | None = None
     to: Text | None = None
+    frame: FrameName | None = None
 
     @property
     def where(self) -> Where | None:
@@ -305,12 +339,23 @@ class Get(Command[Described], frozen=True, tag="get"):
     """One entity; with `as_of` as it was then.
 
     With `where` also what it is on, inside and in, and what was said of that but does not hold (of the map as
-    it is now only).
+    it is now only). With a `frame` its pose is told in that, as both are just now.
     """
 
     name: Word
     as_of: When | None = None
     where: bool = False
+    frame: FrameName | None = None
+
+
+class ListFrames(Command[tuple[Frame, ...]], frozen=True, tag="frames"):
+    """The tree of frames; with a `name` that frame, those above it and those below it.
+
+    There are `map`, every entity that has a position, the cameras of the simulator, and what others publish
+    on `semmap/frame/<name>`. Parents come before their children.
+    """
+
+    name: Word | None = None
 
 
 class Check(Command[Checked], frozen=True, tag="check"):
@@ -586,12 +631,14 @@ class Move(Command[Moved], frozen=True, tag="move"):
     """Move the body of an entity by hand; the map follows when it comes to rest.
 
     With `carry`, the bodies of what stands on it or is inside it (as the map has it) are moved with it as one
-    rigid body, and the map follows all of them in one commit; not those that `leave` names.
+    rigid body, and the map follows all of them in one commit; not those that `leave` names. `frame` is as for
+    `add`.
     """
 
     name: Word
     at: Vector
     yaw: Angle | None = None
+    frame: FrameName | None = None
     carry: bool = False
     leave: tuple[Word, ...] = ()
 

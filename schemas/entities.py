@@ -133,6 +133,39 @@ def carried(pose: Pose, was: Pose, now: Pose) -> Pose:
     return rounded(Pose(position_m=(x, y, z), orientation_wxyz=(qw, qx, qy, qz)))
 
 
+def compose(frame: Pose, pose: Pose) -> Pose:
+    """Where a thing that is at `pose` in a frame is in that in which the frame itself is at `frame`.
+
+    `map_from_lidar = compose(map_from_robot, robot_from_lidar)`.
+    """
+    turn = frame.orientation_wxyz
+    _, *offset = _product(_product(turn, (0.0, *pose.position_m)), _inverse(turn))
+    x, y, z = (o + d for o, d in zip(frame.position_m, offset, strict=True))
+    turned = _product(turn, pose.orientation_wxyz)
+    length = math.hypot(*turned)
+    qw, qx, qy, qz = (value / length for value in turned)
+    return Pose(position_m=(x, y, z), orientation_wxyz=(qw, qx, qy, qz))
+
+
+def inverse(frame: Pose) -> Pose:
+    """Where the outer frame is in the one that is at `frame` in it."""
+    back = _inverse(frame.orientation_wxyz)
+    x, y, z = frame.position_m
+    origin = Pose(position_m=(-x, -y, -z))
+    return compose(Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=_unit(back)), origin)
+
+
+def relative(pose: Pose, frame: Pose) -> Pose:
+    """A pose as seen from a frame; both are given in one and the same."""
+    return compose(inverse(frame), pose)
+
+
+def _unit(q: Quaternion) -> Quaternion:
+    length = math.hypot(*q)
+    w, x, y, z = q
+    return w / length, x / length, y / length, z / length
+
+
 def _product(a: Quaternion, b: Quaternion) -> Quaternion:
     """The rotation `b`, then `a`."""
     aw, ax, ay, az = a
@@ -233,7 +266,8 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     that was journalled, and `live`, which replies fill in, the newest.
     `pose_provenance` says what last changed its pose, `shape_provenance` its class or size,
     `reference_provenance` what it is called, `joint_provenance` how far open it is and how its joints stand
-    (None if that was never stated). `properties` are the data and object properties asserted of it.
+    (None if that was never stated), and `grip_provenance` what holds it (likewise). `properties` are the data
+    and object properties asserted of it.
     """
 
     name: str
@@ -259,6 +293,7 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     shape_provenance: Provenance
     reference_provenance: Provenance
     joint_provenance: Provenance | None = None
+    grip_provenance: Provenance | None = None
 
 
 class ClassInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -11,6 +11,7 @@ from typing import Any, Literal, NamedTuple
 from urllib.parse import quote, unquote
 
 from schemas.commits import Commit, Effects
+from schemas.frames import FramePose
 from schemas.health import Health
 from schemas.live import LivePose, LivePoses
 from schemas.perception import Observations, SegmentedCloud
@@ -68,6 +69,8 @@ LIVE_POSE = Topic(f"{ROOT}/live/*", LivePose, "newest")
 """Of one tracked entity, by whoever knows where it is."""
 LIVE_POSES = Topic(f"{ROOT}/live", LivePoses, "newest")
 """Of all tracked entities, by the coordinator."""
+FRAME = Topic(f"{ROOT}/frame/**", FramePose, "newest")
+"""Where a frame is in its parent, by whoever knows; a name with `/` has several chunks."""
 OBSERVATIONS = Topic(f"{PERCEPTION}/observations", Observations, "newest")
 CLOUD = Topic(f"{PERCEPTION}/cloud", SegmentedCloud, "newest")
 DETECTIONS = Topic(f"{PERCEPTION}/detections", Observations, "newest")
@@ -83,6 +86,7 @@ TOPICS = (
     POSES,
     LIVE_POSE,
     LIVE_POSES,
+    FRAME,
     CAMERA,
     OBSERVATIONS,
     CLOUD,
@@ -127,6 +131,16 @@ def live_pose_key(name: str) -> str:
 def of_live_pose(key: str) -> str:
     """The entity's name in such a key."""
     return unquote(last_chunk(key))
+
+
+def frame_key(name: str) -> str:
+    """Where a frame is published: `robot1/lidar` on `semmap/frame/robot1/lidar`."""
+    return f"{ROOT}/frame/{'/'.join(map(_chunk, name.split('/')))}"
+
+
+def of_frame(key: str) -> str:
+    """The frame's name in such a key."""
+    return unquote(key.partition(f"{ROOT}/frame/")[2])
 
 
 def camera_key(camera: str, plane: Literal["rgb", "depth", "segments"]) -> str:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+import re
+from typing import Annotated, Final, Literal
 
 from msgspec import Meta, Struct
 
-from schemas.entities import Entity, Metres, Text
+from schemas.entities import REACH_M, Entity, Metres, Text, Vector
+from schemas.errors import BadRequest
 
 RelationName = Literal[
     "isOn", "isInside", "isLocatedIn", "isAttachedTo", "touches", "isUnder", "isAbove", "isNear", "isNextTo",
@@ -15,6 +17,23 @@ RelationName = Literal[
 
 ViewPoint = tuple[Metres, Metres, Metres, Annotated[float, Meta(ge=-1e6, le=1e6)]]
 """Where a viewer stands and looks: x, y, z [m] and yaw [rad], map frame."""
+
+
+_NUMBER: Final = r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*"
+_POSITION: Final = re.compile(",".join([_NUMBER] * 3))
+
+
+def position_in(word: str) -> Vector | None:
+    """The position [m] that is written `2.5,1,0.8`; None for what names something.
+
+    Raises BadRequest for one beyond `REACH_M`.
+    """
+    if (match := _POSITION.fullmatch(word)) is None:
+        return None
+    x, y, z = map(float, match.groups())
+    if max(abs(x), abs(y), abs(z)) > REACH_M:
+        raise BadRequest(f"'{word}' is too far away: coordinates go up to {REACH_M:,.0f} m")
+    return x, y, z
 
 
 class Relation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -51,6 +70,7 @@ class Described(Entity, frozen=True, kw_only=True, forbid_unknown_fields=True):
     denied: tuple[Relation, ...] = ()
     withheld: tuple[str, ...] = ()
     on_nothing: str = ""
+    frame: str = ""
 
     @classmethod
     def of(
@@ -67,7 +87,10 @@ class Described(Entity, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Where(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Which entities by where they are; all that is given must hold. See `schemas.commands.List`."""
+    """Which entities by where they are; all that is given must hold. See `schemas.commands.List`.
+
+    `near` and `to` may also be positions in the map frame (`position_in`).
+    """
 
     on: Text | None = None
     in_: Text | None = None

@@ -40,7 +40,9 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     `shape_commit` is the commit it was made for. `entity` tells bodies made from the map from the
     world's own furniture. `size_m` is what it really measures. `joints` are those that move parts of it, and
     `joint_commit` is the commit whose positions these were last ordered to take. It rests when these do, too.
-    `part_of` names the body that carries it, as a kitchen does its oven in an MJCF world.
+    `part_of` names the body that carries it, as a kitchen does its oven in an MJCF world. `held_by` names the
+    body that holds it and `grip` is where, in that body's frame; `grip_commit` is the commit that last
+    ordered it to be held or let go, 0 for a hand, and -1 while nobody has done either.
     """
 
     name: str
@@ -57,6 +59,9 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     joints: tuple[Joint, ...] = ()
     joint_commit: int = 0
     part_of: str = ""
+    held_by: str = ""
+    grip: Pose | None = None
+    grip_commit: int = -1
     robot: bool = False
     """It was put there by `semmap up --robot`: it becomes an entity whatever the truth is, and is tracked."""
 
@@ -144,6 +149,35 @@ class MoveJoints(Call[JointsMoving], frozen=True, kw_only=True, forbid_unknown_f
 
     VERB: ClassVar[str] = "move-joints"
     orders: tuple[JointOrder, ...]
+
+
+class GripOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Have a body held by another (`holder`), or by nobody (""): then it is let go where it is.
+
+    `grip` is where it is to be in the frame of its holder's bottom centre; without one it is held as it is.
+    With a `commit` it is the map's order, without one it is a hand.
+    """
+
+    name: str
+    holder: str = ""
+    grip: Pose | None = None
+    commit: int | None = None
+
+
+class Gripped(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The bodies that are held or were let go, and a reason for each for which that cannot be."""
+
+    bodies: tuple[Body, ...]
+    failed: dict[str, str]
+
+
+class Grip(Call[Gripped], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Weld bodies to those that hold them, or let them go."""
+
+    LARGEST: ClassVar[int] = MANY
+
+    VERB: ClassVar[str] = "grip"
+    orders: tuple[GripOrder, ...]
 
 
 Point = tuple[Metres, Metres]
@@ -243,6 +277,23 @@ class PictureQuery(Call[Picture], frozen=True, kw_only=True, forbid_unknown_fiel
     labels: bool = False
     width: Annotated[int, Meta(ge=16, le=4096)] = 960
     height: Annotated[int, Meta(ge=16, le=4096)] = 640
+
+
+class CameraPose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where a camera of the world is just now: its optical frame (x right, y down, z into the scene).
+
+    `part_of` names the body that carries it; "" for one that stays where it is.
+    """
+
+    camera: str
+    part_of: str
+    pose: Pose
+
+
+class CamerasQuery(Call[tuple[CameraPose, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where all cameras are."""
+
+    VERB: ClassVar[str] = "cameras"
 
 
 class CameraFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

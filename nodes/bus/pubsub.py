@@ -75,8 +75,14 @@ def follow(
 class Newest:
     """Publications that come too often to be handled one by one: the newest of each key, when wanted."""
 
-    def __init__(self, session: zenoh.Session, topic: keys.Topic, most: int = 4096) -> None:
-        """Of more than `most` that come before somebody looks, the oldest are dropped."""
+    def __init__(
+        self, session: zenoh.Session, topic: keys.Topic, most: int = 4096, *, deletions: bool = False
+    ) -> None:
+        """Of more than `most` that come before somebody looks, the oldest are dropped.
+
+        With `deletions` a key that was deleted is told of, too: then `read()` gives None.
+        """
+        self._deletions = deletions
         self._subscriber = session.declare_subscriber(topic.key, zenoh.handlers.RingChannel(most))
         self._kind = topic.message
 
@@ -87,12 +93,14 @@ class Newest:
         """
         newest: dict[str, zenoh.Sample] = {}
         while (sample := self._subscriber.try_recv()) is not None:
-            if sample.kind == zenoh.SampleKind.PUT:
+            if sample.kind == zenoh.SampleKind.PUT or self._deletions:
                 newest[str(sample.key_expr)] = sample
         for key, sample in newest.items():
             yield key, partial(self._read, sample)
 
     def _read(self, sample: zenoh.Sample) -> Any:
+        if sample.kind == zenoh.SampleKind.DELETE:
+            return None
         if len(sample.payload) > pieces.MESSAGE:
             raise errors.BadRequest(f"a message of {len(sample.payload):,} bytes is too large")
         return codec.decode(sample.payload.to_bytes(), self._kind)

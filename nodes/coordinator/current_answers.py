@@ -12,6 +12,7 @@ from nodes import bus
 from nodes.coordinator import formats
 from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
+from nodes.coordinator.frames.feed import Frames
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
 from nodes.coordinator.live.feed import LiveFeed
@@ -22,6 +23,7 @@ from ontology.model_shapes import own_size_m
 from schemas import bridge, errors
 from schemas import commands as c
 from schemas.entities import Entity, Size
+from schemas.grips import holder_of
 from schemas.moments import When
 from schemas.relations import Described
 from schemas.replies import SystemStatus
@@ -44,6 +46,7 @@ class Answers:
         health: HealthView,
         bridge: Bridge,
         live: LiveFeed,
+        frames: Frames,
     ) -> None:
         self._truth = truth
         self._door = door
@@ -51,6 +54,7 @@ class Answers:
         self._health = health
         self._bridge = bridge
         self._live = live
+        self._frames = frames
 
     def list(self, query: c.List) -> Listed | Future[Listed]:
         """The entities of a class, with what has become of their bodies."""
@@ -82,7 +86,7 @@ class Answers:
             bodies=len(self._keeping.scene.bodies),
             in_agreement=self._keeping.in_agreement(),
             nodes=self._health.nodes(),
-            problems=(*self._keeping.problems(), *self._live.problems()),
+            problems=(*self._keeping.problems(), *self._live.problems(), *self._frames.problems()),
             version=version(),
         )
 
@@ -105,8 +109,8 @@ class Answers:
             return word
 
     def _with_body(self, entity: E) -> E:
-        """With what has become of its body, and where it is just now if it is tracked."""
-        if entity.tracked:
+        """With what has become of its body, and where it is just now if it is tracked or held."""
+        if entity.tracked or holder_of(entity):
             entity = structs.replace(entity, live=self._live.of(entity))
         state, body = self._keeping.body_state(entity), self._keeping.scene.bodies.get(entity.name)
         if entity.size_m is not None or state.status == "none":

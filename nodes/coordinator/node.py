@@ -17,10 +17,12 @@ from nodes.coordinator.current_answers import Answers
 from nodes.coordinator.dialogues import hold_later
 from nodes.coordinator.door import Door
 from nodes.coordinator.early_commands import EarlyCommands
+from nodes.coordinator.frames.feed import Frames
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
 from nodes.coordinator.live.feed import LiveFeed
 from nodes.coordinator.scene.among_walls import AmongWalls
+from nodes.coordinator.scene.gripping import Gripping
 from nodes.coordinator.scene.opening import Opening
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
@@ -65,14 +67,19 @@ class Coordinator:
         self._waiting: list[tuple[str, float, Changed, Future[Changed]]] = []
         door = self._door
         self._live = LiveFeed(node, config, door.map, self._keeping.scene, self._turns.change)
-        answers = Answers(config.truth, door, self._keeping, self._health, self._bridge, self._live)
+        stale_s, scene = config.live.stale_s, self._keeping.scene
+        frames = Frames(node, stale_s, door.map, self._live, scene, self._ask_sim, self._bridge, self._turns)
+        answers = Answers(config.truth, door, self._keeping, self._health, self._bridge, self._live, frames)
         among_walls = AmongWalls(self._keeping, self._ask_sim, self._bridge.ask_later)
         running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
         self._opening = Opening(door, self._keeping, self._ask_sim)
+        scene = self._keeping.scene
+        self._gripping = Gripping(config.truth, door, scene, self._turns.change, self._ask_sim)
+        door.map.where, door.map.bodies = self._live.where, lambda: scene.bodies
         relay = self._bridge.relay
         of_the_map = calls.by_verb(
-            c.Add.answered_by(self._with_body),
-            c.Update.answered_by(self._with_body),
+            c.Add.answered_by(frames.placed(self._with_body)),
+            c.Update.answered_by(frames.placed(self._with_body)),
             c.Set.answered_by(self._turns.change),
             c.Unset.answered_by(self._turns.change),
             c.Track.answered_by(self._track),
@@ -80,9 +87,12 @@ class Coordinator:
             c.Clear.answered_by(self._noted),
             c.Load.answered_by(self._load),
             c.Undo.answered_by(self._turns.change),
-            c.List.answered_by(answers.list),
-            c.Get.answered_by(answers.get),
-            c.Move.answered_by(running.move),
+            c.List.answered_by(frames.placed(answers.list)),
+            c.Get.answered_by(frames.placed(answers.get)),
+            c.ListFrames.answered_by(frames.list),
+            c.Move.answered_by(frames.placed(running.move)),
+            c.Attach.answered_by(self._gripping.attach),
+            c.Detach.answered_by(self._gripping.detach),
             c.Open.answered_by(self._opening.move),
             c.Close.answered_by(self._opening.move),
             c.Drive.answered_by(running.drive),

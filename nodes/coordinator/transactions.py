@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from schemas import errors, polygons
-from schemas.commands import Add, Command, Set, Track, Unset, Update
+from schemas.commands import Add, Attach, Command, Detach, Set, Track, Unset, Update
 from schemas.commits import Edit, NewEntity, Statement, Transaction
 from schemas.entities import IDENTITY, ClassInfo, Entity, Pose, Size, Value, Vector
+from schemas.grips import GRASP_POSE, IS_GRASPED_BY, pose_text
 from schemas.scene_files import Described, pose_of
 
 
@@ -122,6 +123,37 @@ def track(command: Track) -> Transaction:
     edit = Edit(name=command.name, tracked="" if command.off else command.from_)
     said = "--off" if command.off else f"--from {command.from_}"
     return transaction(command, f"track {command.name} {said}", edit=[edit])
+
+
+def attach(command: Attach, to: str, grip: Pose | None, pose: Pose | None) -> Transaction:
+    """An entity is held from now on, at `grip` in its holder's frame, and is at `pose` just now."""
+    edit = Edit(
+        name=command.name,
+        at=None if pose is None else pose.position_m,
+        orientation=None if pose is None else pose.orientation_wxyz,
+        unset=(Statement(property=GRASP_POSE),) if grip is None else (),
+        set=gripped(to, grip),
+    )
+    return transaction(command, f"attach {command.name} --to {to}", edit=[edit])
+
+
+def detach(command: Detach, pose: Pose | None) -> Transaction:
+    """Nothing holds an entity any more, which is at `pose` just now."""
+    edit = Edit(
+        name=command.name,
+        at=None if pose is None else pose.position_m,
+        orientation=None if pose is None else pose.orientation_wxyz,
+        unset=gripped("", None),
+    )
+    return transaction(command, f"detach {command.name}", edit=[edit])
+
+
+def gripped(holder: str, grip: Pose | None) -> tuple[Statement, ...]:
+    """What a map states of who holds a thing, and where; without a holder, what it states no more."""
+    if not holder:
+        return (Statement(property=IS_GRASPED_BY), Statement(property=GRASP_POSE))
+    by = Statement(property=IS_GRASPED_BY, values=(holder,))
+    return (by,) if grip is None else (by, Statement(property=GRASP_POSE, values=(pose_text(grip),)))
 
 
 def remove(command: Command, reason: str, names: Iterable[str]) -> Transaction:

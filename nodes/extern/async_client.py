@@ -87,6 +87,16 @@ class AsyncClient(Verbs):
         """Say where a tracked entity is just now; see `Client.publish_pose`. It waits for nothing."""
         self._client.publish_pose(name, at, **pose)
 
+    async def publish_frame(
+        self, name: str, parent: str, at: Sequence[float] = (0.0, 0.0, 0.0), **pose: Any
+    ) -> None:
+        """Say where a frame of yours is; see `Client.publish_frame`. It waits for nothing."""
+        self._client.publish_frame(name, parent, at, **pose)
+
+    async def withdraw_frame(self, name: str) -> None:
+        """Take a frame that is published away."""
+        self._client.withdraw_frame(name)
+
     @contextlib.asynccontextmanager
     async def commits(self, *, timeout: float | None = None) -> AsyncIterator[AsyncIterator[Commit]]:
         """Every commit from now on; see `Client.commits`. None for `timeout` seconds raises NoAnswer."""

@@ -38,6 +38,7 @@ from schemas.calls import reply_type
 from schemas.commands import Clear, Command, Load, Status, Undo, Watch
 from schemas.commits import Commit
 from schemas.entities import Source
+from schemas.frames import FramePose
 from schemas.live import LivePose
 from schemas.moments import When, with_offset
 from schemas.replies import Changed
@@ -98,7 +99,7 @@ class Client(Verbs):
         self.identity = identity
         self._lifelines = bus.Lifelines(session)
         self._live: dict[str, Any] = {}
-        """The publishers of live poses, by name."""
+        """The publishers of live poses and frames, by key."""
         self.prefix = keys.CMD if identity is None else keys.commands_as(identity.name)
         role = "" if identity is None else identity.role
         self._signature: dict[str, Any] = {"source": source or roles.default_source(role), "agent": agent}
@@ -171,17 +172,57 @@ class Client(Verbs):
         BadRequest for what is no pose, Refused where this client's certificate does not permit it.
         """
         fields = {"at": at, "yaw": yaw, "orientation": orientation, "stamp_ns": stamp_ns}
-        plain = msgspec.to_builtins(fields, enc_hook=_plain)
-        try:
-            message: LivePose = codec.convert(plain, LivePose)
-            message.require_pose()
-        except errors.BadRequest as error:
-            raise errors.BadRequest(error.text.removeprefix(codec.MALFORMED)) from None
-        if self.identity is not None and not roles.may_publish(self.identity.role, keys.LIVE_POSE):
-            raise errors.Refused(roles.not_publishing(self.identity.role, keys.LIVE_POSE))
-        if name not in self._live:
-            self._live[name] = bus.publisher(self.session, keys.LIVE_POSE, keys.live_pose_key(name))
-        self._live[name].put(codec.encode(message), encoding=codec.encoding_of(message))
+        self._publish(keys.LIVE_POSE, keys.live_pose_key(name), LivePose, fields)
+
+    def publish_frame(
+        self,
+        name: str,
+        parent: str,
+        at: Sequence[float] = (0.0, 0.0, 0.0),
+        *,
+        yaw: float | None = None,
+        orientation: Sequence[float] | None = None,
+        stamp_ns: int = 0,
+        fixed: bool = False,
+    ) -> None:
+        """Say where a frame of yours is in its `parent`.
+
+        `client.publish_frame("robot1/lidar", "robot1", at=(0.2, 0.0, 0.3))`. `at` is its origin [m] in the
+        parent, `yaw` [rad] or `orientation` (unit quaternion wxyz) how it is turned, and `stamp_ns` when that
+        was measured (0: when it arrives). It is stale when it is not said again within `semmap up --stale`
+        seconds; what is `fixed` is said once, and again after a restart of the coordinator.
+
+        There is no reply: what was taken, `client.frames(name)` tells, and what was not, the problems of
+        `client.status()`. Raises BadRequest for what is no pose, Refused where this client's certificate
+        does not permit it.
+        """
+        pose = {"at": at, "yaw": yaw, "orientation": orientation, "stamp_ns": stamp_ns}
+        self._publish(keys.FRAME, _frame_key(name), FramePose, {"parent": parent, "fixed": fixed, **pose})
+
+    def withdraw_frame(self, name: str) -> None:
+        """Take a frame that is published away, a fixed one too."""
+        self._publish(keys.FRAME, _frame_key(name), None, {})
+
+    def _publish(
+        self, topic: keys.Topic, key: str, kind: type[LivePose | FramePose] | None, fields: dict[str, Any]
+    ) -> None:
+        """Put a pose on a key; without a `kind` delete what was put there."""
+        message: LivePose | FramePose | None = None
+        if kind is not None:
+            plain = msgspec.to_builtins(fields, enc_hook=_plain)
+            try:
+                message = codec.convert(plain, kind)
+                message.require_pose()
+            except errors.BadRequest as error:
+                raise errors.BadRequest(error.text.removeprefix(codec.MALFORMED)) from None
+        if self.identity is not None and not roles.may_publish(self.identity.role, topic):
+            raise errors.Refused(roles.not_publishing(self.identity.role, topic))
+        if key not in self._live:
+            self._live[key] = bus.publisher(self.session, topic, key)
+        if message is None:
+            self._live[key].delete()
+        else:
+            self._live[key].put(codec.encode(message), encoding=codec.encoding_of(message))
 
     @contextlib.contextmanager
     def watch(
@@ -226,6 +267,12 @@ class Client(Verbs):
         finally:
             subscriber.undeclare()
             events.put(None)  # whoever waits for the next one on another thread is told of the end
+
+
+def _frame_key(name: str) -> str:
+    if not name or "" in name.split("/"):
+        raise errors.BadRequest(f"'{name}' is no name of a frame; such are robot1/lidar or lidar1")
+    return keys.frame_key(name)
 
 
 def _each(events: queue.SimpleQueue[Commit | None], timeout_s: float | None) -> Iterator[Commit]:

@@ -217,17 +217,28 @@ def _list(
     within: float | None = None,
     nearest: int | None = None,
     to: str | None = None,
+    frame: str | None = None,
 ) -> commands.List:
     """The entities of a class, over inferred types; all of them without one.
 
     Of these those `on` a thing, `in_` a place or container, `near` a thing (`within` so many metres of it),
-    or the `nearest` so many `to` a thing; each is given by name, reference or class.
+    or the `nearest` so many `to` a thing; each is given by name, reference or class, and `near` and `to` may
+    be positions: "2.5,1,0.8" [m]. With a `frame` such positions are in it, and so are the poses in the
+    answer.
 
     `as_of`: the map as it was after a commit, given by its number, or at a time: seconds since 1970, ISO 8601
     or a reply's `stamp_ns`. A time denotes its written precision (see `schemas.moments.When`).
     """
     return commands.List(
-        class_=class_, as_of=as_of, on=on, in_=in_, near=near, within=within, nearest=nearest, to=to
+        class_=class_,
+        as_of=as_of,
+        on=on,
+        in_=in_,
+        near=near,
+        within=within,
+        nearest=nearest,
+        to=to,
+        frame=frame,
     )
 
 
@@ -293,6 +304,7 @@ class Verbs:
     list = Verb(_list, _entities)
     list_as = Verb(_list_as, _document)
     get = Verb(commands.Get)
+    frames = Verb(commands.ListFrames)
     check = Verb(commands.Check)
     infer = Verb(commands.Infer)
     explain = Verb(commands.Explain)
@@ -323,6 +335,8 @@ class Verbs:
     # To run
     move = Verb(commands.Move)
     drive = Verb(commands.Drive)
+    attach = Verb(commands.Attach)
+    detach = Verb(commands.Detach)
     open = Verb(commands.Open)
     close = Verb(commands.Close)
     pause = Verb(commands.Pause)

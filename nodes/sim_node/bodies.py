@@ -49,6 +49,10 @@ class BodyRecord:
     anchored: bool = False
     """Held by a joint or by what it is part of: nobody can put it elsewhere."""
     robot: bool = False
+    held_by: str = ""
+    grip: Pose | None = None
+    """Where it is held, in the frame of the bottom centre of the body that holds it."""
+    grip_commit: int = -1
 
     @property
     def static(self) -> bool:
@@ -76,6 +80,9 @@ class BodyRecord:
             joint_commit=self.joint_commit,
             part_of=self.part_of,
             robot=self.robot,
+            held_by=self.held_by,
+            grip=self.grip,
+            grip_commit=self.grip_commit,
         )
 
 

@@ -25,10 +25,14 @@ from schemas.plans import Outline, WallsQuery
 from schemas.replies import Done
 from schemas.scenes import (
     BodiesMoved,
+    CameraPose,
+    CamerasQuery,
     Delete,
     Deleted,
     DriveBase,
     Driven,
+    Grip,
+    Gripped,
     JointsMoving,
     MoveBodies,
     MoveJoints,
@@ -83,7 +87,9 @@ class Simulator:
                 Delete.answered_by(self._delete),
                 MoveBodies.answered_by(self._move),
                 MoveJoints.answered_by(self._move_joints),
+                Grip.answered_by(self._grip),
                 SceneQuery.answered_by(self._snapshot),
+                CamerasQuery.answered_by(self._cameras),
                 DriveBase.answered_by(self._drive),
                 Pause.answered_by(self._pause),
                 StepOnce.answered_by(self._step),
@@ -135,6 +141,9 @@ class Simulator:
     def _move_joints(self, message: MoveJoints) -> JointsMoving:
         return self._told(self._world.move_joints(message.orders))
 
+    def _grip(self, message: Grip) -> Gripped:
+        return self._told(self._world.grip(message.orders))
+
     def _drive(self, message: DriveBase) -> Driven | Future[Driven]:
         self._world.drive(message)
         self._tell_ended()
@@ -154,6 +163,9 @@ class Simulator:
 
     def _snapshot(self, _: SceneQuery) -> Scene:
         return self._world.scene()
+
+    def _cameras(self, _: CamerasQuery) -> tuple[CameraPose, ...]:
+        return self._world.cameras()
 
     def _pause(self, message: Pause) -> Done:
         state = "running" if message.off else "paused"

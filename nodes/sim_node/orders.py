@@ -11,9 +11,10 @@ from nodes.sim_node.bodies import BodyRecord
 from nodes.sim_node.models.library import Model, ModelError
 from nodes.sim_node.models.parts import Vec3
 from nodes.sim_node.physics import build
+from nodes.sim_node.physics.grips import chain
 from schemas.entities import Pose
 from schemas.joints import Joint, stated
-from schemas.scenes import BodyOrder, JointOrder, Placement
+from schemas.scenes import BodyOrder, GripOrder, JointOrder, Placement
 
 REACH_M = 1000.0
 """No body is put farther than this from the origin."""
@@ -136,11 +137,48 @@ def moves(
             if (record := there[placement.name]).anchored:
                 holder = record.part_of or "its joint"
                 raise ModelError(f"{placement.name} is held by {holder}; only its joints move it")
+            if record.held_by:
+                raise ModelError(
+                    f"{placement.name} is held by {record.held_by}; to put it elsewhere, first:"
+                    f" semmap detach {placement.name}"
+                )
             _check_reach(placement.pose)
             accepted.append(placement)
         except ModelError as error:
             failed[placement.name] = str(error)
     return accepted, failed
+
+
+def grips(
+    orders: Iterable[GripOrder], there: Mapping[str, BodyRecord]
+) -> tuple[list[GripOrder], dict[str, str]]:
+    """Which bodies are to be held or let go, and why the rest, by name, cannot be."""
+    accepted: list[GripOrder] = []
+    failed: dict[str, str] = {}
+    for order in orders:
+        try:
+            for name in (order.name, *filter(None, (order.holder,))):
+                if name not in there:
+                    raise ModelError(f"the scene has no body named {name}")
+            if order.holder:
+                _check_grip(order, there)
+            accepted.append(order)
+        except ModelError as error:
+            failed[order.name] = str(error)
+    return accepted, failed
+
+
+def _check_grip(order: GripOrder, there: Mapping[str, BodyRecord]) -> None:
+    record = there[order.name]
+    if order.name == order.holder:
+        raise ModelError(f"{order.name} cannot hold itself")
+    if order.name in chain(order.holder, there):
+        raise ModelError(f"{order.holder} is held by {order.name} or part of it, so it cannot hold it")
+    if record.anchored or record.fixed:
+        where = f"held by {record.part_of or 'its joint'}" if record.anchored else "fixed where it stands"
+        raise ModelError(f"{order.name} is {where}, so nothing can take it")
+    if order.commit is None and record.held_by not in ("", order.holder):
+        raise ModelError(f"{order.name} is held by {record.held_by} already")
 
 
 def _check_reach(pose: Pose) -> None:

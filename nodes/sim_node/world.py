@@ -23,16 +23,19 @@ from nodes.sim_node.physics.engine import Engine
 from nodes.sim_node.physics.walls import walls
 from nodes.sim_node.placement.settling import Settling
 from nodes.sim_node.robots.courses import ACTUATORS, Outcome, actuators
-from nodes.sim_node.vision.view import bulk, overview
-from schemas.entities import Pose
+from nodes.sim_node.vision.view import bulk, camera_names, optical_pose, overview
+from schemas.entities import Pose, relative
 from schemas.errors import Refused
 from schemas.plans import Outline
 from schemas.scenes import (
     BodiesMoved,
     Body,
     BodyOrder,
+    CameraPose,
     Deleted,
     DriveBase,
+    GripOrder,
+    Gripped,
     JointOrder,
     JointsMoving,
     Placement,
@@ -145,6 +148,26 @@ class World:
             self._engine.drive(name, to)
         return JointsMoving(bodies=self._bodies(targets), failed=failed)
 
+    def grip(self, ordered: Sequence[GripOrder]) -> Gripped:
+        """Have bodies held by others, or let go where they are."""
+        records = self._engine.records
+        accepted, failed = orders.grips(ordered, records)
+        changed = []
+        for order in accepted:
+            record = records[order.name]
+            record.grip_commit = max(0, record.grip_commit) if order.commit is None else order.commit
+            grip = order.grip
+            if order.holder and grip is None:
+                is_held = record.held_by == order.holder
+                here, there = self.pose(order.name), self.pose(order.holder)
+                grip = record.grip if is_held else relative(here, there)
+            if (order.holder, grip) != (record.held_by, record.grip):
+                record.held_by, record.grip = order.holder, grip
+                changed.append(order.name)
+        if changed:
+            self._settling.grip(changed)
+        return Gripped(bodies=self._bodies(order.name for order in accepted), failed=failed)
+
     def mark_robot(self, name: str) -> None:
         """This body is a robot, and so are those that are part of it; its joints open nothing."""
         records = self._engine.records
@@ -195,7 +218,11 @@ class World:
         """Back to the map: each body goes where it was last ordered to be; answers how many there are."""
         self._engine.set_joints([name for name, record in self._engine.records.items() if record.joints])
         self._settling.put(
-            {name: record.ordered for name, record in self._engine.records.items() if not record.anchored}
+            {
+                name: record.ordered
+                for name, record in self._engine.records.items()
+                if not (record.anchored or record.held_by)
+            }
         )
         return len(self)
 
@@ -276,6 +303,15 @@ class World:
             self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
         model, names = self._copy
         return model, copy.copy(self.data), names
+
+    def cameras(self) -> tuple[CameraPose, ...]:
+        """Where the cameras of the world are, and which bodies carry them."""
+        model, data = self.model, self.data
+        carriers = self.names_of(model.cam_bodyid)
+        return tuple(
+            CameraPose(camera=name, part_of=carrier, pose=optical_pose(data, number))
+            for number, (name, carrier) in enumerate(zip(camera_names(model), carriers, strict=True))
+        )
 
     def body_names(self) -> list[str]:
         """(ngeom,) for each geom of `model` the name of the body that it belongs to, or ""."""

@@ -18,7 +18,7 @@ def seen(entity, body=BODY):
     keeping = SimpleNamespace(
         body_state=lambda _: state, scene=SimpleNamespace(bodies={} if body is None else {entity.name: body})
     )
-    return Answers("map", None, keeping, None, None, None)._with_body(entity)
+    return Answers("map", None, keeping, None, None, None, None)._with_body(entity)
 
 
 @pytest.mark.parametrize("body", [BODY, None])

@@ -95,23 +95,39 @@ def web(system) -> Iterator[Web]:
         yield web
 
 
+@pytest.fixture(scope="session")
+def profile(chromium):
+    """A function that gives a profile of the browser for such tabs, so that only the first fetches all."""
+    profiles = {}
+
+    def of(width: int, height: int, dark: bool, scene: bool):
+        key = width, height, dark, scene
+        if key not in profiles:
+            context = profiles[key] = chromium.new_context(
+                viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light"
+            )
+            context.set_default_timeout(PATIENCE_S * 1000)
+            if not scene:
+                context.route("**/scene/**", lambda route: route.fulfill(body="<title>Scene</title>"))
+        return profiles[key]
+
+    yield of
+    for context in profiles.values():
+        context.close()
+
+
 @pytest.fixture
-def open_tab(chromium):
+def open_tab(profile):
     """A function that opens the page in a tab of its own: `open_tab(web)`, `open_tab(web, width=390)`.
 
+    It draws the scene only with `scene=True`, for software does that slowly, on the thread of all else.
     No tab may ask anything of another machine, nor report an error; that is looked at in the end.
     """
-    contexts, asked, complained = [], [], []
+    tabs, asked, complained = [], [], []
 
-    def open_(web: Web, *, width: int = 1280, height: int = 800, dark: bool = False, scene: bool = True):
-        context = chromium.new_context(
-            viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light"
-        )
-        contexts.append(context)
-        if not scene:  # which software draws slowly, on the thread of everything else
-            context.route("**/scene/**", lambda route: route.fulfill(body="<title>Scene</title>"))
-        context.set_default_timeout(PATIENCE_S * 1000)
-        tab = context.new_page()
+    def open_(web: Web, *, width: int = 1280, height: int = 800, dark: bool = False, scene: bool = False):
+        tab = profile(width, height, dark, scene).new_page()
+        tabs.append(tab)
         tab.on("request", lambda request: asked.append(request.url))
         tab.on("websocket", lambda socket: asked.append(socket.url))
         tab.on("pageerror", lambda error: complained.append(str(error)))
@@ -121,8 +137,8 @@ def open_tab(chromium):
         return tab
 
     yield open_
-    for context in contexts:
-        context.close()
+    for tab in tabs:
+        tab.close()
     elsewhere = [url for url in asked if urlsplit(url).hostname not in ("127.0.0.1", None)]
     assert not elsewhere, elsewhere
     amiss = [text for text in complained if not _HARMLESS.search(text)]

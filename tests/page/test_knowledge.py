@@ -19,7 +19,7 @@ def fresh(stem: str) -> str:
 
 @pytest.fixture
 def tab(open_tab, web):
-    return open_tab(web, scene=False)
+    return open_tab(web)
 
 
 @pytest.fixture

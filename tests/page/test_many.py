@@ -37,7 +37,7 @@ def crowded(chromium, tmp_path_factory):
 
 def test_five_thousand_entities_are_usable(crowded, open_tab):
     system, web = crowded
-    tab = open_tab(web, scene=False)
+    tab = open_tab(web)
     tab.get_by_text("5,020 entities").wait_for()
     assert tab.locator(".entity-table .ag-row").count() < 200  # those in sight, and a few more
     tab.get_by_label("Filter entities by text").fill("number 248")

@@ -7,12 +7,34 @@ import msgspec
 from hypothesis import strategies as st
 from msgspec import inspect
 
-from schemas import bridge, commands, commits, entities, errors, explanations, health, perception, scenes
+from schemas import (
+    bridge,
+    commands,
+    commits,
+    entities,
+    errors,
+    explanations,
+    frames,
+    health,
+    perception,
+    scenes,
+)
 
 TYPES = sorted(
     {
         kind
-        for module in (bridge, commands, commits, entities, errors, explanations, health, perception, scenes)
+        for module in (
+            bridge,
+            commands,
+            commits,
+            entities,
+            errors,
+            explanations,
+            frames,
+            health,
+            perception,
+            scenes,
+        )
         for _, kind in python.getmembers(module, python.isclass)
         if issubclass(kind, msgspec.Struct) and kind.__module__ == module.__name__
     },

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nodes.coordinator import transactions
+from nodes.coordinator import holding, transactions
 from nodes.coordinator.authority import require_authority
 from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.committing import changed, commit, new_id, once, taken_anew
@@ -13,9 +13,23 @@ from nodes.coordinator.scene.settled import Settled, doing
 from ontology import vocabulary as v
 from ontology.name_index import Ambiguous, Named, NameIndex
 from schemas import changes, errors, wording
-from schemas.commands import Add, Clear, Command, Infer, Properties, Remove, Set, Track, Unset, Update
+from schemas.commands import (
+    Add,
+    Attach,
+    Clear,
+    Command,
+    Detach,
+    Infer,
+    Properties,
+    Remove,
+    Set,
+    Track,
+    Unset,
+    Update,
+)
 from schemas.commits import Effects, Transaction
-from schemas.entities import ClassInfo, Entity, Pose, Value
+from schemas.entities import ClassInfo, Entity, Pose, Value, rounded
+from schemas.grips import holder_of
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
 
@@ -64,6 +78,12 @@ def update(view: KnownMap, command: Update) -> Talk[Changed]:
     """Change an entity; omitted fields keep their values."""
     entity = view.entity(command.name)
     require_carrying(command)
+    if command.source != "perception" and (command.at, command.yaw, command.orientation) != (
+        None,
+        None,
+        None,
+    ):
+        holding.require_free(entity)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
     shape = (found, command.ref, command.alt, command.size, command.extent)
     if any(value is not None for value in shape):
@@ -165,12 +185,46 @@ def track(view: KnownMap, command: Track) -> Talk[Changed]:
 
 
 @once
+def attach(view: KnownMap, command: Attach) -> Talk[Changed]:
+    """Have an entity held by another. Raises Refused where it cannot be."""
+    entity, holder = view.entity(command.name), view.entity(holding.named(command.to, view.entities))
+    holding.require_graspable(entity, holder, view.entities, view.bodies())
+    if holder_of(entity) == holder.name and command.at is None and command.yaw is None:
+        return changed(None, f"unchanged: {holder.name} holds {entity.name} already", names=(entity.name,))
+    grip = holding.grip(view.where(entity.name), view.where(holder.name), command.at, command.yaw)
+    pose = view.where(entity.name)
+    made = yield from commit(view, transactions.attach(command, holder.name, grip, pose and rounded(pose)))
+    if made is None:
+        return changed(None, f"unchanged: {holder.name} holds {entity.name} already", names=(entity.name,))
+    return changed(made, f"{holder.name} holds {entity.name}{_off(grip)}", names=(entity.name,))
+
+
+def _off(grip: Pose | None) -> str:
+    if grip is None:
+        return ""
+    return ", at ({:g}, {:g}, {:g}) in its frame".format(*(round(c, 3) + 0.0 for c in grip.position_m))
+
+
+@once
+def detach(view: KnownMap, command: Detach) -> Talk[Changed]:
+    """Let go of what something holds. Raises Refused for what nothing holds."""
+    entity = view.entity(command.name)
+    if not (by := holder_of(entity)):
+        raise errors.Refused(f"nothing holds {entity.name}")
+    pose = view.where(entity.name)
+    made = yield from commit(view, transactions.detach(command, pose and rounded(pose)))
+    at = "" if pose is None else f" at {_metres(rounded(pose))}"
+    return changed(made, f"{by} let go of {entity.name}{at}", names=(entity.name,))
+
+
+@once
 def remove(view: KnownMap, command: Remove) -> Talk[Changed]:
     """Take entities out: all of them, or, if one is unknown, none."""
     if not command.names:
         raise errors.BadRequest("name at least one entity to remove")
     leaving = [view.entity(name) for name in dict.fromkeys(command.names)]
     require_authority(command, leaving)
+    holding.require_empty_handed(command.names, view.held)
     return (yield from _take_out(view, command, f"remove {' '.join(e.name for e in leaving)}", leaving))
 
 

@@ -45,17 +45,17 @@ def once(change: Change[C]) -> Change[C]:
         try:
             changed = yield from change(view, command)
         except (errors.Refused, errors.BadRequest):
-            if done := (yield from _done_before(command)):
+            if done := (yield from done_before(command)):
                 return done
             raise
         if changed.commit is not None and changed.commit > known_seq:
             return changed
-        return (yield from _done_before(command)) or changed
+        return (yield from done_before(command)) or changed
 
     return execute
 
 
-def _done_before(command: Command) -> Talk[Changed | None]:
+def done_before(command: Command) -> Talk[Changed | None]:
     """The result of the command with this id, if there was one."""
     (commit,) = yield from ask(MadeBy(ids=(command.id,)))
     if commit is None:

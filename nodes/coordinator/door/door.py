@@ -11,7 +11,20 @@ from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.scene.hands import Hand, Hands
 from nodes.coordinator.scene.settled import Settled
 from nodes.coordinator.turns import Change
-from schemas.commands import Add, Clear, Command, Load, Remove, Set, Track, Undo, Unset, Update
+from schemas.commands import (
+    Add,
+    Attach,
+    Clear,
+    Command,
+    Detach,
+    Load,
+    Remove,
+    Set,
+    Track,
+    Undo,
+    Unset,
+    Update,
+)
 from schemas.replies import Changed
 
 _CHANGING: Mapping[type[Command], Callable[[KnownMap, Any], Talk[Changed]]] = {
@@ -20,6 +33,8 @@ _CHANGING: Mapping[type[Command], Callable[[KnownMap, Any], Talk[Changed]]] = {
     Set: changing.set_,
     Unset: changing.unset,
     Track: changing.track,
+    Attach: changing.attach,
+    Detach: changing.detach,
     Remove: changing.remove,
     Clear: changing.clear,
     Load: loading.load,

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Mapping
 from operator import attrgetter
 
 from nodes.coordinator.free_names import FreeNames
 from nodes.coordinator.free_places import FreePlaces
+from nodes.coordinator.holding import Where
 from nodes.runtime import map_replica
 from nodes.runtime.class_names import ClassNames
 from schemas import errors
 from schemas.commits import Effects, Snapshot
-from schemas.entities import Entity, Size, Vector
+from schemas.entities import Entity, Pose, Size, Vector
+from schemas.grips import holder_of
+from schemas.scenes import Body
 
 
 class KnownMap(map_replica.MapReplica[Effects]):
@@ -25,9 +28,19 @@ class KnownMap(map_replica.MapReplica[Effects]):
         self._places: dict[str, Entity] | None = None
         self.tracked: dict[str, Entity] = {}
         """The entities that are tracked, by name."""
+        self.held: dict[str, Entity] = {}
+        """The entities that others hold, by name."""
+        self.where: Where = self._said
+        """Where an entity is just now; whoever hears of bodies and live poses knows better than the map."""
+        self.bodies: Callable[[], Mapping[str, Body]] = dict
+        """The bodies of the scene, by name, if there is one."""
         self._names = FreeNames()
         self._floor: FreePlaces | None = None
         """Once somebody asked for a free place."""
+
+    def _said(self, name: str) -> Pose | None:
+        entity = self.entities.get(name)
+        return None if entity is None else entity.pose
 
     def free_name(self, class_name: str) -> str:
         """The first name that is free for an entity of a class."""
@@ -65,6 +78,7 @@ class KnownMap(map_replica.MapReplica[Effects]):
         self._names, self._floor = FreeNames(), None
         begun = super().begin(snapshot)
         self.tracked = {name: entity for name, entity in self.entities.items() if entity.tracked}
+        self.held = {name: entity for name, entity in self.entities.items() if holder_of(entity)}
         return begun
 
     def _apply(self, commit: Effects) -> None:
@@ -74,11 +88,16 @@ class KnownMap(map_replica.MapReplica[Effects]):
         self._names.freed(gone.name for gone in commit.removed)
         for gone in commit.removed:
             self.tracked.pop(gone.name, None)
+            self.held.pop(gone.name, None)
         for changed in commit.changed:
             if changed.tracked:
                 self.tracked[changed.name] = changed
             elif changed.name in self.tracked:
                 del self.tracked[changed.name]
+            if changed.grip_provenance is not None and holder_of(changed):
+                self.held[changed.name] = changed
+            elif changed.name in self.held:
+                del self.held[changed.name]
         if self._floor is not None:
             self._floor.touch(commit.names)
         if self._places is not None:

@@ -7,7 +7,10 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from functools import partial
 
+from msgspec import structs
+
 from nodes import bus
+from nodes.coordinator import holding
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.live.live_poses import Due, LivePoses
@@ -16,7 +19,8 @@ from nodes.coordinator.scene.settled import Settled
 from nodes.runtime.loop import Node
 from schemas import codec, errors, keys
 from schemas import live as messages
-from schemas.entities import Entity, Live, Pose, Source
+from schemas.entities import Entity, Live, Pose, Source, Tracking, rounded
+from schemas.grips import holder_of
 from schemas.replies import Changed
 
 _PERIOD_S = 0.1
@@ -44,6 +48,8 @@ class LiveFeed:
         self._poses = LivePoses(config.live, config.thresholds)
         self._under_way: set[str] = set()
         self._may_follow = config.truth != "replayed"
+        self._has_bodies = config.truth in ("map", "scene")
+        """Whether the bodies of the scene are where the map's entities are."""
         self._published: dict[str, tuple[Pose, int]] = {}
         self._published_s = 0.0
         self._stream = bus.Newest(node.session, keys.LIVE_POSE)
@@ -54,12 +60,43 @@ class LiveFeed:
         """The simulator has just told where bodies are."""
         self._scene_heard_s = time.monotonic()
 
+    def scene_age_s(self) -> float:
+        """How long ago the simulator told where bodies are [s]."""
+        return time.monotonic() - self._scene_heard_s
+
     def of(self, entity: Entity) -> Live | None:
         """Where a tracked entity is just now, if that was ever heard."""
         if not entity.tracked:
-            return None
+            return self._carried(entity)
         self._read()
         return self._poses.live(entity.name, time.monotonic())
+
+    def where(self, name: str) -> Pose | None:
+        """Where an entity is just now, by what is known best: live, its body, what holds it, or the map."""
+        return self._where(name, ())
+
+    def _where(self, name: str, above: tuple[str, ...]) -> Pose | None:
+        entity = self._map.entities.get(name)
+        if entity is None or name in above:
+            return None
+        live = self.of(entity) if entity.tracked else None
+        if live is not None and not live.stale:
+            return live.pose
+        body = self._scene.bodies.get(name) if self._has_bodies and self._scene.known else None
+        if body is not None and entity.tracked != "stream":
+            return body.pose
+        return holding.carried_pose(entity, lambda by: self._where(by, (*above, name))) or entity.pose
+
+    def _carried(self, entity: Entity) -> Live | None:
+        """Where a thing is that something holds: as new as is known of that."""
+        if not (by := holder_of(entity)) or (pose := self.where(entity.name)) is None:
+            return None
+        holder = self._map.entities.get(by)
+        known = self.of(holder) if holder is not None else None
+        if known is not None:
+            return structs.replace(known, pose=rounded(pose))
+        source: Tracking = "sim" if entity.name in self._scene.bodies and self._has_bodies else "stream"
+        return Live(pose=rounded(pose), stamp_ns=time.time_ns(), age_s=0.0, source=source)
 
     def problems(self) -> list[str]:
         """What is amiss with live poses, one sentence each."""
@@ -90,7 +127,7 @@ class LiveFeed:
         self._read()
         now_s = time.monotonic()
         for due in [*self._poses.due(self._map.tracked, now_s)]:
-            if due.name not in self._under_way and self._may_follow:
+            if due.name not in self._under_way and self._may_follow and due.name not in self._map.held:
                 self._commit(due)
         self._publish(now_s)
 
@@ -113,7 +150,13 @@ class LiveFeed:
 
     def _publish(self, now_s: float) -> None:
         current = self._poses.current(now_s)
-        told = {name: (live.pose, live.stamp_ns) for name, live in current.items()}
+        for name, entity in self._map.held.items():
+            if name not in current and (live := self._carried(entity)) is not None and not live.stale:
+                current[name] = live
+        told = {
+            name: (live.pose, live.stamp_ns if name not in self._map.held else 0)
+            for name, live in current.items()
+        }
         if told == self._published and (not told or now_s - self._published_s < _AT_LEAST_S):
             return
         self._published, self._published_s = told, now_s

@@ -4,7 +4,8 @@ It looks only at how things are, never at how they came to be, so it also mends 
 node was away. Who changed last wins: a body carries the number of the commit whose pose it was last ordered
 to take, an entity that of the commit which last changed its pose. If the map's is later, and did not itself
 come from the scene, the body is ordered there; otherwise a body that rests elsewhere was moved, and the map
-follows. The same goes for joints, by the commits that concern these.
+follows. The same goes for joints, and for what holds a body, by the commits that concern these; what is held
+is where its holder takes it, and neither is put anywhere nor followed.
 
 If only perception updates the map (`perceived`), nothing is to be done: an entity without a body is a belief,
 a body without an entity has not been seen yet, and a pose that differs will be seen. Only a robot of the
@@ -15,13 +16,14 @@ from the scene, and the map follows nothing.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
+from collections.abc import Container, Mapping, Set
 from typing import NamedTuple
 
 from nodes.coordinator.config import Thresholds, Truth
 from schemas.entities import Entity, Pose, angle_rad, distance_m
+from schemas.grips import grip_of, holder_of
 from schemas.joints import IS_OPEN, JOINT_POSITIONS, OPEN_FROM, OPENING, OPENNESS, Joint, openness, stated
-from schemas.scenes import Body, BodyOrder, JointOrder, Placement
+from schemas.scenes import Body, BodyOrder, GripOrder, JointOrder, Placement
 
 
 class Actions(NamedTuple):
@@ -40,6 +42,10 @@ class Actions(NamedTuple):
     """Bodies that become entities."""
     missing: tuple[str, ...] = ()
     """Entities that the scene should have and does not; nothing is done about them."""
+    grips: tuple[GripOrder, ...] = ()
+    """Bodies that are to be held, or let go, as the map says."""
+    gripped: tuple[str, ...] = ()
+    """Bodies of which the map takes over who holds them."""
 
 
 def reconcile(
@@ -48,6 +54,7 @@ def reconcile(
     truth: Truth,
     thresholds: Thresholds,
     failed: Mapping[str, int] | None = None,
+    there: Container[str] | None = None,
 ) -> Actions:
     """The actions that bring map and scene together; none when they agree.
 
@@ -61,8 +68,10 @@ def reconcile(
             follow=tuple(Placement(name=body.name, pose=body.pose) for body in moved),
             adopt=tuple(body for name, body in bodies.items() if body.robot and name not in entities),
         )
-    failed = failed or {}
+    failed, there = failed or {}, bodies if there is None else there
     delete, spawn, place, follow, joints, opened, adopt, missing = [], [], [], [], [], [], [], []
+    grips: list[GripOrder] = []
+    gripped: list[str] = []
     coming = {latest(e) for e in entities.values() if not (e.place or e.pose is None or e.name in bodies)}
     for name, entity in entities.items():
         body = bodies.get(name)
@@ -73,7 +82,9 @@ def reconcile(
             if body is None:
                 missing.append(name)
                 continue
-            if _moved(entity, body, thresholds):
+            if _is_held_otherwise(entity, body, thresholds):
+                gripped.append(name)
+            elif not body.held_by and _moved(entity, body, thresholds):
                 follow.append(Placement(name=name, pose=body.pose))
             if body.joints and body.resting and _stand_elsewhere(entity, body, thresholds):
                 opened.append(name)
@@ -84,7 +95,14 @@ def reconcile(
                     delete.append(name)
         else:
             replayed = truth == "replayed"
-            if _ordered_since(entity, body) or (replayed and _posed_since(entity, body)):
+            if _grip_ordered_since(entity, body, whoever=replayed):
+                if holder_of(entity) in there or not holder_of(entity):
+                    grips.append(grip_order(entity))
+            elif not replayed and _is_held_otherwise(entity, body, thresholds):
+                gripped.append(name)
+            if holder_of(entity) or (body.held_by and name in gripped):
+                pass  # where it is follows from what holds it
+            elif _ordered_since(entity, body) or (replayed and _posed_since(entity, body)):
                 assert entity.pose is not None
                 place.append(Placement(name=name, pose=entity.pose, commit=entity.pose_provenance.commit))
             elif not replayed and _moved(entity, body, thresholds):
@@ -108,6 +126,8 @@ def reconcile(
         tuple(opened),
         tuple(adopt),
         tuple(missing),
+        tuple(grips),
+        tuple(gripped),
     )
 
 
@@ -136,6 +156,36 @@ def joint_order(entity: Entity, body: Body, thresholds: Thresholds) -> JointOrde
         name=entity.name,
         positions=_wanted(entity, body) if _stand_elsewhere(entity, body, thresholds) else {},
         commit=said.commit if said is not None else entity.provenance.commit,
+    )
+
+
+def grip_order(entity: Entity) -> GripOrder:
+    """What an entity wants its body to be held by: another body, or none."""
+    said = entity.grip_provenance or entity.provenance
+    return GripOrder(name=entity.name, holder=holder_of(entity), grip=grip_of(entity), commit=said.commit)
+
+
+def _grip_ordered_since(entity: Entity, body: Body, *, whoever: bool = False) -> bool:
+    """Has the map said since what holds it? So it has where nobody has told the body yet."""
+    said = entity.grip_provenance
+    if said is None:
+        return False
+    if body.grip_commit < 0:
+        return bool(holder_of(entity))
+    return (whoever or said.source != "scene") and said.commit > body.grip_commit
+
+
+def _is_held_otherwise(entity: Entity, body: Body, thresholds: Thresholds) -> bool:
+    """Is a body held by something else than the map says, or otherwise?"""
+    if body.held_by != holder_of(entity):
+        return True
+    if body.grip is None:
+        return False
+    said = grip_of(entity)
+    return (
+        said is None
+        or distance_m(said, body.grip) > thresholds.distance_m
+        or angle_rad(said, body.grip) > thresholds.angle_rad
     )
 
 

@@ -15,7 +15,7 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
-from nodes.coordinator.scene.reconcile import Actions, joint_order, latest, order, reconcile
+from nodes.coordinator.scene.reconcile import Actions, grip_order, joint_order, latest, order, reconcile
 from nodes.coordinator.scene.scene_view import SceneView
 from nodes.coordinator.scene.settled import Settled
 from nodes.coordinator.scene.spawn_batches import batches
@@ -23,6 +23,7 @@ from schemas import errors, wording
 from schemas.calls import Call
 from schemas.commands import Add
 from schemas.entities import BodyState, Entity, rounded
+from schemas.grips import holder_of
 from schemas.joints import openness
 from schemas.replies import Changed
 from schemas.scenes import (
@@ -30,6 +31,9 @@ from schemas.scenes import (
     Body,
     BodyOrder,
     Delete,
+    Grip,
+    GripOrder,
+    Gripped,
     JointOrder,
     MoveBodies,
     MoveJoints,
@@ -94,6 +98,8 @@ class Keeping:
         self._following: set[str] = set()  # bodies that the map is about to follow, or to take in
         self._put_back: dict[str, Placement] = {}  # bodies that the map did not follow
         self._shut_again: dict[str, JointOrder] = {}  # those whose joints it did not follow
+        self._regrip: dict[str, GripOrder] = {}  # those whose holder it did not take over
+        self._ungripped: dict[str, tuple[int, str]] = {}  # what the scene could not have held, and why
         self._unsaid: set[str] = set()  # bodies of whose joints the map has no way to speak
 
     def on_poses(self, poses: Poses) -> None:
@@ -120,11 +126,13 @@ class Keeping:
         for group in self._to_follow(actions.follow):
             self._follow(group)
         self._follow_joints(actions.opened)
+        self._follow_grips(actions.gripped)
         for body in actions.adopt:
             self._adopt(body)
         refused, self._put_back = self._put_back, {}
         shut, self._shut_again = self._shut_again, {}
-        steps = self._orders(actions, [*refused.values()], [*shut.values()])
+        grips, self._regrip = self._regrip, {}
+        steps = self._orders(actions, [*refused.values()], [*shut.values()], [*grips.values()])
         if steps:
             self._start(steps)
 
@@ -140,7 +148,14 @@ class Keeping:
         entities, bodies = self._door.map.entities, self.scene.bodies
         if names is not None:
             entities, bodies = _only(names, entities), _only(names, bodies)
-        return reconcile(entities, bodies, self._config.truth, self._config.thresholds, failed)
+        there = self.scene.bodies
+        wanted = reconcile(entities, bodies, self._config.truth, self._config.thresholds, failed, there)
+        if self._ungripped:
+            tried = {name: commit for name, (commit, _) in self._ungripped.items()}
+            wanted = wanted._replace(
+                grips=tuple(order for order in wanted.grips if tried.get(order.name) != order.commit)
+            )
+        return wanted
 
     def in_agreement(self) -> bool | None:
         """Map and scene are the same, and nothing is under way; None when there is nothing to keep."""
@@ -151,7 +166,8 @@ class Keeping:
         return (
             self._door.map.is_confirmed
             and not self._busy
-            and not (any(wanted[:5]) or not self._unsaid.issuperset(wanted.opened))
+            and not (any(wanted[:5]) or wanted.grips or wanted.gripped)
+            and bool(self._unsaid.issuperset(wanted.opened))
             and not (foreign or wanted.missing)
         )
 
@@ -160,7 +176,9 @@ class Keeping:
         if self._config.truth == "perceived" or name in self._unsaid:
             return True
         wanted = self.wanted((name,))
-        return name not in self._following and not (wanted.follow or wanted.opened or wanted.joints)
+        return name not in self._following and not (
+            wanted.follow or wanted.opened or wanted.joints or wanted.grips or wanted.gripped
+        )
 
     def place_all(self) -> Future[Any]:
         """Put every body back where the map says it stands; those that could not be made are tried again.
@@ -175,6 +193,7 @@ class Keeping:
             Placement(name=e.name, pose=e.pose, commit=e.pose_provenance.commit)
             for e in self._door.map.entities.values()
             if e.pose is not None and e.name in self.scene.bodies
+            if not (holder_of(e) or self.scene.bodies[e.name].held_by)
         )
         bodies, entities = self.scene.bodies, self._door.map.entities
         jointed = [name for name, body in bodies.items() if body.joints and name in entities]
@@ -221,6 +240,11 @@ class Keeping:
         )
         seen = sorted(f"{e.name}: perception: {e.conflict}" for e in entities if e.conflict)
         foreign = sorted((name, why) for name, why in self._foreign.items() if name in self.scene.bodies)
+        amiss += sorted(
+            f"{name}: is not held in the scene as the map says: {reason}"
+            for name, (commit, reason) in self._ungripped.items()
+            if (e := self._door.map.entities.get(name)) is not None and grip_order(e).commit == commit
+        )
         return (
             amiss
             + seen
@@ -252,11 +276,16 @@ class Keeping:
             ' (to have one, add <text name="semmap:BODY" data="CLASS"/>)'
         ]
 
-    def _orders(self, actions: Actions, refused: list[Placement], shut: list[JointOrder]) -> list[Step[Any]]:
+    def _orders(
+        self, actions: Actions, refused: list[Placement], shut: list[JointOrder], regrip: list[GripOrder]
+    ) -> list[Step[Any]]:
         steps: list[Step[Any]] = []
         if actions.delete:
             steps.append(Step(Delete(names=actions.delete), lambda _: None))
         steps.extend(self._spawning(batch) for batch in batches(actions.spawn))
+        grips = (*actions.grips, *regrip)
+        if grips:
+            steps.append(Step(Grip(orders=grips), partial(self._was_gripped, grips)))
         placements = (*actions.place, *refused)
         if placements:
             steps.append(Step(MoveBodies(placements=placements), self._placed))
@@ -268,6 +297,12 @@ class Keeping:
     def _spawning(self, batch: tuple[BodyOrder, ...]) -> Step[Spawned]:
         tried = {order.name: order.commit for order in batch}
         return Step(Spawn(bodies=batch), partial(self._spawned, tried))
+
+    def _was_gripped(self, orders: Sequence[GripOrder], reply: Gripped) -> None:
+        for asked in orders:
+            self._ungripped.pop(asked.name, None)
+            if asked.name in reply.failed and asked.commit is not None:
+                self._ungripped[asked.name] = (asked.commit, reply.failed[asked.name])
 
     def _start(self, steps: list[Step[Any]]) -> None:
         self._busy = True
@@ -369,6 +404,38 @@ class Keeping:
         elif (entity := self._door.map.entities.get(name)) is not None:
             self._report(f"{name} was put back as it stood, because the map rejected how it stands: {error}")
             self._shut_again[name] = joint_order(entity, self.scene.bodies[name], self._config.thresholds)
+
+    def _follow_grips(self, names: Sequence[str]) -> None:
+        """Let the map take over who holds bodies, and where they were taken or put."""
+        entities = self._door.map.entities
+        for name in names:
+            body = self.scene.bodies[name]
+            if name in self._following or name in self._unsaid or name in self._regrip:
+                continue
+            if body.held_by and body.held_by not in entities:
+                continue  # what holds it is no entity yet
+            told = (
+                f"was taken by {body.held_by}"
+                if body.held_by
+                else f"was let go by {holder_of(entities[name])}"
+            )
+            settled = Settled.of(
+                entities,
+                {name: rounded(body.pose)},
+                reason=f"{name} {told} in the scene",
+                grips={name: (body.held_by, body.grip)},
+            )
+            self._change_about((name,), settled, partial(self._grip_not_followed, name))
+
+    def _grip_not_followed(self, name: str, error: BaseException) -> None:
+        if isinstance(error, errors.BadRequest):  # a TBox without these properties
+            self._unsaid.add(name)
+            log.warning("the map does not say what holds %s: %s", name, error)
+        elif not isinstance(error, errors.Refused):
+            self._report(f"the map cannot take over what holds {name} yet: {error}")
+        elif (entity := self._door.map.entities.get(name)) is not None:
+            self._report(f"{name} is held as before, because the map rejected what holds it: {error}")
+            self._regrip[name] = grip_order(entity)
 
     def _adopt(self, body: Body) -> None:
         """Let a body of the scene become an entity."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
+from nodes.coordinator.transactions import gripped
 from schemas.commits import Edit, Statement
 from schemas.entities import Entity, Pose, Source
 from schemas.joints import IS_OPEN, JOINT_POSITIONS, OPEN_FROM, OPENNESS, Joint, openness, positions_text
@@ -18,14 +19,16 @@ class Settled(NamedTuple):
 
     poses: Mapping[str, Pose]
     """By name; map frame, metres."""
-    after: Mapping[str, tuple[int, int]]
-    """By name, the commits that the entity's pose and joints were from when it was looked at; -1 for none.
+    after: Mapping[str, tuple[int, int, int]]
+    """By name, the commits that pose, joints and grip of the entity were from when looked at; -1 for none.
 
     An entity of which they are from others by now stays as it is."""
     joints: Mapping[str, tuple[Joint, ...]] = MappingProxyType({})
     """By name, the joints of a body as they stand."""
 
     source: Source = "scene"
+    grips: Mapping[str, tuple[str, Pose | None]] = MappingProxyType({})
+    """By name, what holds a body, and where in the frame of that; "" for nothing."""
     reason: str = ""
     """Why the map takes them over; without one they came to rest, or a hand put them there."""
 
@@ -37,15 +40,16 @@ class Settled(NamedTuple):
         joints: Mapping[str, tuple[Joint, ...]] = MappingProxyType({}),
         source: Source = "scene",
         reason: str = "",
+        grips: Mapping[str, tuple[str, Pose | None]] = MappingProxyType({}),
     ) -> Settled:
-        """These entities are at `poses`, and `joints` stand as they do."""
-        after = {name: said_by(entities[name]) for name in {**poses, **joints}}
-        return cls(poses, after, joints, source, reason)
+        """These entities are at `poses`, `joints` stand as they do, and `grips` hold what they hold."""
+        after = {name: said_by(entities[name]) for name in {**poses, **joints, **grips}}
+        return cls(poses, after, joints, source, grips, reason)
 
     @property
     def names(self) -> tuple[str, ...]:
         """The entities that it is about."""
-        return tuple({**self.poses, **self.joints})
+        return tuple({**self.poses, **self.joints, **self.grips})
 
     def edits(self, entities: Mapping[str, Entity]) -> list[Edit]:
         """What is to change of the entities that nobody has moved, opened or removed meanwhile."""
@@ -57,11 +61,13 @@ class Settled(NamedTuple):
 
     def _edit(self, name: str) -> Edit:
         pose, joints = self.poses.get(name), self.joints.get(name, ())
+        holder, grip = self.grips.get(name, (None, None))
         return Edit(
             name=name,
             at=None if pose is None else pose.position_m,
             orientation=None if pose is None else pose.orientation_wxyz,
-            set=statements(joints),
+            unset=gripped("", None) if holder == "" else (),
+            set=(*statements(joints), *(gripped(holder, grip) if holder else ())),
         )
 
 
@@ -81,12 +87,13 @@ def statements(joints: tuple[Joint, ...]) -> tuple[Statement, ...]:
     )
 
 
-def said_by(entity: Entity) -> tuple[int, int]:
-    """The commits that an entity's pose and its joints are from; -1 for what it has not."""
-    joints = entity.joint_provenance
+def said_by(entity: Entity) -> tuple[int, int, int]:
+    """The commits that an entity's pose, its joints and its grip are from; -1 for what it has not."""
+    joints, grip = entity.joint_provenance, entity.grip_provenance
     return (
         -1 if entity.pose is None else entity.pose_provenance.commit,
         -1 if joints is None else joints.commit,
+        -1 if grip is None else grip.commit,
     )
 
 

@@ -178,6 +178,11 @@ def vector_option(*names: str, **options: Any) -> Callable[[Any], Any]:
     return click.option(*names, nargs=3, type=float, **options)
 
 
+def frame_option(what: str) -> Callable[[Any], Any]:
+    """In which frame positions are given or told."""
+    return click.option("--frame", metavar="NAME", help=f"{what}; see: semmap frames.")
+
+
 def carrying(function: Callable[..., None]) -> Callable[..., None]:
     """The options of a verb that moves a thing with what is on it."""
     leave = click.option(

@@ -76,9 +76,7 @@ def layout(page: Page) -> None:
         _away(page)
         centre = _Tabs(page, CENTRE, "Views")
         centre.draw()
-        with centre.containers["Scene"].classes("semmap-scene"):
-            if page.draw_scene is not None:
-                page.draw_scene()
+        stage = centre.containers["Scene"].classes("semmap-scene")
         with ui.element("div").classes("semmap-time"):
             timeline(page)
 
@@ -90,12 +88,21 @@ def layout(page: Page) -> None:
         _header(page, left, right, dark, open_add)
     _keys(page)
     _look(page, left, right)
+    page.on_look(lambda: _begin_scene(page, stage))
     ui.timer(0.05, lambda: _ready(page), once=True)
 
 
 def _ready(page: Page) -> None:
-    """Everything is drawn: whoever waits for that, such as a test, sees it."""
+    """Everything but the scene is drawn: whoever waits for that, such as a test, sees it."""
     page.client.run_javascript("semmapStart(); document.body.classList.add('semmap-ready')")
+
+
+def _begin_scene(page: Page, stage: ui.element) -> None:
+    """The scene begins when the browser has drawn the rest, for both are drawn on the same thread there."""
+    draw, page.draw_scene = page.draw_scene, None
+    if draw is not None:
+        with stage:
+            draw()
 
 
 def _header(

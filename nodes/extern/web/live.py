@@ -1,7 +1,8 @@
 """What the page's process knows of the map, the scene and the nodes, as they are now.
 
 A node of its own follows them on a thread of its own; what is new it hands over to the event loop of the
-page, at most ten times a second. The event loop owns all that `Live` shows, and never waits for the system.
+page: at once after a pause, and at most ten times a second. The event loop owns all that `Live` shows,
+and never waits for the system.
 """
 
 from __future__ import annotations
@@ -269,7 +270,7 @@ class _Following:
         self._node = node
         self._hand_over = hand_over
         self._news = _News()
-        self._is_new = False
+        self._is_due = False
         self._replica = MapReplica[Commit]()
         self._map_id = ""
         self._classes: tuple[ClassInfo, ...] = ()
@@ -279,26 +280,32 @@ class _Following:
         self._fetching_scene = False
         self._poses_s = 0.0
         self._kb_s = 0.0
+        self._told_s = 0.0
         classes_at = keys.CMD if secure else keys.BRIDGE
         Follower(
             node, self._replica, keys.COMMIT, heard=self._on_commit, begun=self._on_map, classes_at=classes_at
         )
         node.follow(keys.HEALTH, self._on_health)
         node.follow_newest(keys.POSES, self._on_poses)
-        node.every(PERIOD_S, self._tell)
         node.every(0.5, self._look)
 
+    def _notice(self) -> None:
+        """There is something new: it is told at once, or with what else comes before it is time again."""
+        if not self._is_due:
+            self._is_due = True
+            self._node.later(self._told_s + PERIOD_S - time.monotonic(), self._tell)
+
     def _tell(self) -> None:
-        if self._is_new:
-            news, self._news, self._is_new = self._news, _News(), False
-            self._hand_over(news)
+        self._is_due, self._told_s = False, time.monotonic()
+        news, self._news = self._news, _News()
+        self._hand_over(news)
 
     # The map
 
     def _on_commit(self, commit: Commit, known: bool) -> None:
         if known and self._is_told:
             self._news.commits.append(commit)
-            self._is_new = True
+            self._notice()
 
     def _on_map(self, begun: Begun) -> None:
         """Which map is it? It is told when that is known."""
@@ -313,7 +320,7 @@ class _Following:
         self._node.ask_later(keys.BRIDGE, CopyQuery(content=False)).add_done_callback(on_copy)
 
     def _begin(self) -> None:
-        self._is_told = self._is_new = True
+        self._is_told = True
         self._news.commits.clear()
         self._news.begun = _Map(
             map_id=self._map_id,
@@ -329,11 +336,11 @@ class _Following:
         if health.node == "kb_node":
             self._kb_s = time.monotonic()
         self._news.health[health.node] = health
-        self._is_new = True
+        self._notice()
 
     def _look(self) -> None:
         self._news.why_not = self._why_not()
-        self._is_new = True
+        self._notice()
         if self._scene.known and time.monotonic() - self._poses_s > _SCENE_LOST_S:
             self._scene = SceneState()
             self._news.scene, self._news.moved = _Bodies(now=None), {}
@@ -359,7 +366,7 @@ class _Following:
             self._news.moved.update(moved)
             bodies = (self._scene.bodies[name] for name in moved)
             self._news.bends.update((body.name, bends_of(body.joints)) for body in bodies if body.joints)
-            self._is_new = True
+            self._notice()
 
     def _fetch_scene(self) -> None:
         if self._fetching_scene:
@@ -372,6 +379,6 @@ class _Following:
                 self._scene.take(future.result())
                 self._news.scene, self._news.moved = _Bodies(now=future.result()), {}
                 self._news.bends.clear()
-                self._is_new = True
+                self._notice()
 
         self._node.ask_later(keys.SIM, SceneQuery()).add_done_callback(on_scene)

@@ -57,7 +57,7 @@ class Page:
         self.watch: Callable[[str, bool], object] | None = None
         """Watches a query, with what follows or without; set by the panel of standing queries."""
         self.draw_scene: Callable[[], None] | None = None
-        """Draws the scene with its switches where it is called; set by the scene."""
+        """Draws the scene with its switches where it is called, once; set by the scene."""
         self.pick: Callable[[], Awaitable[Place | None]] | None = None
         """Lets a person point at a place; set by the scene."""
         self.break_off: Callable[[], bool] | None = None

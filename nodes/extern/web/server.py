@@ -97,7 +97,15 @@ def _serve(
         layout(page)
 
     logging.getLogger("uvicorn.error").addFilter(_is_news)
-    ui.run_with(app, title="semmap", dark=None, show_welcome_message=False, reconnect_timeout=30.0)
+    ui.run_with(
+        app,
+        title="semmap",
+        dark=None,
+        tailwind=False,  # it works out styles in the browser; page.css has those that are used
+        gzip_middleware_factory=None,  # it takes longer than to send it within this machine
+        show_welcome_message=False,
+        reconnect_timeout=30.0,
+    )
     uvicorn.Server(_uvicorn(Access(app, config.host, port, token))).run(sockets=[listening])
 
 

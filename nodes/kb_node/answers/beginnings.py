@@ -24,6 +24,7 @@ from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
 from ontology.model_shapes import own_size_m
 from schemas.entities import Entity, Pose, Size, Stated
+from schemas.grips import IS_GRASPED_BY
 from schemas.polygons import EXTENT
 
 _MARGIN_M = 1.5
@@ -44,6 +45,7 @@ class _Stood(Struct, frozen=True):
     @property
     def placed(self) -> Placed:
         stated = self.properties.get(EXTENT) if self.place else None
+        held_by = self.properties.get(IS_GRASPED_BY)
         return Placed(
             name=self.name,
             iri=self.iri,
@@ -52,6 +54,7 @@ class _Stood(Struct, frozen=True):
             place=self.place,
             model=self.model,
             extent=stated if isinstance(stated, str) else "",
+            held_by=held_by if isinstance(held_by, str) else "",
         )
 
 

@@ -34,7 +34,7 @@ class LiveEntities:
 
     @contextmanager
     def supposed(self) -> Iterator[None]:
-        """Within, tracked entities are where they are just now, and everything else where the map says."""
+        """Within, what is tracked or held is where it is just now, and everything else where the map says."""
         elsewhere = list(self._elsewhere())
         if not elsewhere:
             yield
@@ -47,7 +47,7 @@ class LiveEntities:
             return
         for name, live in self._live.items():
             entity = self._map.find(name)
-            if entity is not None and entity.tracked and _differs(entity, live):
+            if entity is not None and (entity.tracked or entity.grip_provenance) and _differs(entity, live):
                 yield structs.replace(entity, pose=live.pose)
 
 

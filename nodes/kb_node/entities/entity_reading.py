@@ -18,6 +18,7 @@ from schemas import errors, polygons
 from schemas.commits import Star
 from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
 from schemas.explanations import Term, Triple
+from schemas.grips import GRASPING
 from schemas.joints import OPENING
 
 _NAME = re.compile(NAME_PATTERN)
@@ -144,6 +145,7 @@ def entity_of(
         tracked=tracked,
         properties=properties or {},
         joint_provenance=provenance if properties and not properties.keys().isdisjoint(OPENING) else None,
+        grip_provenance=provenance if properties and not properties.keys().isdisjoint(GRASPING) else None,
         place=kind.place,
         fixed=kind.fixed,
         model=kind.model,
@@ -175,6 +177,7 @@ def read_again(reasoner: Reasoner, classes: ClassTable, known: Entity) -> Entity
         shape_provenance=known.shape_provenance,
         reference_provenance=known.reference_provenance,
         joint_provenance=entity.joint_provenance and known.joint_provenance,
+        grip_provenance=known.grip_provenance or entity.grip_provenance,
     )
 
 
@@ -201,6 +204,9 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
     same_joints = not (entity.joint_provenance or known.joint_provenance) or all(
         entity.properties.get(name) == known.properties.get(name) for name in OPENING
     )
+    same_grip = not (entity.grip_provenance or known.grip_provenance) or all(
+        entity.properties.get(name) == known.properties.get(name) for name in GRASPING
+    )
     return structs.replace(
         entity,
         provenance=said if concerned else known.provenance,
@@ -208,6 +214,7 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
         shape_provenance=known.shape_provenance if same_shape else said,
         reference_provenance=known.reference_provenance if same_references else said,
         joint_provenance=known.joint_provenance if same_joints else said,
+        grip_provenance=known.grip_provenance if same_grip else said,
     )
 
 

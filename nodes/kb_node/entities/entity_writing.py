@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from nodes.kb_node.entities import aligned, entity_reading, opening
+from nodes.kb_node.entities import aligned, entity_reading, gripping, opening
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.entity_reading import Objects
 from nodes.kb_node.entities.property_table import Property
@@ -166,6 +166,7 @@ class Draft:
             new = [term for term in terms if not any(same(k, term) for k in known)]
             left[prop.iri] = [*([] if prop.functional and new else known), *new]
         left.update(opening.implied(left, said))
+        left.update(gripping.implied(left, said))
         for property_, now in left.items():
             before = said.get(property_, ())
             self._go((iri, property_, term) for term in before if term not in now)

@@ -9,18 +9,21 @@ from typing import Final, NamedTuple
 
 from nodes.kb_node.relations.facts.beside import are_near
 from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from nodes.kb_node.relations.measuring import measures
 from nodes.kb_node.relations.measuring.space import Space
 from schemas import errors, wording
-from schemas.entities import Entity
-from schemas.relations import Where
+from schemas.entities import Entity, Pose, Size
+from schemas.relations import Where, position_in
 
+_POINT: Final[Size] = (1e-6, 1e-6, 1e-6)
+"""The size of a position [m], which is to have none."""
 _ARTICLES: Final = frozenset(("the", "a", "an", "il", "lo", "la", "i", "gli", "le", "un", "uno", "una"))
 
 
 class Meant(NamedTuple):
-    """The names of those that the words of a `Where` mean; None where there is no word."""
+    """The names of those that the words of a `Where` mean; None where there is no word, or a position."""
 
     on: frozenset[str] | None
     in_: frozenset[str] | None
@@ -51,6 +54,10 @@ def require_whole(where: Where) -> None:
     if where.within is not None and where.near is None and where.to is None:
         raise errors.BadRequest(
             "within (--within) goes with something to be within reach of: near (--near NAME)"
+        )
+    if where.near is not None and where.within is None and position_in(where.near) is not None:
+        raise errors.BadRequest(
+            f"say how far from there: --near {where.near} --within M (only things are near without that)"
         )
     if (where.nearest is None) != (where.to is None):
         raise errors.BadRequest("nearest and to (--nearest N, --to NAME) go together: the N nearest to NAME")
@@ -126,20 +133,34 @@ def chosen(
     if those.in_ is not None:
         holders = those.in_
         found = [e for e in found if is_in(space, space.solids[e.name], holders, left_out)]
-    if those.near is not None:
-        others = [space.solids[name] for name in those.near if name in space.solids]
+    if (others := _ends(space, where.near, those.near)) is not None:
         is_near = _within(where.within) if where.within is not None else partial(are_near, space)
         found = [
             e for e in found if any(is_near(space.solids[e.name], o) for o in others if o.name != e.name)
         ]
-    if those.to is not None and where.nearest is not None:
-        found = _nearest(space, found, those.to, where)
+    if (targets := _ends(space, where.to, those.to)) is not None and where.nearest is not None:
+        found = _nearest(space, found, targets, where)
     return found
+
+
+def _ends(space: Space, word: str | None, names: Iterable[str] | None) -> list[Solid] | None:
+    """Those that a word means and that have a position, by name; or a point at the position that it is."""
+    if word is not None and (at := position_in(word)) is not None:
+        point = Placed(name="", iri="", pose=Pose(position_m=at), size_m=_POINT, place=False, model="")
+        return [found] if (found := solid_of(point)) is not None else []
+    if names is None:
+        return None
+    return [space.solids[name] for name in sorted(names) if name in space.solids]
 
 
 def resolved(where: Where, everyone: Sequence[Entity]) -> Meant:
     """Whom the words mean. Raises UnknownName."""
-    return Meant(*(None if word is None else meant(everyone, word) for word in where.words))
+    on, in_, near, to = where.words
+    return Meant(
+        None if on is None else meant(everyone, on),
+        None if in_ is None else meant(everyone, in_),
+        *(None if word is None or position_in(word) else meant(everyone, word) for word in (near, to)),
+    )
 
 
 def meant(everyone: Sequence[Entity], word: str) -> frozenset[str]:
@@ -216,9 +237,9 @@ def _within(metres: float) -> Callable[[Solid, Solid], bool]:
     return lambda solid, other: not solid.is_place and measures.gap(solid, other) <= metres
 
 
-def _nearest(space: Space, found: list[Entity], to: Set[str], where: Where) -> list[Entity]:
+def _nearest(space: Space, found: list[Entity], targets: list[Solid], where: Where) -> list[Entity]:
     """By the distance of the boxes; places do not count as near to anything."""
-    targets = [space.solids[name] for name in sorted(to) if name in space.solids]
+    to = {target.name for target in targets}
     if not targets:
         raise errors.Refused(f"{where.to} has no position")
     distance: dict[str, float] = {}

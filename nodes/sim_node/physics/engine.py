@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
 import mujoco
 import numpy as np
@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_of
 from nodes.sim_node.models.library import Model
-from nodes.sim_node.physics import base_scene, body_slots, build, sleep
+from nodes.sim_node.physics import base_scene, body_slots, build, grips, sleep
 from nodes.sim_node.physics.body_slots import Berth
 from nodes.sim_node.physics.drives import STEPS_A_PUSH, Drives
 from nodes.sim_node.physics.rest import JointWatch, RestWatch
 from nodes.sim_node.placement.obstacles import Stage
 from nodes.sim_node.robots.courses import Courses
 from nodes.sim_node.vision.view import View
-from schemas.entities import Pose
+from schemas.entities import Pose, compose
 
 _STEPS_A_LOOK = 25
 
@@ -91,6 +91,10 @@ class Engine:
         """Take bodies out."""
         own = [name for name in names if name not in self._shapes]
         jointed = any(self._shapes[name].leaves for name in names if name in self._shapes)
+        jointed = grips.concerned(names, self.records) or jointed
+        for record in self.records.values():
+            if record.held_by in names:
+                record.held_by, record.grip, record.grip_commit = "", None, -1
         for name in names:
             self._drives.stop(self.records[name].joint_names)
             self._leave(name)
@@ -119,6 +123,23 @@ class Engine:
             )
             self.data.qvel[dof : dof + 6] = 0.0
             self.data.qacc_warmstart[dof : dof + 6] = 0.0
+
+    def grip(self, names: Collection[str]) -> None:
+        """Have bodies held, or let go, as their records say now; who is held goes where it is held."""
+        poses = self.poses()
+        self._recompile({name: pose_of(poses[self.index.row[name]]) for name in names})
+        self.carry(names)
+
+    def carry(self, names: Collection[str]) -> None:
+        """Put bodies, and all that these hold, where they are held."""
+        for record in grips.held(self.records):
+            above = grips.chain(record.name, self.records)
+            if record.static or record.grip is None or not {record.name, *above} & set(names):
+                continue
+            mujoco.mj_kinematics(self.model, self.data)
+            holder = pose_of(self.poses()[self.index.row[record.held_by]])
+            self.put({record.name: compose(holder, record.grip)})
+        mujoco.mj_kinematics(self.model, self.data)
 
     def drive(self, name: str, targets: Mapping[str, float]) -> None:
         """Begin to move joints of a body, by their own names, to these positions [rad, m]."""
@@ -159,7 +180,7 @@ class Engine:
         """Give each of these bodies a berth at its pose; compile anew if there are not enough."""
         for name in poses:
             self._leave(name)
-        enough = len(poses) <= len(self._vacant)
+        enough = len(poses) <= len(self._vacant) and not grips.concerned(poses, self.records)
         if enough and all(self._moor(name, pose) for name, pose in poses.items()):
             self._renew()
         else:
@@ -235,6 +256,7 @@ class Engine:
         for name, record in self.records.items():
             if record.static and not record.anchored and name not in self._shapes:
                 build.set_standing(spec, record, poses[name])
+        grips.add_grips(spec, self.records)
         build.set_memory(spec, len(self.records) + len(spares))
         return spec.compile(), spares
 

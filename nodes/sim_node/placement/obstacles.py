@@ -27,7 +27,7 @@ _FLAT = (
 class Stage:
     """The felt geoms of a scene at one moment. Rows are those of the index; `GROUND` is the world itself.
 
-    `standing` (N,) tells who counts as an obstacle.
+    `standing` (N,) tells who counts as an obstacle: not who is held, and makes way with what holds it.
     """
 
     def __init__(
@@ -35,7 +35,7 @@ class Stage:
     ) -> None:
         self._model, self._data, self._index = model, data, index
         self._records = [records[name] for name in index.names]
-        self.standing = np.array([not record.ghost for record in self._records], dtype=bool)
+        self.standing = np.array([not (r.ghost or r.held_by) for r in self._records], dtype=bool)
         self._bottoms = index.poses(data)[:, :3]
         rows = np.full(model.nbody, GROUND)
         rows[index.body] = np.arange(len(index.names))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -52,9 +52,24 @@ class Settling:
         self.version += bool(ghosts)
         engine.hold({name: poses[name] for name in poses if name in ghosts or engine.records[name].fixed})
         engine.put({name: pose for name, pose in poses.items() if not engine.records[name].static})
+        engine.carry(poses)
         self._find_room(poses)
+        engine.carry(poses)
         engine.wake({*disturbed, *poses})
         self._free_ghosts(disturbed)
+
+    def grip(self, names: Collection[str]) -> None:
+        """Bodies are held from now on, or let go, as their records say; what they touched takes notice."""
+        engine = self._engine
+        disturbed = self._neighbours(names)
+        for name in names:
+            engine.records[name].ghost = False
+        engine.grip(names)
+        self._find_room(name for name in names if not engine.records[name].held_by)
+        engine.disturb([engine.index.row[name] for name in names])
+        engine.wake({*disturbed, *names, *(engine.records[name].held_by for name in names)})
+        self._free_ghosts(disturbed)
+        self.version += 1
 
     def step(self, duration_s: float) -> None:
         """Let time pass; ghosts near whom something moved are looked at again when all rests."""
@@ -72,7 +87,7 @@ class Settling:
     def _find_room(self, names: Iterable[str]) -> None:
         """Lift those of these bodies that can be lifted; what has no room is a ghost, all else solid."""
         engine = self._engine
-        rows = [engine.index.row[name] for name in names]
+        rows = [engine.index.row[name] for name in names if not engine.records[name].held_by]
         stage, poses = engine.stage(), engine.poses()
         turned: dict[str, Pose] = {}
         for row, placed in place(stage, rows).items():

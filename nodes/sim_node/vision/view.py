@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from nodes.sim_node.bodies import Floats
+from nodes.sim_node.bodies import Floats, pose_of
+from schemas.entities import Pose
 from schemas.errors import BadRequest
 
 OPTICAL = np.diag([1.0, -1.0, -1.0])  # MuJoCo's cameras look along -z with y up
@@ -46,6 +47,13 @@ def camera_view(model: mujoco.MjModel, data: mujoco.MjData, camera: str, width: 
     pose[:3, :3] = data.cam_xmat[number].reshape(3, 3) @ OPTICAL
     pose[:3, 3] = data.cam_xpos[number]
     return View(width, height, pinhole(width, height, float(np.radians(model.cam_fovy[number]))), pose)
+
+
+def optical_pose(data: mujoco.MjData, number: int) -> Pose:
+    """Where a camera is: its optical frame in the map's."""
+    quaternion = np.empty(4)
+    mujoco.mju_mat2Quat(quaternion, (data.cam_xmat[number].reshape(3, 3) @ OPTICAL).ravel())
+    return pose_of(np.concatenate([data.cam_xpos[number], quaternion]))
 
 
 def camera_names(model: mujoco.MjModel) -> tuple[str, ...]:

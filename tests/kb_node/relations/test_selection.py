@@ -47,6 +47,17 @@ def test_near_within_and_nearest():
     assert names(nearest=9, to="lamp2", within=1.0) == []
 
 
+def test_near_and_nearest_to_a_position():
+    assert names(near="2,2,0", within=0.5) == ["lamp1"]
+    assert names(near="-9,-9,0", within=0.5) == []
+    assert names(nearest=1, to="9.5,9,0") == ["lamp2"]
+    assert names(nearest=9, to="2,2,0", within=0.0001) == ["lamp1"]
+    with pytest.raises(errors.BadRequest, match="--near 2,2,0 --within M"):
+        names(near="2,2,0")
+    with pytest.raises(errors.BadRequest, match="too far away"):
+        names(near="20000,0,0", within=1.0)
+
+
 def test_all_that_is_asked_must_hold():
     assert names(on="table1", near="cup2", within=0.02) == []
     assert names(on="kitchen table", in_="kitchen") == names(on="table1")

@@ -14,7 +14,7 @@ from nodes.sim_node.robots.robot import SHIPPED
 from nodes.sim_node.vision.view import camera_names, camera_view
 from nodes.sim_node.world_file import open_world
 from ontology import FLAT_WORLD
-from schemas.entities import Pose
+from schemas.entities import Pose, compose
 from schemas.errors import BadFile, Refused
 from schemas.scenes import BodyOrder, DriveBase, Placement
 
@@ -201,3 +201,13 @@ def test_a_robot_without_a_free_joint_gets_one_and_one_with_a_taken_name_is_refu
     scene.write_text("<mujoco><worldbody><body name='box1'><geom size='.1'/></body></worldbody></mujoco>")
     with pytest.raises(BadFile, match="--robot-name"):
         open_world(scene, Models(), robot=RobotConfig(path, name="box1"))
+
+
+def test_where_its_camera_is_and_who_carries_it_is_told(world):
+    told = {camera.camera: camera for camera in world.cameras()}
+    head = told["robot1_head"]
+    assert head.part_of == "robot1"
+    view = camera_view(world.model, world.data, "robot1_head", 64, 48).map_from_camera
+    ahead = compose(head.pose, Pose(position_m=(0.1, 0.2, 1.0))).position_m
+    assert ahead == pytest.approx(tuple((view @ [0.1, 0.2, 1.0, 1.0])[:3]), abs=1e-6)
+    assert {camera.part_of for name, camera in told.items() if name != "robot1_head"} <= {""}

@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 from rich.tree import Tree
 
+from nodes.extern.cli.output.printable import escaped
 from nodes.extern.cli.output.tables import card, printable, table
 from nodes.extern.phrasing import (
     author,
@@ -24,11 +25,15 @@ from schemas import wording
 from schemas.changes import value_in_words
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, PropertyInfo, Value
+from schemas.frames import Frame
+from schemas.grips import holder_of
 from schemas.joints import in_words
 from schemas.relations import Described, Relation
 from schemas.replies import SystemStatus
 
 _WIDE = 100_000
+_LEVEL = 1e-3
+"""A quaternion whose x and y are less is one about the z axis."""
 _WORDY = ("class", "size [m]", "reference")
 
 
@@ -74,8 +79,8 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "iri": e.iri,
         "class": e.class_,
         "types": ", ".join(e.types),
-        "pose": pose_text(e.pose),
-        **({"live": _live(e)} if e.tracked else {}),
+        f"pose in {e.frame}" if e.frame else "pose": pose_text(e.pose),
+        **({"live": _live(e)} if e.tracked or e.live is not None else {}),
         "size": (size_text(e) or "unknown") + own_size,
         **({"where": where} if (where := _where(e)) else {}),
         **({"but": "; ".join(doubts)} if (doubts := (*(r.text for r in e.denied), *e.withheld)) else {}),
@@ -101,7 +106,10 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
 
 def _live(e: Entity) -> str:
     """Where it is just now, how old that is and where it comes from."""
-    source = "the simulator" if e.tracked == "sim" else "a stream of poses"
+    if by := holder_of(e):
+        source = f"where {by} holds it"
+    else:
+        source = "the simulator" if e.tracked == "sim" else "a stream of poses"
     if e.live is None:
         return f"tracked from {source}, which has told nothing yet"
     stale = " (stale)" if e.live.stale else ""
@@ -149,6 +157,42 @@ def class_tree(classes: Iterable[ClassInfo]) -> Tree:
     )
     _grow(root, "", children, by_name)
     return root
+
+
+def frame_tree(frames: Iterable[Frame]) -> Tree:
+    """Frames below one another, each with its pose in the one above; what cannot be used with the reason."""
+    branches: dict[str, Tree] = {}
+    root = Tree(Text("frames", style="bold"))
+    for f in frames:
+        note = _frame_note(f)
+        pose = Text(_frame_pose(f))
+        label = Text.assemble((escaped(f.name), "bold"), "  " if pose else "", pose, (note, "dim"))
+        above = branches.get(f.parent, root)
+        if above is root and f.parent:
+            label.append(f"  in {escaped(f.parent)}", "dim")
+        branches[f.name] = above.add(label)
+    return branches["map"] if len(root.children) == 1 else root
+
+
+def _frame_pose(f: Frame) -> str:
+    """Its pose in its parent; of one that leans the quaternion, as its yaw says little."""
+    if not f.parent or f.pose is None:
+        return ""
+    w, x, y, z = f.pose.orientation_wxyz
+    if max(abs(x), abs(y)) < _LEVEL:
+        return pose_text(f.pose)
+    turned = " ".join(f"{value:.3f}" for value in (w, x, y, z))
+    return f"{pose_text(f.pose).partition(', yaw')[0]}, wxyz {turned}"
+
+
+def _frame_note(f: Frame) -> str:
+    """Where its pose comes from, how old it is, and what is wrong with it."""
+    source = {"map": "", "sim": "the simulator", "stream": "a stream", "camera": "a camera"}[f.source]
+    age = "" if f.age_s is None else f", {wording.duration(f.age_s)} ago"
+    if f.source == "stream" and f.age_s is None and not f.problem:
+        age = ", fixed"
+    said = f"  from {source}{age}" if source and f.source != "camera" else f"  {source}" if source else ""
+    return f"{said}  ({f.problem})" if f.problem else said
 
 
 def status_table(status: SystemStatus) -> Table:

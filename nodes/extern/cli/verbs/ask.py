@@ -16,6 +16,7 @@ from nodes.extern.cli.calling import (
     TIME,
     answered_by_robots,
     complain,
+    frame_option,
     print_json,
     print_lines,
     talks,
@@ -58,10 +59,16 @@ _STATUS_S = 20.0
     shell_complete=entity_names,
     help="Only what is in that place, or inside that container.",
 )
-@click.option("--near", metavar="THING", shell_complete=entity_names, help="Only what is near it.")
+@click.option(
+    "--near",
+    metavar="THING|X,Y,Z",
+    shell_complete=entity_names,
+    help="Only what is near it, or within M of a position.",
+)
 @click.option("--within", type=float, metavar="M", help="With --near: maximum distance [m].")
 @click.option("--nearest", type=int, metavar="N", help="With --to: only the N nearest, nearest first.")
-@click.option("--to", metavar="THING", shell_complete=entity_names, help="See --nearest.")
+@click.option("--to", metavar="THING|X,Y,Z", shell_complete=entity_names, help="See --nearest.")
+@frame_option("The frame of positions, of those that are listed too, instead of the map's")
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
 @_as_of
 @answered_by_robots(of_robots.entities)
@@ -69,7 +76,7 @@ _STATUS_S = 20.0
 def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **where: Any) -> None:
     """List the entities.
 
-    THING and PLACE are a name, a reference or a class.
+    THING and PLACE are a name, a reference or a class; X,Y,Z is a position [m].
     """
     if format in ("lu4r", "legacy"):
         print_json(client.send(commands.List(class_=class_, format=format, as_of=as_of, **where)))
@@ -98,11 +105,12 @@ def _left_out(client: Client, words: Iterable[str]) -> Iterator[str]:
 @click.argument("name", shell_complete=entity_names)
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @_as_of
+@frame_option("Tell its pose in this frame")
 @answered_by_robots(of_robots.entity)
 @talks
-def get(client: Client, name: str, format: str, as_of: str | None) -> None:
+def get(client: Client, name: str, format: str, as_of: str | None, frame: str | None) -> None:
     """Show one entity, and where it is."""
-    entity = client.get(name, where=True, as_of=as_of)
+    entity = client.get(name, where=True, as_of=as_of, frame=frame)
     if format == "json":
         print_json(entity)
     else:

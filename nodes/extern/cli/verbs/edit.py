@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from nodes.extern.cli.angles import yaw_option
-from nodes.extern.cli.calling import carrying, given, print_lines, talks, vector_option
+from nodes.extern.cli.calling import carrying, frame_option, given, print_lines, talks, vector_option
 from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
@@ -43,7 +43,8 @@ _set = click.option(
 )
 _if_is = click.option("--if-is", metavar="VALUE", help="Only if this is a value now (compare and set).")
 _describing = _options(
-    vector_option("--at", metavar="X Y Z", help="Position of the bottom centre in the map frame [m]."),
+    vector_option("--at", metavar="X Y Z", help="Position of the bottom centre [m]."),
+    frame_option("The frame of --at and the angle, instead of the map's"),
     yaw_option,
     click.option("--orientation", nargs=4, type=float, metavar="W X Y Z", help="Unit quaternion."),
     vector_option("--size", metavar="X Y Z", help="Size along its own axes [m]."),

@@ -30,15 +30,17 @@ def entities(robots: Robots, class_: str | None, format: str, as_of: str | None,
         print(output.show.entity_line(found))
 
     _require(format, ("table", "json"))
+    _require_own(where.pop("frame"))
     _print(robots.list(class_, as_of=as_of, **where), show, format)
 
 
-def entity(robots: Robots, name: str, format: str, as_of: str | None) -> None:
+def entity(robots: Robots, name: str, format: str, as_of: str | None, frame: str | None) -> None:
     """`semmap get --robots`."""
 
     def show(found: Described) -> None:
         output.show.console().print(output.show.entity_card(found))
 
+    _require_own(frame)
     _print(robots.get(name, where=True, as_of=as_of), show, format)
 
 
@@ -70,6 +72,11 @@ def rows(robots: Robots, query: str, format: str | None, **options: Any) -> None
 def _require(format: str, possible: Sequence[str]) -> None:
     if format not in possible:
         raise errors.BadRequest(f"with --robots the format is one of: {', '.join(possible)}")
+
+
+def _require_own(frame: str | None) -> None:
+    if frame is not None:
+        raise errors.BadRequest("frames are those of one robot: give either --robots or --frame")
 
 
 def _print(answers: Iterable[Answer[Any]], show: Callable[[Any], None], format: str) -> None:

@@ -1,4 +1,4 @@
-"""The verbs about the scene: `move`, `drive`, `open`, `close`, `pause`, `step`, `reset`, `picture`."""
+"""The verbs about the scene, from `move` and `attach` to `picture`."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from nodes.extern.cli.angles import yaw_option
-from nodes.extern.cli.calling import carrying, given, talks, vector_option
+from nodes.extern.cli.calling import carrying, frame_option, given, print_lines, talks, vector_option
 from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
+from nodes.extern.cli.output import lines
 from nodes.extern.cli.output.printable import say
 from nodes.extern.files import write_atomically
 from schemas import errors
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("name", shell_complete=entity_names)
 @vector_option("--at", metavar="X Y Z", required=True, help="Where to put it: bottom centre [m].")
+@frame_option("The frame of --at and --yaw, instead of the map's")
 @yaw_option
 @carrying
 @talks
@@ -31,6 +33,31 @@ def move(client: Client, **fields: Any) -> None:
     The map follows when it comes to rest.
     """
     say(client.move(**given(fields)).text)
+
+
+@click.command(cls=NegativeNumbers)
+@click.argument("name", shell_complete=entity_names)
+@click.option(
+    "--to", required=True, metavar="HOLDER", help="What is to hold it, such as a gripper or a tray."
+)
+@vector_option(
+    "--at", metavar="X Y Z", help="Where, in the frame of what holds it [m].  [default: where it is]"
+)
+@yaw_option
+@click.option("--dry-run", is_flag=True, help="Only say what would be.")
+@talks
+def attach(client: Client, **fields: Any) -> None:
+    """Have an entity held by another: it goes with that until it is detached."""
+    print_lines(lines.changed(client.attach(**given(fields))))
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@click.option("--dry-run", is_flag=True, help="Only say what would be.")
+@talks
+def detach(client: Client, name: str, dry_run: bool) -> None:
+    """Let go of an entity that something holds."""
+    print_lines(lines.changed(client.detach(name, dry_run=dry_run)))
 
 
 _WAIT = click.option("--wait", is_flag=True, help="Wait until it stands and the map has followed.")

@@ -48,6 +48,8 @@ class Rule(NamedTuple):
 
 
 def _whereabouts(space: Space, solid: Solid) -> Iterator[About]:
+    if solid.name in space.held:
+        return  # where that is which grasps it
     container, supports, place = space.whereabouts(solid)
     if container is not None:
         yield "isInside", container[0].name
@@ -71,6 +73,14 @@ def _whereabouts_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
     found: list[tuple[About, ...] | None] = [known[some] for some in rows]
     for row in survey.is_open.nonzero()[0].tolist():
         found[row] = None
+    return _of_nobody_held(survey, found)
+
+
+def _of_nobody_held(survey: Survey, found: list[tuple[About, ...] | None]) -> list[tuple[About, ...] | None]:
+    if held := survey.held:
+        for row, solid in enumerate(survey.solids):
+            if solid.name in held:
+                found[row] = ()
     return found
 
 
@@ -85,7 +95,7 @@ def _attachments_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
         found[row] = None
     for row, others in survey.hangs_on.items():
         found[row] = tuple(("isAttachedTo", name) for name in sorted(survey.solids[k].name for k in others))
-    return found
+    return _of_nobody_held(survey, found)
 
 
 def _may_hold(space: Space, solid: Solid, other: Solid) -> bool:

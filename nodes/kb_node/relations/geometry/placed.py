@@ -5,6 +5,7 @@ from __future__ import annotations
 from msgspec import Struct
 
 from schemas.entities import Entity, Pose, Size
+from schemas.grips import holder_of
 from schemas.polygons import EXTENT
 
 
@@ -19,6 +20,8 @@ class Placed(Struct, frozen=True, kw_only=True, array_like=True):
     model: str
     extent: str = ""
     """The WKT of a place whose extent is a polygon."""
+    held_by: str = ""
+    """What grasps it; "" for nothing."""
 
     @classmethod
     def of(cls, entity: Entity) -> Placed:
@@ -31,7 +34,15 @@ class Placed(Struct, frozen=True, kw_only=True, array_like=True):
             place=entity.place,
             model=entity.model,
             extent=extent_in(entity),
+            held_by=holder_in(entity),
         )
+
+
+def holder_in(entity: Entity | Placed) -> str:
+    """What grasps an entity; "" for nothing."""
+    if isinstance(entity, Placed):
+        return entity.held_by
+    return holder_of(entity) if entity.grip_provenance is not None else ""
 
 
 def extent_in(entity: Entity | Placed) -> str:

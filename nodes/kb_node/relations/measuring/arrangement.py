@@ -85,7 +85,7 @@ def attached(space: Space, solid: Solid, other: Solid) -> Measure | None:
 def attachments(space: Space, solid: Solid) -> Iterator[Solid]:
     """What a thing hangs on."""
     margin = space.limits.attached_m
-    if not solid.is_measured:
+    if not solid.is_measured or solid.name in space.held:
         return
     highest = solid.bottom - space.limits.gap_m
     found = [
@@ -116,7 +116,9 @@ def _against(space: Space, solid: Solid, other: Solid) -> Measure | None:
 
 
 def is_borne(space: Space, solid: Solid) -> bool:
-    """Whether something holds it from below, were it the floor of its place."""
+    """Whether something holds it: from below, were it the floor of its place, or in its grasp."""
+    if solid.name in space.held:
+        return True
     container, supports, place = space.whereabouts(solid)
     if container is not None or supports:
         return True

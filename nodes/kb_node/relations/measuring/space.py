@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 from nodes.kb_node.progress import parts
 from nodes.kb_node.relations.geometry.columns import solids_of
 from nodes.kb_node.relations.geometry.forms import Bounds
-from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.geometry.placed import Placed, holder_in
 from nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from nodes.kb_node.relations.measuring import measures
 from nodes.kb_node.relations.measuring.broad_phase import beside, file
@@ -44,6 +44,8 @@ class Space:
         self.grid: Final = Grid()
         self._raised: set[str] = set()
         """The things that are above the floor or of a size of their own."""
+        self.held: Final[set[str]] = set()
+        """The things that are grasped by others: nothing else bears them."""
         self.memory: Memory | None = None
         """What need not be worked out again, while `remembering`."""
         for _ in self.put_all(entities):
@@ -58,6 +60,7 @@ class Space:
             newest = {entity.name: entity for entity in some}
             for name in newest.keys() & self.solids.keys() if self.solids else ():
                 self.take(name)
+            self.held.update(name for name, entity in newest.items() if holder_in(entity))
             solids = solids_of(newest.values())
             self.solids.update((solid.name, solid) for solid in solids)
             file(self.grid, solids)
@@ -73,6 +76,8 @@ class Space:
         solid = solid_of(entity, self.take(entity.name))
         if solid is not None:
             self._add(solid)
+            if holder_in(entity):
+                self.held.add(solid.name)
             if not solid.is_place and (solid.position[2] != 0.0 or entity.size_m is not None):
                 self._raised.add(solid.name)
         return solid
@@ -88,6 +93,7 @@ class Space:
         if solid is not None:
             self.grid.remove(solid)
             self._raised.discard(name)
+            self.held.discard(name)
         return solid
 
     @contextmanager
@@ -96,7 +102,7 @@ class Space:
         entities, without = tuple(entities), tuple(without)
         names = {*(entity.name for entity in entities), *without}
         before = [solid for name in names if (solid := self.solids.get(name)) is not None]
-        raised = self._raised & names
+        raised, held = self._raised & names, self.held & names
         try:
             for name in without:
                 self.take(name)
@@ -109,6 +115,7 @@ class Space:
             for solid in before:
                 self._add(solid)
             self._raised |= raised
+            self.held.update(held)
             self.shifted()
 
     def shifted(self) -> list[Solid]:
@@ -192,12 +199,15 @@ class Space:
         container: Found | None = None
         place: Found | None = None
         below: list[Found] = []
+        is_held = solid.name in self.held
         least = solid.bottom - limits.gap_m - 1e-6
         for other in self.bearers_around(solid):
             if other.is_place:
                 made = measures.within(solid, other, limits)
                 if made and made.holds and (place is None or _area(other) < _area(place[0])):
                     place = (other, made)
+                continue
+            if is_held:
                 continue
             if other.top < least:
                 continue
@@ -215,7 +225,7 @@ class Space:
 
         That takes a look at the two; `whereabouts` looks at all that is around.
         """
-        if solid.is_place or bearer.top < solid.bottom - self.limits.gap_m:
+        if solid.is_place or solid.name in self.held or bearer.top < solid.bottom - self.limits.gap_m:
             return False
         if bearer.hollows and self._is_within(solid, bearer):
             return True

@@ -42,6 +42,8 @@ class Survey:
         self._columns: Final = Columns(_with_around(space, subjects))
         self.solids: Final[Sequence[Solid]] = self._columns.solids
         """The subjects, and then those around them: who is meant by a row below."""
+        self.held: Final = space.held
+        """The names of those that something grasps."""
         self.is_open = np.zeros(count, dtype=bool)
         """(S,) whether it has to be measured what each is inside, on and in."""
         self.may_hang = np.zeros(count, dtype=bool)

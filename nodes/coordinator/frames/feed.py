@@ -1,0 +1,185 @@
+"""Frames on the wire: in by `semmap/frame/<name>`, and commands that give or ask positions in one."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future
+from functools import partial
+from typing import Any, TypeVar
+
+from msgspec import structs
+
+from nodes import bus
+from nodes.coordinator.dialogues import hold_later
+from nodes.coordinator.door.committing import done_before
+from nodes.coordinator.door.known_map import KnownMap
+from nodes.coordinator.frames.links import PART_OF, EntityLinks, camera_links
+from nodes.coordinator.frames.placing import Framed, into_map, require_placing, told_in
+from nodes.coordinator.frames.published import Published
+from nodes.coordinator.frames.tree import Link, Tree
+from nodes.coordinator.kb_client import Bridge
+from nodes.coordinator.live.feed import LiveFeed
+from nodes.coordinator.scene.reconciler import AskSim
+from nodes.coordinator.scene.scene_view import SceneView
+from nodes.coordinator.turns import Turns
+from nodes.runtime.futures import OwnFuture, settle
+from nodes.runtime.loop import Node
+from schemas import commands as c
+from schemas import errors, keys
+from schemas.entities import Pose
+from schemas.frames import Frame, FramePose
+from schemas.relations import Described
+from schemas.scenes import CameraPose, CamerasQuery
+
+R = TypeVar("R")
+Cameras = Iterable[CameraPose]
+_PERIOD_S = 0.1
+_MOST = 20_000
+
+
+class Frames:
+    """Owned by the coordinator's thread. What others publish is read in batches, and costs little."""
+
+    def __init__(
+        self,
+        node: Node,
+        stale_s: float,
+        known_map: KnownMap,
+        live: LiveFeed,
+        scene: SceneView,
+        ask_sim: AskSim,
+        bridge: Bridge,
+        turns: Turns,
+    ) -> None:
+        """`ask_sim(call)` asks the simulator without waiting; a frame counts for `stale_s` of silence."""
+        self._map, self._live, self._scene = known_map, live, scene
+        self._ask_sim, self._bridge, self._turns = ask_sim, bridge, turns
+        self._published = Published(stale_s)
+        self._stream = bus.Newest(node.session, keys.FRAME, _MOST, deletions=True)
+        node.every(_PERIOD_S, self._read)
+
+    def problems(self) -> list[str]:
+        """What is amiss with the frames that others publish, one sentence each."""
+        return list(self._published.problems(time.monotonic()))
+
+    def list(self, command: c.ListFrames) -> tuple[Frame, ...] | Future[tuple[Frame, ...]]:
+        """The tree, or a part of it. Raises UnknownName."""
+        return self._with_cameras(lambda tree: tuple(tree.frames(command.name)))
+
+    def placed(self, handle: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        """The same as `handle`, for commands whose positions may be in a frame: it gets them in the map's."""
+
+        def in_turn(command: Framed) -> Any:
+            if command.frame is None:
+                return handle(command)
+            require_placing(command)
+            return self._turns.after(lambda: self._in_frame(command, handle))
+
+        return in_turn
+
+    def _in_frame(self, command: Framed, handle: Callable[[Any], Any]) -> Any:
+        """In its turn: a frame is where the commands before this one have left it."""
+        word = command.frame
+        assert word is not None
+
+        def answer(tree: Tree) -> Any:
+            try:
+                name = tree.known(word)
+                frame = tree.map_pose(name)
+                wanted = into_map(command, frame)
+            except (errors.Refused, errors.BadRequest) as error:
+                return self._unless_done(command, error)
+            if not isinstance(command, c.Get | c.List):
+                return handle(wanted)
+            made: Future[Any] = OwnFuture()
+            settle(made, lambda: handle(wanted))
+            return _then(made, lambda found: self._told(tree, name, frame, found))
+
+        tree = self._tree()
+        if self._scene.known and tree.missing(word):
+            return self._with_cameras(answer)
+        return answer(tree)
+
+    def _told(self, tree: Tree, name: str, frame: Pose, found: Any) -> Any:
+        if isinstance(found, Described):
+            return structs.replace(told_in(frame, self._as_it_stands(tree, found)), frame=name)
+        return tuple(told_in(frame, self._as_it_stands(tree, entity)) for entity in found)
+
+    def _as_it_stands(self, tree: Tree, entity: Any) -> Any:
+        """A part that nobody tracks is where its whole has taken it."""
+        if entity.tracked or PART_OF not in entity.properties:
+            return entity
+        try:
+            return structs.replace(entity, pose=tree.map_pose(entity.name))
+        except errors.Refused:
+            return entity
+
+    def _unless_done(self, command: Framed, error: errors.SemmapError) -> Any:
+        """A change that comes again may have been made when its frame was there. Raises `error` else."""
+        if not isinstance(command, c.Add | c.Update) or not command.id or command.dry_run:
+            raise error
+
+        def told(done: Any) -> Any:
+            if done is None:
+                raise error
+            return done
+
+        return _then(hold_later(done_before(command), self._bridge.ask_later), told)
+
+    def _with_cameras(self, use: Callable[[Tree], R]) -> R | Future[R]:
+        """What `use` makes of the tree, with the cameras of the simulator if one runs."""
+        if not self._scene.known:
+            return use(self._tree())
+        future: Future[Any] = OwnFuture()
+        asked = self._ask_sim(CamerasQuery())
+        asked.add_done_callback(lambda done: settle(future, lambda: use(self._tree(_seen(done)))))
+        return future
+
+    def _tree(self, cameras: Cameras = ()) -> Tree:
+        self._read()
+        now_s, entities, published = time.monotonic(), self._map.entities, self._published
+        of_entities = EntityLinks(entities, self._live.of, self._scene.bodies, self._live.scene_age_s)
+        of_cameras: dict[str, Link] = {}
+
+        def find(name: str) -> Link | None:
+            return of_entities.link(name) or published.link(name, now_s) or of_cameras.get(name)
+
+        def carrier(name: str) -> Pose | None:
+            try:
+                return tree.map_pose(name) if name in entities else None
+            except errors.Refused:
+                return None
+
+        def names() -> Iterable[str]:
+            return {**dict.fromkeys(entities), **dict.fromkeys(published), **of_cameras}
+
+        tree = Tree(find, names)
+        of_cameras.update(camera_links(cameras, carrier))
+        return tree
+
+    def _read(self) -> None:
+        now_s = time.monotonic()
+        for key, read in self._stream.take():
+            self._published.take(keys.of_frame(key), partial(_said, read), self._map.entities, now_s)
+        self._published.forget(now_s)
+
+
+def _said(read: Callable[[], FramePose | None]) -> tuple[FramePose, int] | None:
+    """With the stamp that it has, or that of its arrival. Raises BadRequest."""
+    message = read()
+    return None if message is None else (message, message.stamp_ns or time.time_ns())
+
+
+def _seen(done: Future[tuple[CameraPose, ...]]) -> Cameras:
+    """None where the simulator has gone meanwhile."""
+    try:
+        return done.result()
+    except errors.NoAnswer:
+        return ()
+
+
+def _then(future: Future[Any], function: Callable[[Any], Any]) -> Future[Any]:
+    following: Future[Any] = OwnFuture()
+    future.add_done_callback(lambda done: settle(following, lambda: function(done.result())))
+    return following

@@ -1,0 +1,87 @@
+"""Grips: bodies that are held by others, as welds of MuJoCo between them.
+
+A weld is part of the compiled model, so taking and letting go compile it anew; later compilations keep it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import mujoco
+
+from nodes.sim_node.bodies import BodyRecord, frame_of
+from schemas.entities import Pose
+
+_STIFF = (0.008, 1.0)
+"""Time constant [s] and damping of a weld (`solref`)."""
+_HARD = (0.99, 0.999, 0.001, 0.5, 2.0)
+"""How near it comes to being rigid (`solimp`)."""
+
+
+def add_grips(spec: mujoco.MjSpec, records: Mapping[str, BodyRecord]) -> None:
+    """Weld what is held to its holder; the two do not collide, nor does it with the holder's other parts."""
+    for record in held(records):
+        holder = records[record.held_by]
+        body = spec.body(holder.name)
+        spec.body(
+            record.name
+        ).gravcomp = 1.0  # whatever holds it bears it: an arm that droops would be no help
+        weld = spec.add_equality(
+            type=mujoco.mjtEq.mjEQ_WELD,
+            objtype=mujoco.mjtObj.mjOBJ_BODY,
+            name1=holder.name,
+            name2=record.name,
+            solref=_STIFF,
+            solimp=_HARD,
+        )
+        weld.data[:11] = [0.0, 0.0, 0.0, *_in_body_frames(record, holder), 1.0]
+        for name in _whole_of(spec, body):
+            spec.add_exclude(bodyname1=name, bodyname2=record.name)
+
+
+def held(records: Mapping[str, BodyRecord]) -> list[BodyRecord]:
+    """Those that are held, who holds before who is held."""
+    found: dict[str, BodyRecord] = {}
+    waiting = [record for record in records.values() if record.held_by in records]
+    for record in sorted(waiting, key=lambda record: len(chain(record.name, records))):
+        found[record.name] = record
+    return list(found.values())
+
+
+def chain(name: str, records: Mapping[str, BodyRecord]) -> list[str]:
+    """What a body is held by or part of, and what that is, and so on; never twice."""
+    found: list[str] = []
+    waiting = [name]
+    while waiting:
+        record = records.get(waiting.pop())
+        for above in () if record is None else (record.held_by, record.part_of):
+            if above and above not in found:
+                found.append(above)
+                waiting.append(above)
+    return found
+
+
+def concerned(names: Iterable[str], records: Mapping[str, BodyRecord]) -> bool:
+    """Is one of these held, or does it hold something?"""
+    names = set(names)
+    return any(r.held_by and not names.isdisjoint((r.name, r.held_by)) for r in records.values())
+
+
+def _in_body_frames(record: BodyRecord, holder: BodyRecord) -> list[float]:
+    """Where the held MuJoCo body is in the frame of the other: position [m] and quaternion."""
+    grip = record.grip or Pose(position_m=(0.0, 0.0, 0.0))
+    position, quaternion = frame_of(grip, record.origin_m)
+    return [*(position + holder.origin_m).tolist(), *quaternion.tolist()]
+
+
+def _whole_of(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> list[str]:
+    """The named bodies of the tree that a body is in."""
+    while body.parent is not None and body.parent.name != "world":
+        body = body.parent
+    found, waiting = [], [body]
+    while waiting:
+        one = waiting.pop()
+        waiting.extend(one.bodies)
+        if one.name:
+            found.append(one.name)
+    return found

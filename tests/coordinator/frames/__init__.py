@@ -1,0 +1,1 @@
+"""Frames: the tree, what is published, and positions in one."""

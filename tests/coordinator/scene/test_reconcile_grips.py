@@ -1,0 +1,98 @@
+"""Who holds what: whoever changed last wins, and where a held thing is follows from its holder."""
+
+import pytest
+from msgspec import structs
+
+from nodes.coordinator import holding
+from nodes.coordinator.scene.reconcile import reconcile
+from schemas.entities import Pose, compose, relative
+from schemas.errors import Refused
+from schemas.grips import grip_of, holder_of, pose_of_text, pose_text
+from schemas.scenes import GripOrder
+from tests.coordinator.scene.test_reconcile import THRESHOLDS, at, body, entity, provenance
+
+GRIP = Pose(position_m=(0.1, 0.0, 0.3))
+
+
+def cup(holder: str = "", *, commit: int = 0, source: str = "operator", grip: Pose | None = GRIP):
+    known = entity("cup1", at(0.0))
+    said = {"isGraspedBy": holder} if holder else {}
+    if holder and grip is not None:
+        said["graspPose"] = pose_text(grip)
+    return structs.replace(
+        known, properties=said, grip_provenance=provenance(commit, source) if commit else None
+    )
+
+
+def held(holder: str = "", *, commit: int = -1, x=0.0, grip: Pose | None = GRIP):
+    known = body("cup1", at(x))
+    return structs.replace(known, held_by=holder, grip=grip if holder else None, grip_commit=commit)
+
+
+def kept(entity_, body_, truth="map", there=("cup1", "tray1")):
+    return reconcile({"cup1": entity_}, {"cup1": body_}, truth, THRESHOLDS, {}, there)
+
+
+@pytest.mark.parametrize(
+    ("said", "stands", "holder", "follows"),
+    [
+        (cup(), held(), None, False),
+        (cup("tray1", commit=5), held(), "tray1", False),
+        (cup("tray1", commit=5), held("tray1", commit=5), None, False),
+        (cup("tray1", commit=5), held("table1", commit=4), "tray1", False),
+        (cup("", commit=6), held("tray1", commit=5), "", False),
+        (cup("tray1", commit=5), held("", commit=5), None, True),
+        (cup("tray1", commit=5, source="scene"), held("", commit=4), None, True),
+        (cup("tray1", commit=5, source="scene"), held(), "tray1", False),
+        (cup(), held("tray1", commit=0), None, True),
+        (cup("tray1", commit=5, grip=None), held("tray1", commit=5), None, True),
+    ],
+)
+def test_whoever_changed_last_wins(said, stands, holder, follows):
+    actions = kept(said, stands)
+    orders = () if holder is None else (GripOrder(
+        name="cup1", holder=holder, grip=GRIP if holder else None, commit=said.grip_provenance.commit
+    ),)  # fmt: skip
+    assert actions.grips == orders
+    assert actions.gripped == (("cup1",) if follows else ())
+
+
+def test_what_is_held_is_neither_put_nor_followed():
+    actions = kept(cup("tray1", commit=5), held("tray1", commit=5, x=9.0))
+    assert not any(actions)
+
+
+def test_a_holder_without_a_body_is_waited_for():
+    assert not any(kept(cup("tray1", commit=5), held(), there=("cup1",)))
+
+
+def test_where_the_scene_is_the_truth_the_map_follows_it():
+    assert kept(cup("tray1", commit=5), held(), truth="scene").gripped == ("cup1",)
+    assert not any(kept(cup("tray1", commit=5), held("tray1"), truth="scene"))
+
+
+def test_a_grip_is_a_text_and_back():
+    turned = Pose(position_m=(0.1, -2.0, 0.3), orientation_wxyz=(0.6, 0.0, 0.0, 0.8))
+    assert pose_of_text(pose_text(turned)) == turned
+    assert [pose_of_text(text) for text in ("", "1 2 3", "a b c d e f g", "0 0 0 9 0 0 0")] == [None] * 4
+    frame = Pose(position_m=(1.0, 2.0, 0.0), orientation_wxyz=(0.8, 0.0, 0.0, 0.6))
+    assert compose(frame, relative(turned, frame)).position_m == pytest.approx(turned.position_m)
+
+
+def test_circles_are_refused():
+    tray = structs.replace(entity("tray1", at(0.0)), properties={"isGraspedBy": "robot1"})
+    robot = structs.replace(entity("robot1", at(0.0)), properties={"isDirectPartOf": ("cup1",)})
+    there = {"cup1": cup(), "tray1": tray, "robot1": robot}
+    with pytest.raises(Refused, match="tray1 goes with cup1, so it cannot hold it"):
+        holding.require_graspable(there["cup1"], tray, there, {})
+    holding.require_graspable(tray, robot, there, {})
+
+
+def test_where_it_is_follows_from_its_holder():
+    said = cup("tray1", commit=5)
+    assert (holder_of(said), grip_of(said)) == ("tray1", GRIP)
+    where = {"tray1": Pose(position_m=(2.0, 0.0, 1.0), orientation_wxyz=(0.0, 0.0, 0.0, 1.0))}.get
+    assert holding.carried_pose(said, where).position_m == pytest.approx((1.9, 0.0, 1.3))
+    assert holding.carried_pose(cup(), where) is None
+    assert holding.grip(None, where("tray1"), None, None) is None
+    assert holding.grip(None, None, (1.0, 0.0, 0.0), None).position_m == (1.0, 0.0, 0.0)
