@@ -40,6 +40,7 @@ PARSED = {
     "web",
     "ros",
     "mcap",
+    *("drive", "attach", "detach"),  # a robot
 }
 """Verbs that start, stop or need something else than one running system."""
 BUSY_S = 300.0
