@@ -5,6 +5,7 @@ So a test names what it adds as nobody else does, and says nothing of how many c
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import os
 import re
@@ -13,6 +14,7 @@ import subprocess
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
@@ -69,6 +71,31 @@ def serving(endpoint: str, *words: str) -> Iterator[Web]:
             _await_end(process)
 
 
+_LOOP: list[Any] = [None]
+"""Playwright's event loop. It counts as running in this thread for as long as Playwright lives, which no test
+of another folder can do with: they run loops of their own, in the same process."""
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """While a test of this folder goes on, with all that it sets up, that loop runs; afterwards none does."""
+    if Path(__file__).parent not in item.path.parents:  # xdist calls this of all tests
+        return (yield)
+    with _in_its_loop():
+        return (yield)
+
+
+@contextlib.contextmanager
+def _in_its_loop() -> Iterator[None]:
+    if _LOOP[0] is not None:  # else Playwright has begun just now, or has not
+        asyncio._set_running_loop(_LOOP[0])
+    try:
+        yield
+    finally:
+        _LOOP[0] = asyncio._get_running_loop()
+        asyncio._set_running_loop(None)
+
+
 @pytest.fixture(scope="session")
 def chromium():
     """Debian's Chromium, headless."""
@@ -78,6 +105,7 @@ def chromium():
     with playwright.sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=path, args=[*_ARGUMENTS])
         yield browser
+        asyncio._set_running_loop(_LOOP[0])
         browser.close()
 
 
@@ -112,8 +140,9 @@ def profile(chromium):
         return profiles[key]
 
     yield of
-    for context in profiles.values():
-        context.close()
+    with _in_its_loop():
+        for context in profiles.values():
+            context.close()
 
 
 @pytest.fixture

@@ -99,10 +99,8 @@ def test_the_history_of_what_is_selected_goes_to_its_commits(tab, cup):
     tab.get_by_label("What is different").get_by_text(name).click()
     tab.get_by_role("tab", name="History").click()
     tab.get_by_role("checkbox", name="Only commits of what is selected").click()
-    table = tab.get_by_label("Commits").locator("tbody")
-    until(
-        lambda: table.locator("tr:not(.q-virtual-scroll__padding *)").count() >= 3, "its commits are listed"
-    )
+    table = tab.get_by_label("Commits").locator("tbody.q-virtual-scroll__content")
+    until(lambda: table.locator("tr").count() >= 3, "its commits are listed")
     listed = table.inner_text()
     assert all(str(seq) in listed for seq in (added, moved, again))
     assert name in listed

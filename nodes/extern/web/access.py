@@ -58,10 +58,12 @@ class Access:
             )
         elif not self._is_own_origin(headers):
             await _refuse(scope, send, 403, "the page does not answer pages of another origin")
+        elif scope["type"] == "http" and self._has_token(
+            scope
+        ):  # which leaves the address even if it is known
+            await self._exchange(scope, send)
         elif self._is_known(headers):
             await self._answer(scope, receive, send)
-        elif scope["type"] == "http" and self._has_token(scope):
-            await self._exchange(scope, send)
         else:
             await _refuse(scope, send, 401, "open the address with the token that semmap printed")
 

@@ -7,7 +7,7 @@ holds digests of rules, layouts and examples beside it.
 
 from __future__ import annotations
 
-FORMAT = 4
+FORMAT = 5
 
 
 def mark() -> bytes:

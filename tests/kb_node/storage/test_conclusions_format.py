@@ -20,12 +20,12 @@ from schemas.entities import Entity, Pose, Provenance
 
 DIGESTS = {
     "rules": "866c583d92a0dbe7",
-    "layouts": "241a16a0e4ca5976",
+    "layouts": "9edb28dfd8277fbd",
     "closure": "543217405dc297c7",
-    "entities": "38af6f13abe38494",
+    "entities": "fcc629104ec36663",
     "columns": "5be64fedcc6339af",
 }
-"""Those of format 3. When one of them is another: add 1 to FORMAT, and write down the new ones."""
+"""Those of the format. When one of them is another: add 1 to FORMAT, and write down the new ones."""
 
 PREFIXES = """
 @prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_1#> .
@@ -79,7 +79,7 @@ def test_the_format_grows_with_what_is_concluded_and_how_it_is_kept():
         "entities": digest(entities),
         "columns": digest(sorted(map(_unlabelled, stored(reasoner.columns())))),
     }
-    assert (FORMAT, found) == (4, DIGESTS), "add 1 to FORMAT, and write the digests down here"
+    assert (FORMAT, found) == (5, DIGESTS), "add 1 to FORMAT, and write the digests down here"
 
 
 def _unlabelled(text):
