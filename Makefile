@@ -27,7 +27,7 @@ $(UV):
 demo: setup  ## A tour through every command; leaves demo/flat.owl, demo/session.rrd, demo/scene.png
 	$(BIN)/python -m demo.tour
 
-test: setup  ## The tests, about seven minutes
+test: setup  ## The tests, about ten minutes
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
