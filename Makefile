@@ -32,7 +32,8 @@ test: setup  ## The tests, about ten minutes
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n 3 --dist worksteal -m "not long" $(NO_TEST_FOR_EVER)  # on two cores: many of them wait for a system
+	$(BIN)/pytest -n 3 --dist worksteal -m "not long" --ignore tests/page $(NO_TEST_FOR_EVER)  # on two cores: many wait for a system
+	$(BIN)/pytest -m "not long" $(NO_TEST_FOR_EVER) tests/page  # alone: Chromium draws with both cores
 
 test-long: setup  ## The tests that take longer too, and all tries of those that search
 	SEMMAP_THOROUGH=1 $(BIN)/pytest -n 2 -o faulthandler_timeout=7200 -o faulthandler_exit_on_timeout=true

@@ -245,7 +245,7 @@ class World:
 
     def walls(self) -> tuple[Outline, ...]:
         """What of the world itself stands in the way, seen from above."""
-        return walls(self.model, self.data, self._engine.records)
+        return walls(self.model, self.data, set(self._engine.index.body.tolist()))
 
     def tops(self, box: tuple[Floats, Floats] | None = None) -> dict[str, Floats]:
         """The middle of the top (3,) [m] of each entity's body; only of those whose middle is in the box."""

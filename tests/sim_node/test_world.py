@@ -359,3 +359,11 @@ def test_bodies_that_are_declared_in_vain_are_named():
         ("drawer", "table_1"),
     ]
     assert World().ignored == []
+
+
+def test_bodies_are_no_walls_whichever_way_they_came():
+    world = World()
+    world.spawn([order("cup1", "cup", pose(0, 0)), order("shelf1", "shelf", pose(2, 0), fixed=True)])
+    before = world.walls()
+    world.spawn([order("late", "cup", pose(0, 3)), order("later", "shelf", pose(4, 0), fixed=True)])
+    assert world.walls() == before

@@ -18,16 +18,15 @@ _SIDES: Final = 16
 _DIGITS: Final = 6
 
 
-def walls(model: mujoco.MjModel, data: mujoco.MjData, bodies: Collection[str]) -> tuple[Outline, ...]:
-    """The outlines of what collides and cannot move, but of no body that is named in `bodies`.
+def walls(model: mujoco.MjModel, data: mujoco.MjData, bodies: Collection[int]) -> tuple[Outline, ...]:
+    """The outlines of what collides and cannot move, but of none of these bodies, by number.
 
     Planes and height fields are floors. What is round has sixteen corners.
     """
-    theirs = {model.body(name).id for name in bodies}
     found: list[Outline] = []
     for geom in range(model.ngeom):
         body = int(model.geom_bodyid[geom])
-        if model.body_weldid[body] != 0 or int(model.body_rootid[body]) in theirs:
+        if model.body_weldid[body] != 0 or int(model.body_rootid[body]) in bodies:
             continue
         if model.geom_type[geom] in _PASSED_OVER or not (
             model.geom_contype[geom] or model.geom_conaffinity[geom]

@@ -2,6 +2,7 @@ import collections
 import contextlib
 import json
 import queue
+import re
 import subprocess
 import sys
 import threading
@@ -13,6 +14,7 @@ import pytest
 from nodes import bus
 from nodes.bus.rmw import RosNode
 from nodes.extern.ros import messages
+from nodes.extern.ros.bridge import _GREETING_S
 from nodes.extern.ros.types import decode, encode, topic
 from nodes.extern.testing import free_endpoint
 from schemas import codec
@@ -75,7 +77,7 @@ def bridged(flat, router):
     """`semmap ros` at work."""
     words = ("ros", "--router", router, "--camera", "front=/a/color,/a/depth,/a/info")
     with flat.spawned(*words, stderr=subprocess.PIPE) as process:
-        assert any("publishing 78 entities" in line for line in process.stderr)
+        assert any(re.search("publishing [0-9]+ entities", line) for line in process.stderr)
         yield flat
         process.stderr.close()
 
@@ -85,6 +87,7 @@ def test_another_party_sees_the_map_and_its_changes(bridged, router):
         assert "kitchen1" in ros.hears("/tf")
         whole = ros.hears("/planning_scene", lambda objects: len(objects) > 10)
         assert ["table1", ADD] in whole  # though it came later
+        time.sleep(max(_GREETING_S) + 1.0)  # all of it is said again meanwhile
         client.add("Cup", "cup77", at=(2.0, 2.0, 0.0), size=(0.1, 0.1, 0.1))
         assert ros.hears("/planning_scene", lambda objects: ["cup77", ADD] in objects)
         client.update("cup77", at=(2.5, 2.0, 0.0))

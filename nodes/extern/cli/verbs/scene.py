@@ -47,7 +47,7 @@ def move(client: Client, **fields: Any) -> None:
 @click.option("--dry-run", is_flag=True, help="Only say what would be.")
 @talks
 def attach(client: Client, **fields: Any) -> None:
-    """Have an entity held by another: it goes with that until it is detached."""
+    """Have an entity held by another until it is detached."""
     print_lines(lines.changed(client.attach(**given(fields))))
 
 
