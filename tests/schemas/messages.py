@@ -16,25 +16,21 @@ from schemas import (
     explanations,
     frames,
     health,
+    live,
     perception,
+    plans,
     scenes,
+)
+
+_MODULES = (
+    *(bridge, commands, commits, entities, errors, explanations, frames, health),
+    *(live, perception, plans, scenes),
 )
 
 TYPES = sorted(
     {
         kind
-        for module in (
-            bridge,
-            commands,
-            commits,
-            entities,
-            errors,
-            explanations,
-            frames,
-            health,
-            perception,
-            scenes,
-        )
+        for module in _MODULES
         for _, kind in python.getmembers(module, python.isclass)
         if issubclass(kind, msgspec.Struct) and kind.__module__ == module.__name__
     },

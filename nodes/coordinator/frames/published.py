@@ -6,7 +6,7 @@ from collections.abc import Callable, Container, Iterator
 from typing import NamedTuple
 
 from nodes.coordinator.frames.tree import Link, in_one_another
-from schemas import errors, wording
+from schemas import errors, keys, wording
 from schemas.entities import Pose
 from schemas.frames import LONGEST_NAME, MAP, FramePose
 
@@ -125,8 +125,10 @@ class Published:
         for name, (reason, count, at_s) in sorted(self._ignored.items()):
             if now_s - at_s < _TOLD_S:
                 times = f" ({count:,} times)" if count > 1 else ""
-                yield f"semmap/frame/{name}: ignored{times}: {reason}"
+                yield f"{keys.frame_key(name)}: ignored{times}: {reason}"
 
 
 def _stale(name: str, age_s: float) -> str:
-    return f"the frame {name} is stale: nothing has come on semmap/frame/{name} for {wording.duration(age_s)}"
+    return (
+        f"the frame {name} is stale: nothing has come on {keys.frame_key(name)} for {wording.duration(age_s)}"
+    )

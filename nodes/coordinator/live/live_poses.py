@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from nodes.coordinator.config import LiveRules, Thresholds
 from nodes.coordinator.live.rest import Rest
-from schemas import errors, wording
+from schemas import errors, keys, wording
 from schemas.entities import Entity, Live, Pose, Tracking, angle_rad, distance_m, rounded
 
 _LATE_NS = 10_000_000_000
@@ -154,7 +154,7 @@ class LivePoses:
         for name, (reason, count, at_s) in sorted(self._ignored.items()):
             if now_s - at_s < _TOLD_S:
                 times = f" ({count:,} times)" if count > 1 else ""
-                yield f"semmap/live/{name}: ignored{times}: {reason}"
+                yield f"{keys.live_pose_key(name)}: ignored{times}: {reason}"
 
     # what is committed
 

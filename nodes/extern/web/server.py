@@ -96,7 +96,6 @@ def _serve(
         stage.show(page)
         layout(page)
 
-    logging.getLogger("uvicorn.error").addFilter(_is_news)
     ui.run_with(
         app,
         title="semmap",
@@ -107,12 +106,6 @@ def _serve(
         reconnect_timeout=30.0,
     )
     uvicorn.Server(_uvicorn(Access(app, config.host, port, token))).run(sockets=[listening])
-
-
-def _is_news(record: logging.LogRecord) -> bool:
-    """A tab that is closed while it is answered is none, though NiceGUI's middleware makes an error of it."""
-    error = record.exc_info[1] if record.exc_info else None
-    return not (isinstance(error, RuntimeError) and str(error) == "No response returned.")
 
 
 def _uvicorn(app: Any) -> uvicorn.Config:
