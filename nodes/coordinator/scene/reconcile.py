@@ -176,11 +176,15 @@ def _begins(entity: Entity, body: Body) -> bool:
 
 
 def joint_order(entity: Entity, body: Body, thresholds: Thresholds) -> JointOrder:
-    """The positions that an entity wants of the joints of its body; none where they suit it as they are."""
+    """The positions that an entity wants of the joints of its body; none where they rest and suit it.
+
+    What suits it and moves may be on its way to somewhere else, by an earlier order.
+    """
     said = entity.joint_provenance
+    suits = body.resting and not _stand_elsewhere(entity, body, thresholds)
     return JointOrder(
         name=entity.name,
-        positions=_wanted(entity, body) if _stand_elsewhere(entity, body, thresholds) else {},
+        positions={} if suits else _wanted(entity, body),
         commit=said.commit if said is not None else entity.provenance.commit,
     )
 

@@ -9,7 +9,19 @@ import pytest
 
 from tests.conftest import running, until
 
-WORDS = ("--no-record", "--abox", "none", "--world", "empty", "--robot", "porter", "--robot-at", "1", "0", "0")
+WORDS = (
+    "--no-record",
+    "--abox",
+    "none",
+    "--world",
+    "empty",
+    "--robot",
+    "porter",
+    "--robot-at",
+    "1",
+    "0",
+    "0",
+)
 
 
 def where(client) -> tuple[float, float] | None:
