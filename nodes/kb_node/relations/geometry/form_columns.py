@@ -130,7 +130,7 @@ class FormColumns(Extents):
         self.volume: Final[Floats] = x * y * z
         is_box = np.array([form.region is None and not form.joints for form in forms], dtype=bool)
         self.is_plumb: Final[Bools] = (np.abs([c, f, g, h]).max(axis=0) < 1e-9) & (i > 0.0) & is_box
-        """Whether its z axis is that of the map, but for rounding; and it is no polygon, with nothing open."""
+        """Whether its z axis is that of the map, but for rounding; it is no polygon, and nothing is open."""
         self.is_square: Final[Bools] = self.is_plumb & (
             (np.maximum(np.abs(b), np.abs(d)) < 1e-9) | (np.maximum(np.abs(a), np.abs(e)) < 1e-9)
         )
