@@ -26,7 +26,7 @@ _VERBS: Final[dict[str, click.Command]] = {"update": update, "set": set_, "unset
 @click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
 @talks
 def batch(client: Client, file: TextIO, **fields: Any) -> None:
-    """Make several changes in one commit: all of them or, where one is refused, none.
+    """Make several changes in one commit, or none.
 
     FILE has one update, set or unset a line, as on the command line: set door1 isOpen true. Empty lines
     and those that begin with # do not count; - reads standard input. One undo takes all back.

@@ -117,7 +117,7 @@ def offset(entities: Iterable[Entity], by: Numbers) -> Batch:
     return Batch(changes=changes)
 
 
-def states(state_: State, entered: Entered, now: Mapping[str, Stated]) -> Batch | None:
+def states(state_: State, entered: Entered, now: Mapping[str, Stated | None]) -> Batch | None:
     """What is entered for a state of several; `now` is by name how it is. None if it is so of all."""
     changes = (state(name, state_._replace(now=value), entered) for name, value in now.items())
     wanted = tuple(change for change in changes if change is not None)
