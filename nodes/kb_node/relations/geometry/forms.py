@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Final
 
+from nodes.geometry.polygons import Point, area, hull
+from nodes.geometry.regions import Region
 from nodes.kb_node.relations.geometry.convex import Convex, convex
 from nodes.kb_node.relations.geometry.fitting import fitted
 from nodes.kb_node.relations.geometry.lazily import lazily
 from nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, opened
-from nodes.kb_node.relations.geometry.polygons import Point, area, hull
-from nodes.kb_node.relations.geometry.regions import Region
 from ontology.model_shapes import ModelShape
 from schemas.entities import IDENTITY, Quaternion, Size, Vector
 from schemas.polygons import Polygon, read_wkt

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from nodes.geometry.polygons import Point
 from nodes.kb_node.relations.geometry.convex import Convex, moved
 from nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, expanse, form_of
 from nodes.kb_node.relations.geometry.lazily import lazily
 from nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions
 from nodes.kb_node.relations.geometry.placed import Placed, extent_in, joints_in
-from nodes.kb_node.relations.geometry.polygons import Point
 from ontology.model_shapes import Interior, own_size_m
 from schemas.entities import Entity, Pose, Size, Vector
 

@@ -9,10 +9,10 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
+from nodes.geometry.polygons import Point, area, clipped, contains, covers, distance, hull
+from nodes.geometry.regions import Region
 from nodes.kb_node.relations.geometry.convex import Convex, contact, over_flat_top
 from nodes.kb_node.relations.geometry.forms import LOWEST_M, Bounds
-from nodes.kb_node.relations.geometry.polygons import Point, area, clipped, contains, covers, distance, hull
-from nodes.kb_node.relations.geometry.regions import Region
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from ontology.model_shapes import Interior
