@@ -135,6 +135,7 @@ class World:
             if placement.commit is not None:
                 records[placement.name].ordered = placement.pose
             self._has_begun(placement.name)
+            self._engine.courses.stop(self.model, self.data, placement.name, "stopped")
         moved = {placement.name: placement.pose for placement in accepted}
         self._settling.put(moved)
         return BodiesMoved(bodies=self._bodies(moved), failed=failed)

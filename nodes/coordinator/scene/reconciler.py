@@ -197,7 +197,7 @@ class Keeping:
         )
         bodies, entities = self.scene.bodies, self._door.map.entities
         jointed = [name for name, body in bodies.items() if body.joints and name in entities]
-        orders = tuple(joint_order(entities[name], bodies[name], self._config.thresholds) for name in jointed)
+        orders = tuple(joint_order(entities[name], bodies[name]) for name in jointed)
         if orders:
             self._ask(MoveJoints(orders=orders))
         return self._ask(MoveBodies(placements=placements))
@@ -403,7 +403,7 @@ class Keeping:
             self._report(f"the map cannot take over how {name} stands yet: {error}")
         elif (entity := self._door.map.entities.get(name)) is not None:
             self._report(f"{name} was put back as it stood, because the map rejected how it stands: {error}")
-            self._shut_again[name] = joint_order(entity, self.scene.bodies[name], self._config.thresholds)
+            self._shut_again[name] = joint_order(entity, self.scene.bodies[name])
 
     def _follow_grips(self, names: Sequence[str]) -> None:
         """Let the map take over who holds bodies, and where they were taken or put."""

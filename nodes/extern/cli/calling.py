@@ -193,8 +193,10 @@ def carrying(function: Callable[..., None]) -> Callable[..., None]:
 
 
 def given(fields: dict[str, Any]) -> dict[str, Any]:
-    """The options that were given."""
-    return {name: value for name, value in fields.items() if value not in (None, (), False)}
+    """The options that were given; 0 is given, too."""
+    return {
+        name: value for name, value in fields.items() if not (value is None or value is False or value == ())
+    }
 
 
 def complain(text: str) -> None:

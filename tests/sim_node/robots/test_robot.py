@@ -232,3 +232,13 @@ def test_who_moves_or_drives_it_has_placed_it_too(world, by):
     else:
         world.drive(DriveBase(name="robot1", to=((8.5, 2.0),)))
     assert commits(world) == (0, 0)
+
+
+def test_who_lifts_it_ends_its_course(world):
+    world.drive(DriveBase(name="robot1", to=((9.3, 2.0),)))
+    world.step(1.0)
+    there = Pose(position_m=(8.5, 1.2, 0.0))
+    world.move([Placement(name="robot1", pose=there)])
+    assert world.ended() == {"robot1": "stopped"}
+    world.step(3.0)
+    assert world.pose("robot1").position_m == pytest.approx(there.position_m, abs=0.02)
