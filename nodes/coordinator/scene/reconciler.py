@@ -245,8 +245,12 @@ class Keeping:
             for name, (commit, reason) in self._ungripped.items()
             if (e := self._door.map.entities.get(name)) is not None and grip_order(e).commit == commit
         )
+        lying = [
+            f"{b.name} {wording.fallen(b.name, b.pose)}" for b in self.scene.bodies.values() if b.has_fallen
+        ]
         return (
             amiss
+            + lying
             + seen
             + [f"{name}: {why}" for name, why in foreign]
             + self._awaited()
@@ -271,8 +275,9 @@ class Keeping:
         names = self.scene.left_out if self._config.truth == "scene" else ()
         if not names:
             return []
+        only_parts = "is only a part of another" if len(names) == 1 else "are only parts of others"
         return [
-            f"{wording.bodies(len(names))} of the world are only parts of others: {', '.join(names)}"
+            f"{wording.bodies(len(names))} of the world {only_parts}: {', '.join(names)}"
             ' (to have one, add <text name="semmap:BODY" data="CLASS"/>)'
         ]
 
