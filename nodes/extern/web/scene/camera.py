@@ -118,9 +118,11 @@ def uncrowded(
     at = view.project(np.array([place for _, place in labels.values()], dtype=float))
     for row in sorted(range(len(keys)), key=lambda row: (ranks.get(keys[row], len(ranks)), at[row, 2])):
         x, y, ahead = (float(value) for value in at[row])
-        if ahead <= _NEAREST_M or not (0.0 <= x <= view.width and 0.0 <= y <= view.height):
+        if ahead <= _NEAREST_M or not 0.0 <= y <= view.height:
             continue
         half = _width_px(labels[keys[row]][0]) / 2.0 + 5.0
+        if x < half or x > view.width - half:  # cut off at the edge
+            continue
         box = (x - half, y - _LABEL_PX, x + half, y)
         if any(_overlap(box, other) for other in taken):
             continue
