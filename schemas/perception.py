@@ -63,3 +63,26 @@ class SegmentedCloud(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     positions: bytes
     colors: bytes
     labels: bytes
+
+
+class SeenInFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One object in a frame of a dataset: as in `Observation`, and where in the picture.
+
+    `box_px`: first column and row, and those after the last [pixel].
+    """
+
+    class_: str = field(name="class")
+    probability: Probability
+    candidates: dict[str, Probability] = {}
+    pose: Pose
+    size_m: Size
+    box_px: tuple[int, int, int, int]
+    points: int
+
+
+class FrameRow(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What one frame of a dataset shows, or what is wrong with it."""
+
+    frame: str
+    objects: tuple[SeenInFrame, ...] = ()
+    error: str = ""
