@@ -24,6 +24,7 @@ from PIL import Image
 from nodes.sim_node.vision.camera import Eye
 from nodes.sim_node.vision.noise import kinect_noise
 from nodes.sim_node.vision.view import View, look_at
+from nodes.training.scenes.foreign_things import ForeignThing, foreign_things
 from nodes.training.scenes.placements import spread
 
 WIDTH, HEIGHT = 640, 480
@@ -35,47 +36,18 @@ _BEDDED_M = 0.0005
 
 
 @dataclass(frozen=True)
-class Thing:
-    """A foreign thing: its mesh, upright in metres, and what it may be taken for."""
-
-    name: str
-    folder: Path
-    classes: tuple[str, ...]
-    new: bool
-    size_m: tuple[float, float, float]
-    group: str
-    learnable: bool
-
-
-@dataclass(frozen=True)
 class Stood:
     """A thing where it stands: the middle of its bottom [m] and yaw [rad]."""
 
-    thing: Thing
+    thing: ForeignThing
     x: float
     y: float
     z: float
     yaw: float
 
 
-def things_in(folder: Path) -> list[Thing]:
-    """The things that `things.json` of a folder tells of."""
-    return [
-        Thing(
-            name=told["name"],
-            folder=(folder / told["file"]).parent,
-            classes=tuple(told["classes"]),
-            new=told["new"],
-            size_m=tuple(told["size_m"]),
-            group=told["group"],
-            learnable="train" in told["use"],
-        )
-        for told in json.loads((folder / "things.json").read_text())
-    ]
-
-
 def scenes(
-    things: Sequence[Thing], alone: int, mixed: int, rng: np.random.Generator
+    things: Sequence[ForeignThing], alone: int, mixed: int, rng: np.random.Generator
 ) -> Iterator[tuple[str, list[Stood]]]:
     """Each thing by itself so many times, and so many tables of several."""
     for thing in things:
@@ -84,7 +56,7 @@ def scenes(
             yield "alone", [Stood(thing, x, y, _height(rng), float(rng.uniform(-math.pi, math.pi)))]
     for _ in range(mixed):
         some = [things[n] for n in rng.choice(len(things), TOGETHER, replace=False)]
-        places = spread([t.name for t in some], [t.size_m for t in some], (0.7, 0.9), 0.03, rng)
+        places = spread([t.size_m for t in some], (0.7, 0.9), 0.03, rng)
         z, pairs = _height(rng), zip(some, places, strict=True)
         yield "mixed", [Stood(t, place[0], place[1], z, place[4]) for t, place in pairs if place is not None]
 
@@ -144,7 +116,7 @@ def _add(spec: mujoco.MjSpec, one: Stood, number: int) -> None:
         pos=[one.x, one.y, one.z - _BEDDED_M],
         quat=[math.cos(one.yaw / 2), 0, 0, math.sin(one.yaw / 2)],
     )
-    parts = trimesh.load_scene(one.thing.folder / "model.obj").dump()
+    parts = trimesh.load_scene(one.thing.mesh).dump()
     low = np.min([part.bounds[0] for part in parts], axis=0)
     high = np.max([part.bounds[1] for part in parts], axis=0)
     middle = (low + high) / 2.0
@@ -230,7 +202,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     rng, studio = np.random.default_rng(options.seed), Studio()
-    found = things_in(options.things)
+    found = foreign_things(options.things)
     for number, (kind, stood) in enumerate(scenes(found, options.alone, options.mixed, rng)):
         distance = "near" if number % 2 == 0 else "far"
         shot = studio.shoot(stood, float(rng.uniform(*(_NEAR_M if distance == "near" else _FAR_M))), rng)
