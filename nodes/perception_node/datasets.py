@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from nodes.perception_node.detector import Detector
 from nodes.perception_node.input.files.frame_folders import FileFrame, read_frame
 from nodes.perception_node.pipeline import Learnt, look
 from schemas.errors import SemmapError
@@ -28,25 +29,28 @@ class Told(NamedTuple):
     labels: NDArray[np.int32] | None
 
 
-def perceived(folders: Sequence[Path], learnt: Learnt) -> Iterator[Told]:
+def perceived(folders: Sequence[Path], learnt: Learnt, detector: Detector | None = None) -> Iterator[Told]:
     """What the frames in these folders show, in their order; what is wrong with one is told in its row."""
     cores = os.cpu_count() or 1
     under_way: deque[Future[Told]] = deque()
     with ThreadPoolExecutor(cores) as threads:
         for folder in folders:
-            under_way.append(threads.submit(_told, folder, learnt))
+            under_way.append(threads.submit(_told, folder, learnt, detector))
             if len(under_way) >= _AHEAD * cores:
                 yield under_way.popleft().result()
         while under_way:
             yield under_way.popleft().result()
 
 
-def _told(folder: Path, learnt: Learnt) -> Told:
+def _told(folder: Path, learnt: Learnt, detector: Detector | None) -> Told:
     try:
         frame = read_frame(folder)
+        masks = None
+        if detector is not None:
+            masks = detector.masks_of(folder / detector.file, frame.shape).thinned(frame.step)
     except SemmapError as error:
         return Told(FrameRow(frame=folder.name, error=error.text), None)
-    seen = look([frame.cloud], learnt)
+    seen = look([frame.cloud], learnt, [masks], None if detector is None else detector.labels)
     labels = _whole(seen.labels[0], frame)
     boxes = _boxes(labels, len(seen.observations.observations))
     rows = zip(seen.observations.observations, boxes, strict=True)

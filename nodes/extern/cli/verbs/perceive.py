@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -18,6 +19,9 @@ from nodes.extern.files import write_atomically
 from nodes.runtime import extras
 from schemas import errors, wording
 from schemas.perception import FrameRow
+
+if TYPE_CHECKING:
+    from nodes.perception_node.detector import Detector
 
 _SAY_S = 5.0
 """After this time it is told again how far a dataset is."""
@@ -51,6 +55,19 @@ _FRAMES = {"map": "map frame", "plane": "frame: the largest plane is z = 0, the 
     type=click.Path(path_type=Path),
     help="JSON file with fx, fy, cx, cy [pixel] and, optionally, depth_scale [m] and map_from_camera.",
 )
+@click.option(
+    "--masks",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Masks of a detector: COCO's JSON or a label image; with --frames, their name in each folder.",
+)
+@click.option(
+    "--label-map",
+    metavar="FILE.json",
+    type=click.Path(path_type=Path),
+    help='With --masks: what its labels are called here, {"coffee mug": "Cup"}.',
+)
+@click.option("--masks-only", is_flag=True, help="With --masks: find nothing but what they show.")
 @click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
 def perceive(
     files: tuple[Path, ...],
@@ -58,6 +75,9 @@ def perceive(
     labels: Path | None,
     rows: Path | None,
     intrinsics: Path | None,
+    masks: Path | None,
+    label_map: Path | None,
+    masks_only: bool,
     format: str,
 ) -> None:
     """Find the objects in point clouds, depth images or whole datasets.
@@ -66,12 +86,14 @@ def perceive(
     cloud's own shape, (height, width), or (1, points) when it is not organised: 0 for background, 1 to n
     for the objects.
     """
+    extras.require("semmap perceive", "perception")
+    detector = _detector(masks, label_map, masks_only=masks_only)
     if frames is not None:
         if files or intrinsics is not None:
             raise errors.BadRequest(
                 "--frames takes neither files nor --intrinsics; each frame has its own camera.json"
             )
-        _dataset(frames, labels, rows, format)
+        _dataset(frames, labels, rows, detector, format)
         return
     if rows is not None:
         raise errors.BadRequest("--json goes with --frames; for files use --format json")
@@ -81,7 +103,6 @@ def perceive(
         raise errors.BadRequest(
             f"labels are written as a NumPy array; name the file {labels.with_suffix('.npy').name}"
         )
-    extras.require("semmap perceive", "perception")
     import numpy as np  # half of what the command line would take to start
 
     from nodes.perception_node.input.files.cloud_files import read_frames
@@ -89,12 +110,15 @@ def perceive(
     from nodes.perception_node.views.segmented_view import see
 
     clouds = list(read_frames(files, intrinsics))
-    if labels is not None and len(clouds) != 1:
-        raise errors.BadRequest(f"--labels takes one frame, and these are {len(clouds)}")
+    for option, given in (("--labels", labels), ("--masks", masks)):
+        if given is not None and len(clouds) != 1:
+            raise errors.BadRequest(f"{option} takes one frame, and these are {len(clouds)}")
     records = []
     for file, cloud in clouds:
         sight = see(cloud)
-        told = one_by_one(sight, shipped())
+        if detector is not None:
+            sight = detector.cut(sight)
+        told = one_by_one(sight, shipped(), None if detector is None else detector.labels)
         frame = "plane" if cloud.map_from_camera is None else "map"
         if format == "json":
             records.append({"file": str(file), "frame": frame, "objects": as_records(sight, told)})
@@ -112,9 +136,25 @@ def perceive(
         print_json(records)
 
 
-def _dataset(folder: Path, labels: Path | None, out: Path | None, format: str) -> None:
+def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -> Detector | None:
+    """What a detector of one's own has found."""
+    if masks is None:
+        if label_map is not None or masks_only:
+            raise errors.BadRequest("--label-map and --masks-only go with --masks")
+        return None
+    from nodes.perception_node.detector import Detector
+    from nodes.perception_node.input.files.mask_files import read_label_map
+    from nodes.perception_node.recognition.shipped_votes import shipped
+    from nodes.perception_node.recognition.told_names import Labels
+
+    classes = read_label_map(label_map) if label_map is not None else {}
+    return Detector(masks, Labels(shipped(), classes), masks_only)
+
+
+def _dataset(
+    folder: Path, labels: Path | None, out: Path | None, detector: Detector | None, format: str
+) -> None:
     """What each frame of a dataset shows; what is wrong with one is told in its row, and the others go on."""
-    extras.require("semmap perceive", "perception")
     import msgspec
     import numpy as np
 
@@ -129,7 +169,7 @@ def _dataset(folder: Path, labels: Path | None, out: Path | None, format: str) -
         except OSError as error:
             raise errors.BadFile(f"{labels} cannot be made a folder of labels: {error.strerror}") from None
     rows, said, began_s = [], 0.0, time.monotonic()
-    for told in perceived(folders, shipped()):
+    for told in perceived(folders, shipped(), detector):
         rows.append(told.row)
         if labels is not None and told.labels is not None:
             buffer = io.BytesIO()
