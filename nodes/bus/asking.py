@@ -367,7 +367,7 @@ def read_reply(
 
 
 def _is_late(reply: zenoh.Reply) -> bool:
-    """Is it no answer, but Zenoh's word that time has run out? A client gets that as from its next neighbour."""
+    """Is it no answer, but Zenoh's word that time has run out? It may come as its next neighbour's."""
     error = reply.err
     if error is None or str(error.encoding) == _ERROR_ENCODING:
         return False
