@@ -173,7 +173,9 @@ def _check_grip(order: GripOrder, there: Mapping[str, BodyRecord]) -> None:
     if order.name == order.holder:
         raise ModelError(f"{order.name} cannot hold itself")
     if order.name in chain(order.holder, there):
-        raise ModelError(f"{order.holder} is held by {order.name} or part of it, so it cannot hold it")
+        raise ModelError(
+            f"{order.holder} is held by {order.name} or part of it, so it cannot hold {order.name}"
+        )
     if record.anchored or record.fixed:
         where = f"held by {record.part_of or 'its joint'}" if record.anchored else "fixed where it stands"
         raise ModelError(f"{order.name} is {where}, so nothing can take it")
