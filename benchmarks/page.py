@@ -32,7 +32,7 @@ from nodes.extern.client import Client
 from nodes.extern.testing import free_endpoint, own_system
 
 _SEMMAP = str(Path(sys.executable).with_name("semmap"))
-_FLAGS = ("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking")
+FLAGS = ("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking")
 _SHOWN = """n => {
   const said = /commit ([0-9,]+)/.exec(document.querySelector(".semmap-state").innerText);
   return said && Number(said[1].replaceAll(",", "")) >= n;
@@ -90,7 +90,7 @@ def effects(client: Client, tab: Page, changes: int) -> list[float]:
     taken = []
     for i in range(changes):
         began = time.monotonic()
-        commit = client.add("Cup", f"measured{i}", at=(2.0 + i % 10 / 10, 3.0, 1.0)).commit
+        commit = client.add("Cup", at=(2.0 + i % 10 / 10, 3.0, 1.0)).commit
         tab.wait_for_function(_SHOWN, arg=commit, polling="raf", timeout=_WAIT_MS)
         taken.append(time.monotonic() - began)
         time.sleep(0.13)  # not in step with the page, which tells ten times a second
@@ -179,7 +179,7 @@ def main() -> None:
     if path is None:
         sys.exit("there is no Chromium: sudo apt-get install chromium")
     with sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=path, args=[*_FLAGS])
+        browser = driver.chromium.launch(executable_path=path, args=[*FLAGS])
         found: dict[str, Any] = of_the_flat(browser, options.changes, options.minutes)
         if options.entities:
             found |= of_many(browser, options.entities)

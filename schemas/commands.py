@@ -248,6 +248,23 @@ class Detach(Command[Changed], frozen=True, tag="detach"):
     dry_run: bool = False
 
 
+class Batch(Command[Changed], frozen=True, tag="batch"):
+    """Several changes of entities in one commit: all of them or, where one is refused, none.
+
+    `changes` are `update`, `set` and `unset` in any order, for they happen together: an entity is updated
+    once at most, and a property of it is set or unset once. Who makes them and why, `confidence`,
+    `unchanged`, `since` and `dry_run` are said of the batch. Positions are in the map frame.
+    """
+
+    LARGEST: ClassVar[int] = MANY
+
+    changes: Annotated[tuple[Update | Set | Unset, ...], Meta(min_length=1, max_length=10_000)]
+    confidence: Probability | None = None
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
+    dry_run: bool = False
+
+
 class Remove(Command[Changed], frozen=True, tag="remove"):
     """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
 

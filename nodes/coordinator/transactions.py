@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Final, NamedTuple
 
 from schemas import errors, polygons
-from schemas.commands import Add, Attach, Command, Detach, Set, Track, Unset, Update
+from schemas.commands import Add, Attach, Batch, Command, Detach, Set, Track, Unset, Update
 from schemas.commits import Edit, NewEntity, Statement, Transaction
 from schemas.entities import IDENTITY, ClassInfo, Entity, Pose, Size, Value, Vector
 from schemas.grips import GRASP_POSE, IS_GRASPED_BY, pose_text
 from schemas.scene_files import Described, pose_of
+
+_FEW: Final = 4
+"""Of so many changes that are made together the reason names each."""
 
 
 def transaction(
@@ -117,6 +120,17 @@ def unstate(command: Unset) -> Transaction:
     )
     said = "".join(f" {_text(v)}" for v in value)
     return transaction(command, f"unset {command.name} {command.property}{said}", edit=[edit])
+
+
+def together(command: Batch, changes: Sequence[Transaction]) -> Transaction:
+    """All of these changes as one."""
+    reasons = [change.reason for change in changes]
+    said = "; ".join(reasons if len(reasons) <= _FEW else [*reasons[: _FEW - 1], _more(reasons)])
+    return transaction(command, said, edit=[edit for change in changes for edit in change.edit])
+
+
+def _more(reasons: Sequence[str]) -> str:
+    return f"and {len(reasons) - _FEW + 1} more changes"
 
 
 def track(command: Track) -> Transaction:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nodes.coordinator import holding, transactions
-from nodes.coordinator.authority import require_authority
+from nodes.coordinator.authority import is_placing, require_authority
 from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.committing import changed, commit, new_id, once, taken_anew
 from nodes.coordinator.door.known_map import KnownMap
@@ -73,34 +73,43 @@ def _add(view: KnownMap, command: Add, found: ClassInfo) -> Talk[Changed]:
 @once
 def update(view: KnownMap, command: Update) -> Talk[Changed]:
     """Change an entity; omitted fields keep their values."""
+    entity, found = updatable(view, command)
+    made = yield from commit(view, transactions.update(command, entity, found))
+    return changed(
+        made,
+        f"updated {_said(entity, made)}" if made else _said(entity, made),
+        names=(entity.name, *(_others(made, entity.name) if command.carry else ())),
+        notes=notes_on(view, command, entity, found, made),
+    )
+
+
+def updatable(view: KnownMap, command: Update) -> tuple[Entity, ClassInfo | None]:
+    """The entity that is to be changed so, and the class that it is to have. Raises where it may not be."""
     entity = view.entity(command.name)
     require_carrying(command)
-    if command.source != "perception" and (command.at, command.yaw, command.orientation) != (
-        None,
-        None,
-        None,
-    ):
+    if command.source != "perception" and is_placing(command):
         holding.require_free(entity)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
     shape = (found, command.ref, command.alt, command.size, command.extent)
     if any(value is not None for value in shape):
         require_authority(command, [entity])
     require_same_nature(entity, found, force=command.force)
-    made = yield from commit(view, transactions.update(command, entity, found))
+    return entity, found
+
+
+def notes_on(
+    view: KnownMap, command: Update, entity: Entity, found: ClassInfo | None, made: Effects | None
+) -> tuple[str, ...]:
+    """What is to be known of an entity that was changed so."""
     now = _after(made, entity.name) or entity
-    return changed(
-        made,
-        f"updated {_said(entity, made)}" if made else _said(entity, made),
-        names=(entity.name, *(_others(made, entity.name) if command.carry else ())),
-        notes=(
-            *(view.classes.note(command.class_ or "", found) if found else ()),
-            *doubts(
-                entity.name,
-                found or view.classes.by_name.get(entity.class_),
-                now.pose if command.at else None,
-                command.size,
-                view.places,
-            ),
+    return (
+        *(view.classes.note(command.class_ or "", found) if found else ()),
+        *doubts(
+            entity.name,
+            found or view.classes.by_name.get(entity.class_),
+            now.pose if command.at else None,
+            command.size,
+            view.places,
         ),
     )
 

@@ -88,7 +88,7 @@ def layout(page: Page) -> None:
         _header(page, left, right, dark, open_add)
     _keys(page)
     _look(page, left, right)
-    page.on_look(lambda: _begin_scene(page, stage))
+    ui.on("semmap_scene", lambda: _begin_scene(page, stage))
     ui.timer(0.05, lambda: _ready(page), once=True)
 
 
@@ -98,7 +98,7 @@ def _ready(page: Page) -> None:
 
 
 def _begin_scene(page: Page, stage: ui.element) -> None:
-    """The scene begins when the browser has drawn the rest, for both are drawn on the same thread there."""
+    """The scene begins when the browser has drawn the rest: both are drawn on the same thread there."""
     draw, page.draw_scene = page.draw_scene, None
     if draw is not None:
         with stage:

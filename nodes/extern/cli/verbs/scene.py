@@ -60,7 +60,10 @@ def attach(client: Client, **fields: Any) -> None:
 @click.option("--dry-run", is_flag=True, help="Only say what would be.")
 @talks
 def detach(client: Client, name: str, dry_run: bool) -> None:
-    """Let go of an entity that something holds, and of what was taken along with it."""
+    """Let go of an entity that something holds.
+
+    What was taken along with it (--carry) is let go with it.
+    """
     print_lines(lines.changed(client.detach(name, dry_run=dry_run)))
 
 
