@@ -45,7 +45,7 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
         *("status", "history", "last-seen", "sparql", "watch", "renew", "picture", "floorplan", "route"),
         "frames",
     ),
-    _OBSERVERS: ("add", "update", "set", "unset", "remove"),
+    _OBSERVERS: ("add", "update", "set", "unset", "batch", "remove"),
     _OPERATORS: (
         "clear",
         "load",

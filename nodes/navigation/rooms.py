@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from nodes.kb_node.relations.geometry.polygons import Point
+from nodes.geometry.polygons import Point
 from nodes.navigation.grid import FREE, UNKNOWN, Mask, OccupancyGrid
 from nodes.navigation.outlines import outline_of
 from schemas.polygons import Polygon
