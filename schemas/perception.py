@@ -101,7 +101,7 @@ class MaskRun(Struct, frozen=True, kw_only=True):
 
 
 class MaskImage(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Masks as one image: `labels` (H, W) little-endian 16-bit, 0 for none, n for what `names[n - 1]` names."""
+    """Masks as one image: `labels` (H, W) little-endian 16-bit, 0: none, n: what `names[n - 1]` names."""
 
     labels: bytes
     names: tuple[str, ...] = ()
