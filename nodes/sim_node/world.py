@@ -134,6 +134,7 @@ class World:
         for placement in accepted:
             if placement.commit is not None:
                 records[placement.name].ordered = placement.pose
+            self._has_begun(placement.name)
         moved = {placement.name: placement.pose for placement in accepted}
         self._settling.put(moved)
         return BodiesMoved(bodies=self._bodies(moved), failed=failed)
@@ -169,13 +170,25 @@ class World:
         return Gripped(bodies=self._bodies(order.name for order in accepted), failed=failed)
 
     def mark_robot(self, name: str) -> None:
-        """This body is a robot, and so are those that are part of it; its joints open nothing."""
+        """This body is a robot, and so are those that are part of it; its joints open nothing.
+
+        Nobody has told it yet where to stand.
+        """
         records = self._engine.records
         for record in records.values():  # wholes come before their parts
             above = records.get(record.part_of)
             if record.name == name or (above is not None and above.robot):
-                record.robot = True
+                record.robot, record.commit = True, -1
                 record.joints = tuple(structs.replace(joint, closed=None) for joint in record.joints)
+
+    def _has_begun(self, name: str) -> None:
+        """Note that a body was placed, moved or driven; of a robot, its parts with it."""
+        records = self._engine.records
+        records[name].commit = max(0, records[name].commit)
+        if records[name].robot:
+            for record in records.values():
+                if record.robot and record.part_of and records[record.part_of].commit >= 0:
+                    record.commit = max(0, record.commit)
 
     def drive(self, order: DriveBase) -> None:
         """Begin a course, or, without points, end one.
@@ -198,6 +211,7 @@ class World:
         for x, y in order.to:
             if math.hypot(x, y) > orders.REACH_M:
                 raise Refused(f"({x:g}, {y:g}) is too far; the limit is {orders.REACH_M:.0f} m")
+        self._has_begun(name)
         engine.drive_base(name, order.to, order.yaw, order.speed)
 
     def ended(self) -> dict[str, Outcome]:

@@ -91,7 +91,7 @@ def layout(page: Page) -> None:
         _header(page, left, right, dark, open_add)
     _keys(page)
     _look(page, left, right)
-    page.on_look(lambda: _begin_scene(page, stage))
+    ui.on("semmap_scene", lambda: _begin_scene(page, stage))
     ui.timer(0.05, lambda: _ready(page), once=True)
 
 
@@ -101,7 +101,7 @@ def _ready(page: Page) -> None:
 
 
 def _begin_scene(page: Page, stage: ui.element) -> None:
-    """The scene begins when the browser has drawn the rest, for both are drawn on the same thread there."""
+    """The scene begins when the browser has drawn the rest: both are drawn on the same thread there."""
     draw, page.draw_scene = page.draw_scene, None
     if draw is not None:
         with stage:
@@ -142,7 +142,7 @@ def _state(page: Page) -> None:
     """Which moment is shown, whether it goes on with the map, and the way back to now."""
     with ui.element("div").classes("semmap-state").props('role="status"'):
         dot = ui.element("span").classes("semmap-dot")
-        commit = ui.label()
+        commit = ui.label().classes("semmap-commit")
         many = ui.label().classes("semmap-entities")
         back = ui.button("Back to now", on_click=lambda: page.go_to(None)).props("flat dense color=warning")
 

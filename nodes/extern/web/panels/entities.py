@@ -42,6 +42,7 @@ _OPTIONS: Final = {
     "localeText": {"noRowsToShow": "No entity fits."},
     ":onGridReady": "(grid) => { const table = document.querySelector('.entity-table [role=grid]');"
     " if (table) table.setAttribute('aria-label', 'Entities'); }",
+    ":onFirstDataRendered": "() => semmapBeginScene()",
 }
 _CHOSEN_BY_HAND: Final = (
     "(event) => { if (!/^(api|rowData|rowGroup|selectable|gridInit)/.test(event.source))"
