@@ -139,7 +139,7 @@ def _state(page: Page) -> None:
     """Which moment is shown, whether it goes on with the map, and the way back to now."""
     with ui.element("div").classes("semmap-state").props('role="status"'):
         dot = ui.element("span").classes("semmap-dot")
-        commit = ui.label()
+        commit = ui.label().classes("semmap-commit")
         many = ui.label().classes("semmap-entities")
         back = ui.button("Back to now", on_click=lambda: page.go_to(None)).props("flat dense color=warning")
 
