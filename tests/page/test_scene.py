@@ -133,7 +133,7 @@ def test_a_click_selects_and_one_beside_things_selects_nothing(tab, system, chai
 
 
 def drag_along_x(tab, view, client, name) -> None:
-    """By the arrow along x until the map follows; before the arrow is drawn, the mouse turns the view instead."""
+    """By the arrow along x, until the map follows; before it is drawn, the mouse turns the view instead."""
     entity = client.get(name)
     x, y, z = entity.pose.position_m
     grip = 0.6 * arm_m(entity.size_m)

@@ -33,8 +33,9 @@ class Gizmo:
         self._handles: tuple[TransformControlsHandle, ...] = ()
         self._pose: Pose | None = None
         self._shown = 0
-        """How often it has been shown: part of the handles' names. A browser that is told to remove and to add a node
-        of one name in one message keeps that node as it is turned, and viser never sends it an identity orientation."""
+        """How often it has been shown: part of its handles' names, so that none is used twice. A browser that
+        is told at once to remove a node and to add one of the same name leaves it turned as it was, and an
+        orientation that is the identity is not sent."""
 
     @property
     def is_shown(self) -> bool:
