@@ -15,11 +15,13 @@ _THICK_M: Final = 0.55
 """Walls inside a building are thin; of those that are thicker, up to this, both ends must be seen."""
 _DEEP_M: Final = 0.25
 """For so long a wall goes on behind its end, in line with the gap."""
-_STUB_CELLS: Final = 3
+_STUB_CELLS: Final = 2
 """So short are the stubs of wall beside a door at the end of a corridor."""
-_GROWTH_CELLS: Final = 1.5
+_GROWTH: Final = 1.5
+_STUB_GROWTH: Final = 1.0
+"""By how much a wall may get thicker on the way [cells]."""
 _ASKEW: Final = 0.3
-"""By how much a wall may get thicker, and by which share of its length it may lead off the line."""
+"""By which share of its length a wall may lead off the line."""
 _ASIDE_CELLS: Final = 2.5
 _HALF: Final = 0.5
 """Of a cell: the step by which a thickness is measured."""
@@ -32,9 +34,9 @@ class Jambs:
     """The ends of walls in a grid.
 
     Behind its end a wall goes on in line with the gap, thin and no thicker further in. The side of a room
-    is long across that line, furniture is thicker than a wall, and the corner of either, which a gap may meet
-    askew, gets thicker inwards. One such wall makes a door, since the other side may be flush with another wall,
-    or have furniture beside it; two do if they are short, or thick.
+    is long across that line, furniture is thicker than a wall, and the corner of either, which a gap may
+    meet askew, gets thicker inwards. One such wall makes a door, since the other side may be flush with
+    another wall, or have furniture beside it; two do if they are short, or thick.
     """
 
     def __init__(self, free: Mask, resolution: float) -> None:
@@ -56,14 +58,18 @@ class Jambs:
         ends = (self._behind(one, along), self._behind(other, (-along[0], -along[1])))
         return (
             any(len(end) == self._deep and self._is_wall(end) for end in ends)
-            or all(len(end) >= _STUB_CELLS and self._is_wall(end[:_STUB_CELLS]) for end in ends)
+            or all(len(end) >= _STUB_CELLS and self._is_stub(end[:_STUB_CELLS]) for end in ends)
             or all(len(end) == self._deep for end in ends)
         )
 
     def _is_wall(self, thicknesses: list[float]) -> bool:
         """Whether something that is so thick, cell by cell from its end on, is a thin wall."""
-        most = min(self._thin, thicknesses[1] + _GROWTH_CELLS)
-        return max(thicknesses) <= most and thicknesses[1] <= thicknesses[0] + _GROWTH_CELLS + 1.0
+        end, behind, *_ = thicknesses
+        return max(thicknesses) <= min(self._thin, behind + _GROWTH) and behind <= end + _GROWTH + 1.0
+
+    def _is_stub(self, thicknesses: list[float]) -> bool:
+        """Whether it is a thin wall as far as that can be told of so few cells."""
+        return max(thicknesses) <= min(self._thin, thicknesses[0] + _STUB_GROWTH)
 
     def _nearest_to(self, spot: Spot) -> Spot:
         row, column = self._clipped(spot)
@@ -87,7 +93,7 @@ class Jambs:
             there = self._reach((row, column), side)
             back = self._reach((row, column), (-side[0], -side[1]))
             aside = shifts[k] + (there - back) / 2.0
-            if depth < _STUB_CELLS:
+            if depth <= _STUB_CELLS:
                 began = aside
             if 1.0 + there + back > self._thick or abs(aside - began) > _ASKEW * (depth - 1) + 0.5:
                 break

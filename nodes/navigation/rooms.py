@@ -2,8 +2,9 @@
 
 Each free cell has a clearance, its distance to the nearest obstacle. Cells are let in from the widest on, so
 that each room begins at its middle; where two of them meet, the free space there is a neck, of the clearance
-that the meeting cell has. A neck that is as narrow as a door, and plainly narrower than both sides, is the
-border of two rooms; over any other they are one. The order is fixed, so the same plan makes the same rooms.
+that the meeting cell has. A neck that is as narrow as a door, plainly narrower than both sides, and a gap in a
+wall (`jambs.py`), is the border of two rooms; over any other they are one. The order is fixed, so the same plan
+makes the same rooms.
 """
 
 from __future__ import annotations
@@ -188,9 +189,7 @@ def _basins(clearance: NDArray[np.float64], most_m: float, resolution: float, ja
                         apart.add(pair)
                     else:
                         parent[other] = first
-                        apart = {
-                            (first if a == other else a, first if b == other else b) for a, b in apart
-                        }
+                        apart = {(first if a == other else a, first if b == other else b) for a, b in apart}
     names: dict[int, int] = {}
     found_labels = [names.setdefault(root(k), len(names) + 1) if k else 0 for k in label]
     return np.array(found_labels, dtype=np.int32).reshape(height + 2, across)[1:-1, 1:-1]
