@@ -2,9 +2,9 @@
 
 Each free cell has a clearance, its distance to the nearest obstacle. Cells are let in from the widest on, so
 that each room begins at its middle; where two of them meet, the free space there is a neck, of the clearance
-that the meeting cell has. A neck that is as narrow as a door, plainly narrower than both sides, and a gap in a
-wall (`jambs.py`), is the border of two rooms; over any other they are one. The order is fixed, so the same plan
-makes the same rooms.
+that the meeting cell has. A neck that is as narrow as a door, plainly narrower than both sides, and a gap in
+a wall (`jambs.py`), is the border of two rooms; over any other they are one. The order is fixed, so the same
+plan makes the same rooms.
 """
 
 from __future__ import annotations
