@@ -36,7 +36,8 @@ class BodyOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A body as it stands in the scene.
 
-    `commit` is the commit whose pose it was last ordered to take, 0 for what the map never placed.
+    `commit` is the commit whose pose it was last ordered to take, 0 for what the map never placed, and -1
+    for a robot and its parts until it is first placed, moved or driven in this run of the simulator.
     `shape_commit` is the commit it was made for. `entity` tells bodies made from the map from the
     world's own furniture. `size_m` is what it really measures. `joints` are those that move parts of it, and
     `joint_commit` is the commit whose positions these were last ordered to take. It rests when these do, too.
@@ -237,7 +238,7 @@ class Surface(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Surfaces(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Those of the bodies that are there and were made from a model; the world's own are not."""
+    """Those of the bodies that are there; of the world's own as their parts stood when it was asked."""
 
     surfaces: dict[str, Surface]
 

@@ -74,7 +74,9 @@ class Coordinator:
         running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
         self._opening = Opening(door, self._keeping, self._ask_sim)
         scene = self._keeping.scene
-        self._gripping = Gripping(config.truth, door, scene, self._turns.change, self._ask_sim)
+        self._gripping = Gripping(
+            config.truth, door, scene, self._turns.change, self._ask_sim, self._bridge.ask_later
+        )
         door.map.where, door.map.bodies = self._live.where, lambda: scene.bodies
         relay = self._bridge.relay
         of_the_map = calls.by_verb(

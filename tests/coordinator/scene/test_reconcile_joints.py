@@ -53,6 +53,12 @@ def test_what_is_said_and_so_already_is_ordered_without_moving_anything():
     assert (wanted.positions, wanted.commit) == ({}, 2)
 
 
+def test_what_moves_is_ordered_even_where_it_passes_just_now():
+    """It may be on its way to shut, by the word before."""
+    (wanted,) = look([fridge(3, isOpen=True)], [standing(0.9, joint_commit=2, resting=False)]).joints
+    assert (wanted.positions, wanted.commit) == ({"door": 1.6}, 3)
+
+
 def test_once_ordered_whatever_stopped_it_counts():
     assert look([fridge(2, isOpen=True)], [standing(0.0, joint_commit=2)]).opened == ("chair1",)
 

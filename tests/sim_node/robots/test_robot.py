@@ -211,3 +211,24 @@ def test_where_its_camera_is_and_who_carries_it_is_told(world):
     ahead = compose(head.pose, Pose(position_m=(0.1, 0.2, 1.0))).position_m
     assert ahead == pytest.approx(tuple((view @ [0.1, 0.2, 1.0, 1.0])[:3]), abs=1e-6)
     assert {camera.part_of for name, camera in told.items() if name != "robot1_head"} <= {""}
+
+
+def commits(world) -> tuple[int, ...]:
+    return world.poses().commits
+
+
+def test_nobody_has_placed_it_until_the_map_does(world):
+    assert commits(world) == (-1, -1)
+    there = Pose(position_m=(8.5, 1.5, 0.0))
+    assert world.move([Placement(name="robot1", pose=there, commit=7)]).failed == {}
+    assert commits(world) == (7, 0)  # its gripper goes along
+    assert world.pose("robot1").position_m == pytest.approx((8.5, 1.5, 0.0), abs=2e-3)
+
+
+@pytest.mark.parametrize("by", ["hand", "drive"])
+def test_who_moves_or_drives_it_has_placed_it_too(world, by):
+    if by == "hand":
+        world.move([Placement(name="robot1", pose=Pose(position_m=(8.5, 1.5, 0.0)))])
+    else:
+        world.drive(DriveBase(name="robot1", to=((8.5, 2.0),)))
+    assert commits(world) == (0, 0)

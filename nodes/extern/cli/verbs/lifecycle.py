@@ -140,11 +140,12 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         "--robot-at",
         nargs=3,
         type=float,
-        default=(0.0, 0.0, 0.0),
+        default=None,
         metavar="X Y Z",
-        help="Where the robot stands at first [m].  [default: 0 0 0]",
+        help="Where a robot that the map does not know yet stands [m]; any other begins where it last stood."
+        "  [default: 0 0 0]",
     )
-    @click.option("--robot-yaw", type=float, default=0.0, metavar="RAD", help="How it is turned at first.")
+    @click.option("--robot-yaw", type=float, default=0.0, metavar="RAD", help="How a new robot is turned.")
     @click.option("--window", is_flag=True, help="Open a window that shows the scene (needs a display).")
     @click.option(
         "--models",
@@ -269,7 +270,7 @@ def _settings(
     *, tbox: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], spatial_root: tuple[str, ...],
     abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
     threshold: float, angle_threshold: float, robot: str | None, robot_name: str,
-    robot_at: tuple[float, float, float], robot_yaw: float, stale: float, journal_every: float,
+    robot_at: tuple[float, float, float] | None, robot_yaw: float, stale: float, journal_every: float,
     listen: str, connect: tuple[str, ...], window: bool, models: Path | None, camera_hz: float | None,
     camera_size: tuple[int, int], camera_noise: bool, perception: bool, when_gone: str, no_sim: bool,
     no_record: bool, record_keep: str | None, only: str | None, single: bool, secure: Path | None,
