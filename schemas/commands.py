@@ -495,7 +495,7 @@ class FindWay(Command[Way], frozen=True, tag="route"):
 class Export(Command[Document], frozen=True, tag="export"):
     """Export the map as a document, checked first; with `inferred` including inferred facts.
 
-    With `as_of` the map as it was then, as it was asserted.
+    With `as_of` the map as it was then; what followed and was measured then is worked out again.
     """
 
     format: RdfFormat = "rdfxml"
