@@ -82,7 +82,8 @@ def check(
     """Compare the commits of a recording with those in the journal of a data folder, or of a running system.
 
     Returns what was compared, in a sentence; `tell` is told of what cannot be read of the recording. Raises
-    Refused with the first difference; BadFile for no recording or no map.
+    Refused with the first difference, or with the commits that the recording lacks; BadFile for no recording
+    or no map.
     """
     file, data = Path(file), None if data is None else Path(data)
     extras.require("semmap replay --check", "kb", "record")
@@ -104,6 +105,8 @@ def check(
         verdict = compare(recorded, journal.commit, first=journal.first, last=journal.last)
     if not verdict.is_same:
         raise errors.Refused(f"{file} is not a recording of this map: {verdict.text}")
+    if not verdict.is_whole:
+        raise errors.Refused(f"{file} is not complete: {verdict.text}")
     return f"{file}: {verdict.text}"
 
 
