@@ -247,7 +247,7 @@ class Surface(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Surfaces(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Those of the bodies that are there and were made from a model; the world's own are not."""
+    """Those of the bodies that are there; of the world's own as their parts stood when it was asked."""
 
     surfaces: dict[str, Surface]
 

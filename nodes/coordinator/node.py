@@ -74,7 +74,9 @@ class Coordinator:
         running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
         self._opening = Opening(door, self._keeping, self._ask_sim)
         scene = self._keeping.scene
-        self._gripping = Gripping(config.truth, door, scene, self._turns.change, self._ask_sim)
+        self._gripping = Gripping(
+            config.truth, door, scene, self._turns.change, self._ask_sim, self._bridge.ask_later
+        )
         door.map.where, door.map.bodies = self._live.where, lambda: scene.bodies
         relay = self._bridge.relay
         of_the_map = calls.by_verb(
@@ -96,7 +98,7 @@ class Coordinator:
             c.Detach.answered_by(self._gripping.detach),
             c.Open.answered_by(self._opening.move),
             c.Close.answered_by(self._opening.move),
-            c.Drive.answered_by(running.drive),
+            c.Drive.answered_by(frames.placed(running.drive)),
             c.Pause.answered_by(running.pause),
             c.StepOnce.answered_by(running.step),
             c.Reset.answered_by(running.reset),

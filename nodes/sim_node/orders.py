@@ -71,8 +71,8 @@ def _joints(order: BodyOrder, model: Model) -> tuple[Joint, ...]:
         Joint(
             name=leaf.joint.name,
             kind=leaf.joint.kind,
-            lower=leaf.joint.range[0],
-            upper=leaf.joint.range[1],
+            lower=leaf.joint.range and leaf.joint.range[0],
+            upper=leaf.joint.range and leaf.joint.range[1],
             closed=leaf.joint.closed,
         )
         for leaf in model.leaves
@@ -176,7 +176,9 @@ def _check_grip(order: GripOrder, there: Mapping[str, BodyRecord]) -> None:
     if order.name == order.holder:
         raise ModelError(f"{order.name} cannot hold itself")
     if order.name in chain(order.holder, there):
-        raise ModelError(f"{order.holder} is held by {order.name} or part of it, so it cannot hold it")
+        raise ModelError(
+            f"{order.holder} is held by {order.name} or part of it, so it cannot hold {order.name}"
+        )
     if record.anchored or record.fixed:
         where = f"held by {record.part_of or 'its joint'}" if record.anchored else "fixed where it stands"
         raise ModelError(f"{order.name} is {where}, so nothing can take it")

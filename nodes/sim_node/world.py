@@ -16,7 +16,7 @@ from nodes.sim_node import orders
 from nodes.sim_node.bodies import Floats, Ints, pose_of
 from nodes.sim_node.models.facets import surface_of
 from nodes.sim_node.models.library import build as library_model
-from nodes.sim_node.models.world_surface import world_surface
+from nodes.sim_node.models.world_surface import body_surface, world_surface
 from nodes.sim_node.orders import ModelSource
 from nodes.sim_node.physics import base_scene, build
 from nodes.sim_node.physics.engine import Engine
@@ -308,9 +308,16 @@ class World:
         )
 
     def surfaces(self, names: Iterable[str]) -> Surfaces:
-        """What bodies that were made from a model look like."""
-        shapes = {name: self._engine.shape(name) for name in names}
-        return Surfaces(surfaces={name: surface_of(shape) for name, shape in shapes.items() if shape})
+        """What bodies look like; those of the world's own as their parts stand just now."""
+        there = {name: row for row, name in enumerate(self._engine.index.names)}
+        whose, poses = self.body_names(), self._engine.poses()
+        found: dict[str, Surface | None] = {}
+        for name in names:
+            if (shape := self._engine.shape(name)) is not None:
+                found[name] = surface_of(shape)
+            elif name in there:
+                found[name] = body_surface(self.model, self.data, whose, name, poses[there[name]])
+        return Surfaces(surfaces={name: surface for name, surface in found.items() if surface is not None})
 
     def surface(self) -> Surface:
         """What the world itself looks like, apart from bodies."""

@@ -15,10 +15,8 @@ from ontology.name_index import Ambiguous, Named, NameIndex
 from schemas import changes, errors, wording
 from schemas.commands import (
     Add,
-    Attach,
     Clear,
     Command,
-    Detach,
     Infer,
     Properties,
     Remove,
@@ -28,8 +26,7 @@ from schemas.commands import (
     Update,
 )
 from schemas.commits import Effects, Transaction
-from schemas.entities import ClassInfo, Entity, Pose, Value, rounded
-from schemas.grips import holder_of
+from schemas.entities import ClassInfo, Entity, Pose, Value
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
 
@@ -191,39 +188,6 @@ def track(view: KnownMap, command: Track) -> Talk[Changed]:
         now = f"is tracked from {source} already" if entity.tracked else "is not tracked"
         return changed(None, f"unchanged: {entity.name} {now}", names=(entity.name,))
     return changed(made, _said(entity, made), names=(entity.name,))
-
-
-@once
-def attach(view: KnownMap, command: Attach) -> Talk[Changed]:
-    """Have an entity held by another. Raises Refused where it cannot be."""
-    entity, holder = view.entity(command.name), view.entity(holding.named(command.to, view.entities))
-    holding.require_graspable(entity, holder, view.entities, view.bodies())
-    if holder_of(entity) == holder.name and command.at is None and command.yaw is None:
-        return changed(None, f"unchanged: {holder.name} holds {entity.name} already", names=(entity.name,))
-    grip = holding.grip(view.where(entity.name), view.where(holder.name), command.at, command.yaw)
-    pose = view.where(entity.name)
-    made = yield from commit(view, transactions.attach(command, holder.name, grip, pose and rounded(pose)))
-    if made is None:
-        return changed(None, f"unchanged: {holder.name} holds {entity.name} already", names=(entity.name,))
-    return changed(made, f"{holder.name} holds {entity.name}{_off(grip)}", names=(entity.name,))
-
-
-def _off(grip: Pose | None) -> str:
-    if grip is None:
-        return ""
-    return ", at ({:g}, {:g}, {:g}) in its frame".format(*(round(c, 3) + 0.0 for c in grip.position_m))
-
-
-@once
-def detach(view: KnownMap, command: Detach) -> Talk[Changed]:
-    """Let go of what something holds. Raises Refused for what nothing holds."""
-    entity = view.entity(command.name)
-    if not (by := holder_of(entity)):
-        raise errors.Refused(f"nothing holds {entity.name}")
-    pose = view.where(entity.name)
-    made = yield from commit(view, transactions.detach(command, pose and rounded(pose)))
-    at = "" if pose is None else f" at {_metres(rounded(pose))}"
-    return changed(made, f"{by} let go of {entity.name}{at}", names=(entity.name,))
 
 
 @once

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from nodes.coordinator.dialogues import Ask, Talk, alone, hold, in_step
-from nodes.coordinator.door import batching, changing, loading, undoing
+from nodes.coordinator.door import attaching, batching, changing, loading, undoing
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.scene.hands import Hand, Hands
 from nodes.coordinator.scene.settled import Settled
@@ -35,8 +35,8 @@ _CHANGING: Mapping[type[Command], Callable[[KnownMap, Any], Talk[Changed]]] = {
     Unset: changing.unset,
     Batch: batching.batch,
     Track: changing.track,
-    Attach: changing.attach,
-    Detach: changing.detach,
+    Attach: attaching.attach,
+    Detach: attaching.detach,
     Remove: changing.remove,
     Clear: changing.clear,
     Load: loading.load,

@@ -193,9 +193,11 @@ def carrying(function: Callable[..., None]) -> Callable[..., None]:
 
 
 def given(fields: dict[str, Any]) -> dict[str, Any]:
-    """The options that were given; 0 is given, too."""
+    """The options that were given; 0 is a value, though it equals False."""
     return {
-        name: value for name, value in fields.items() if not (value is None or value is False or value == ())
+        name: value
+        for name, value in fields.items()
+        if value is not None and value is not False and value != ()
     }
 
 

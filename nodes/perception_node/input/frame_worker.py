@@ -8,7 +8,8 @@ import time
 from collections.abc import Callable, Sequence
 
 from nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
-from nodes.perception_node.input.frames import Frames, Pair, read_cloud, thinning
+from nodes.perception_node.input.frames import Frames, Pair, read_cloud
+from nodes.perception_node.input.projection import thinning
 from nodes.perception_node.pipeline import Look
 from schemas.errors import BadRequest
 from schemas.scenes import CameraFrame
@@ -68,7 +69,7 @@ class FrameWorker:
         except BadRequest as error:
             self._complain(error.text)
             return None
-        step = thinning(frame)
+        step = thinning(frame.width, frame.height)
         if step > 1:
             size = f"{frame.width} x {frame.height} pixels"
             self._complain(f"camera {frame.camera}: of {size}, one of {step} x {step} is used")

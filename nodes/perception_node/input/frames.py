@@ -12,14 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.input.cloud import Cloud, Transform
-from nodes.perception_node.input.projection import cloud_of, fits, is_pose
+from nodes.perception_node.input.projection import cloud_of, fits, is_pose, thinned, thinning
 from schemas.errors import BadRequest
 from schemas.scenes import CameraFrame
 
 T = TypeVar("T", np.float32, np.uint8)
 
-MOST_PIXELS = 640 * 480 * 3 // 2
-"""Of a picture with more, every second, third ... row and column is used."""
 _SILENT_S = 2.0
 """A camera that was silent for so long may begin with another clock."""
 _LATE_S = 1.0
@@ -145,22 +143,9 @@ def read_cloud(pair: Pair) -> Cloud:
     intrinsics, pose = _intrinsics(frame), _pose(frame)
     depth_m = _pixels(pair.depth, np.float32, shape)
     rgb = _pixels(pair.rgb, np.uint8, (*shape, 3))
-    step = thinning(frame)
-    if step > 1:
-        depth_m, rgb = (
-            np.ascontiguousarray(depth_m[::step, ::step]),
-            np.ascontiguousarray(rgb[::step, ::step]),
-        )
-        intrinsics = intrinsics.copy()
-        intrinsics[:2, 2] -= 0.5
-        intrinsics[:2] /= step
-        intrinsics[:2, 2] += 0.5
+    step = thinning(frame.width, frame.height)
+    depth_m, rgb, intrinsics = thinned(depth_m, rgb, intrinsics, step)
     return cloud_of(depth_m, rgb, intrinsics, pose, camera=frame.camera, stamp_ns=frame.stamp_ns)
-
-
-def thinning(frame: CameraFrame) -> int:
-    """Every how many-th row and column of a frame is used."""
-    return max(1, math.ceil(math.sqrt(frame.width * frame.height / MOST_PIXELS)))
 
 
 def _pixels(plane: Plane, kind: type[T], shape: tuple[int, ...]) -> NDArray[T]:

@@ -167,7 +167,7 @@ def bodies_of(
     """
     model, data = _compiled(spec)
     classes = _declared(spec)
-    closed = _closed_ends(spec)
+    closed = closed_ends(spec)
     records: dict[str, BodyRecord] = {}
     owner = [""] * model.nbody
     for number in range(1, model.nbody):  # wholes have lower numbers than their parts
@@ -243,7 +243,7 @@ def _texts(spec: mujoco.MjSpec, prefix: str) -> dict[str, str]:
     return {name.removeprefix(prefix): data for name, data in texts if name.startswith(prefix)}
 
 
-def _closed_ends(spec: mujoco.MjSpec) -> dict[str, str]:
+def closed_ends(spec: mujoco.MjSpec) -> dict[str, str]:
     """Which end of a joint is the closed one, where a text says so: `lower` or `upper`."""
     return {name: end for name, end in _texts(spec, _CLOSED_TEXT).items() if end in _ENDS}
 

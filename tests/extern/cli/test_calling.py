@@ -1,12 +1,16 @@
-"""What the command line hands on of its options."""
+"""What the options of a verb say."""
 
 from nodes.extern.cli.calling import given
 
 
-def test_what_is_not_given_is_left_out():
-    assert given({"yaw": None, "wait": False, "leave": (), "frame": None}) == {}
+def test_what_is_left_out_is_not_given():
+    assert given({"name": "cup1", "at": None, "alt": (), "wait": False}) == {"name": "cup1"}
 
 
 def test_zero_is_given():
-    fields = {"yaw": 0.0, "to": 0.0, "number": 0, "wait": True, "text": "", "at": (0.0, 0.0, 0.0)}
-    assert given(dict(fields)) == fields
+    assert given({"yaw": 0.0, "speed": 0, "ref": "", "wait": True}) == {
+        "yaw": 0.0,
+        "speed": 0,
+        "ref": "",
+        "wait": True,
+    }

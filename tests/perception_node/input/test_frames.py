@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from nodes.perception_node.input.frames import Frames, Pair, Plane, read_cloud, thinning
+from nodes.perception_node.input.frames import Frames, Pair, Plane, read_cloud
+from nodes.perception_node.input.projection import thinning
 from schemas.errors import BadRequest
 from schemas.scenes import CameraFrame
 
@@ -124,7 +125,7 @@ def test_a_good_pair_is_a_cloud():
 def test_a_large_frame_is_thinned_and_its_points_stay_where_they_are():
     intrinsics = (3000.0, 0.0, 2000.0, 0.0, 3000.0, 1500.0, 0.0, 0.0, 1.0)
     large = pair(2.0, width=4000, height=3000, intrinsics=intrinsics)
-    step = thinning(large.depth.frame)
+    step = thinning(4000, 3000)
     cloud = read_cloud(large)
     assert step == 6
     assert cloud.points_camera.shape == (500, 667, 3)
