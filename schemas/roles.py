@@ -99,6 +99,7 @@ GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.LIVE_POSES),
     *_topic(keys.FRAME, publish=frozenset(("robot",))),
     *_topic(keys.HEALTH),
+    Grant("publish", keys.health_key(keys.WEB), ANYBODY),
     *_topic(keys.OBSERVATIONS, publish=frozenset(("perception",))),
     *_topic(keys.CLOUD, publish=frozenset(("perception",))),
     *_topic(keys.DETECTIONS, publish=frozenset(("perception",))),

@@ -8,7 +8,7 @@ from typing import Any
 
 from msgspec import DecodeError, ValidationError, inspect
 
-from schemas.entities import NAME_PATTERN
+from schemas.entities import NAME_PATTERN, Pose
 from schemas.errors import did_you_mean
 
 _AT = re.compile(r"(.*) - at `(?:key` in `)?\$(.*)`", re.DOTALL)
@@ -30,6 +30,13 @@ def entities(count: int) -> str:
 def bodies(count: int) -> str:
     """`1 body`, `2 bodies`."""
     return counted(count, "body", "bodies")
+
+
+def fallen(name: str, pose: Pose) -> str:
+    """Of a robot that lies on its side: where, and how it gets up."""
+    x, y, _ = pose.position_m
+    there = f"at ({x:.2f}, {y:.2f})"
+    return f"has fallen over {there}; to put it upright: semmap move {name} --at {x:.2f} {y:.2f} 0 --yaw 0"
 
 
 def duration(seconds: float) -> str:

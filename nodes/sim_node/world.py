@@ -16,7 +16,7 @@ from nodes.sim_node import orders
 from nodes.sim_node.bodies import Floats, Ints, pose_of
 from nodes.sim_node.models.facets import surface_of
 from nodes.sim_node.models.library import build as library_model
-from nodes.sim_node.models.world_surface import world_surface
+from nodes.sim_node.models.world_surface import body_surface, world_surface
 from nodes.sim_node.orders import ModelSource
 from nodes.sim_node.physics import base_scene, build
 from nodes.sim_node.physics.engine import Engine
@@ -24,10 +24,12 @@ from nodes.sim_node.physics.walls import walls
 from nodes.sim_node.placement.settling import Settling
 from nodes.sim_node.robots.courses import ACTUATORS, Outcome, actuators
 from nodes.sim_node.vision.view import bulk, camera_names, optical_pose, overview
+from schemas import wording
 from schemas.entities import Pose, relative
 from schemas.errors import Refused
 from schemas.plans import Outline
 from schemas.scenes import (
+    UPRIGHT,
     BodiesMoved,
     Body,
     BodyOrder,
@@ -135,6 +137,7 @@ class World:
             if placement.commit is not None:
                 records[placement.name].ordered = placement.pose
             self._has_begun(placement.name)
+            self._engine.courses.stop(self.model, self.data, placement.name, "stopped")
         moved = {placement.name: placement.pose for placement in accepted}
         self._settling.put(moved)
         return BodiesMoved(bodies=self._bodies(moved), failed=failed)
@@ -205,6 +208,8 @@ class World:
             raise Refused(
                 f"{name} cannot drive: it is held where it is, because another body is in its place"
             )
+        if order.to and self.pose(name).upright < UPRIGHT:
+            raise Refused(f"{name} {wording.fallen(name, self.pose(name))}")
         if not order.to:
             engine.courses.stop(engine.model, engine.data, name, "stopped")
             return
@@ -303,9 +308,16 @@ class World:
         )
 
     def surfaces(self, names: Iterable[str]) -> Surfaces:
-        """What bodies that were made from a model look like."""
-        shapes = {name: self._engine.shape(name) for name in names}
-        return Surfaces(surfaces={name: surface_of(shape) for name, shape in shapes.items() if shape})
+        """What bodies look like; those of the world's own as their parts stand just now."""
+        there = {name: row for row, name in enumerate(self._engine.index.names)}
+        whose, poses = self.body_names(), self._engine.poses()
+        found: dict[str, Surface | None] = {}
+        for name in names:
+            if (shape := self._engine.shape(name)) is not None:
+                found[name] = surface_of(shape)
+            elif name in there:
+                found[name] = body_surface(self.model, self.data, whose, name, poses[there[name]])
+        return Surfaces(surfaces={name: surface for name, surface in found.items() if surface is not None})
 
     def surface(self) -> Surface:
         """What the world itself looks like, apart from bodies."""

@@ -48,6 +48,8 @@ CENTRE: Final[Panels] = {
     "Files": (files,),
     "System": (status, log),
 }
+_LIST_PX, _TABLE_PX = 340, 760
+"""How wide the lists are: with the columns that most want, and with all."""
 KEYS: Final = {
     "/": "search",
     "Del": "delete what is selected, after a confirmation",
@@ -67,7 +69,8 @@ def layout(page: Page) -> None:
     dark = ui.dark_mode(None)
     with ui.header(elevated=False).classes("semmap-header") as header:
         pass
-    with ui.left_drawer(bordered=False, value=True).props("width=340 breakpoint=960") as left:
+    with ui.left_drawer(bordered=False, value=True).props(f"width={_LIST_PX} breakpoint=960") as left:
+        page.widen = lambda wide: left.props(f"width={_TABLE_PX if wide else _LIST_PX}")
         _Tabs(page, LEFT, "What there is").draw()
     with ui.right_drawer(bordered=False, value=True).props("width=370 breakpoint=960") as right:
         details = _Tabs(page, RIGHT, "Details of what is selected, and adding")
@@ -122,7 +125,7 @@ def _header(
     def toggle_dark() -> None:
         dark.value = not page.dark
 
-    _icon("dark_mode", "Dark or light", toggle_dark).classes("semmap-wide")
+    _icon("dark_mode", "Dark or light", toggle_dark)
     _icon("keyboard", "Keys (?)", help_).classes("semmap-wide")
     _icon("view_sidebar", "Show or hide the details", right.toggle)
 

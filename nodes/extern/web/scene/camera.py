@@ -116,11 +116,12 @@ def uncrowded(
     keys, ranks = list(labels), {key: rank for rank, key in enumerate(first)}
     at = view.project(np.array([place for _, place in labels.values()], dtype=float))
     x, y, ahead = at.T
-    seen = (ahead > _NEAREST_M) & (x >= 0.0) & (x <= view.width) & (y >= 0.0) & (y <= view.height)
-    rows = np.flatnonzero(seen)
+    halves = np.array([_width_px(text) / 2.0 + 5.0 for text, _ in labels.values()])
+    is_whole = (x >= halves) & (x <= view.width - halves)  # not cut off at an edge
+    rows = np.flatnonzero((ahead > _NEAREST_M) & is_whole & (y >= 0.0) & (y <= view.height))
     order = [ranks.get(keys[row], len(ranks)) for row in rows]
     rows = rows[np.lexsort((ahead[rows], order))]
-    half = np.array([_width_px(labels[keys[row]][0]) / 2.0 + 5.0 for row in rows])
+    half = halves[rows]
     left, right, top = x[rows] - half, x[rows] + half, y[rows] - _LABEL_PX
     chosen: list[str] = []
     is_free = np.ones(len(rows), dtype=bool)

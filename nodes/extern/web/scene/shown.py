@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from nodes.drawing.bending import Bends
 from nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of
 from nodes.drawing.palette import GREY, colour_of
+from nodes.drawing.surfaces import look_of
 from nodes.extern.web.scene.meshes import Look, linear, srgb, veiled
 from schemas.entities import Entity, Pose, Size
 from schemas.joints import JOINT_POSITIONS, positions_of
@@ -74,7 +75,7 @@ def shown(
     pose = pose or pose_of(entity, body)
     if figure is None or pose is None or figure.look == "place":
         return None
-    model = body.model if body is not None else _model_of(entity)
+    model = look_of(body) if body is not None else _model_of(entity)
     size_m = figure.size_m
     if not model or surface_of(model, size_m) is None:
         model = BOX

@@ -536,10 +536,12 @@ class TabScene:
             f"{number} of {len(lines)}": (each.text, _between(each.a, each.b))
             for number, each in enumerate(lines)
         }
-        chosen = (
-            [] if self._client is None else uncrowded(self._view(self._client), written, written, _MEASURES)
-        )
-        self._measures = {key: written[key] for key in chosen}
+        chosen: list[str] = []
+        if self._client is not None and written:
+            names = {name: self._named(name) for name in self.page.selected if name in self._things}
+            every = {**names, **written}
+            chosen = uncrowded(self._view(self._client), every, every, _MEASURES + len(names))
+        self._measures = {key: written[key] for key in chosen if key in written}
         self._line_labels.show(self._measures)
         self._label_soon()
 

@@ -92,7 +92,7 @@ def test_of_many_labels_those_are_written_that_one_by_one_find_room():
         for key in sorted(labels, key=lambda key: (first.index(key) if key in first else 5, ahead[key][2])):
             x, y, z = ahead[key]
             half = sum(10.0 if letter.isupper() else 7.0 for letter in labels[key][0]) / 2.0 + 5.0
-            is_seen = z > 0.05 and 0.0 <= x <= view.width and 0.0 <= y <= view.height
+            is_seen = z > 0.05 and half <= x <= view.width - half and 0.0 <= y <= view.height
             has_room = all(abs(x - u) >= half + w or abs(y - v) >= 17.0 for u, v, w in taken)
             if is_seen and has_room and len(expected) < 40:
                 taken.append((x, y, half))
