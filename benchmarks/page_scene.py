@@ -2,9 +2,9 @@
 
     python -m benchmarks.page_scene [--bodies 500] [--entities 5000] [--seconds 15] [--json]
 
-It plays the knowledge base and the simulator itself, and measures what `semmap web` takes with one tab open, of
-640 x 480. A browser that draws in software takes fewer updates than it is offered, so what ten a second would
-take is told, too; and how quickly it draws is measured beside viser alone, with the same triangles.
+It plays the knowledge base and the simulator itself, and measures what `semmap web` takes with one tab open,
+of 640 x 480. A browser that draws in software takes fewer updates than it is offered, so what ten a second
+would take is told, too; and how quickly it draws is measured beside viser alone, with the same triangles.
 """
 
 from __future__ import annotations
@@ -239,7 +239,7 @@ def _page(entities: int, moving: int) -> Iterator[tuple[Page, psutil.Process, fl
 
 
 def _bare(entities: int, seconds: float) -> tuple[float, float]:
-    """Viser's own server and page with the same batches: there after [s], and pictures a second."""
+    """The server and the page of viser with the same batches: there after [s], and pictures a second."""
     with contextlib.ExitStack() as stack:
         server = viser.ViserServer(
             host="127.0.0.1", port=int(free_endpoint().rpartition(":")[2]), verbose=False
