@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import stat
+import subprocess
 import time
 
 import psutil
@@ -13,6 +14,7 @@ import pytest
 
 from nodes import bus
 from nodes.extern.client import connect
+from nodes.extern.testing import free_endpoint
 from nodes.identity import Identity, authority
 from schemas import codec, commands, errors, keys
 from schemas.commits import Commit
@@ -309,6 +311,15 @@ def test_what_is_live_comes_from_robots_and_is_heard_by_all(as_):
                     client.publish_frame("spot/lidar", "map")
         bob.track("ball7", off=True)
         spot.withdraw_frame("spot/lidar")
+
+
+def test_a_viewer_publishes_the_map_to_ros(system, folder):
+    endpoint = free_endpoint()
+    with bus.open_session(bus.Network(connect=(), listen=(endpoint,), mode="router")):
+        words = ("ros", "--router", endpoint, "--identity", str(folder / "vera"))
+        with system.spawned(*words, stderr=subprocess.PIPE) as process:
+            assert any("entities as of commit" in line for line in process.stderr)
+            process.stderr.close()
 
 
 @pytest.mark.parametrize("name", ["vera", "spot", "eye"])
