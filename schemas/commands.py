@@ -692,14 +692,16 @@ class Close(Command[Moved], frozen=True, tag="close"):
 class Drive(Command[Moved], frozen=True, tag="drive"):
     """Drive a robot of the simulator to a point, or through several, in a straight line to each.
 
-    At the end it faces `yaw`. It turns to where it goes first, and goes at most at `speed` [m/s]. With `stop`
-    it stops where it is. `wait` delays the reply until it is there; where it gets no further, or falls, that
-    is Refused.
+    At the end it faces `yaw`. Points and `yaw` are in the map frame, or in `frame` as that is when the
+    command begins. It turns to where it goes first, and goes at most at `speed` [m/s]. With `stop` it stops
+    where it is. `wait` delays the reply until it is there; where it gets no further, or falls, that is
+    Refused.
     """
 
     name: Word
     to: tuple[Point, ...] = ()
     yaw: Angle | None = None
+    frame: FrameName | None = None
     speed: Annotated[float, Meta(gt=0.0, le=2.0)] = 0.4
     stop: bool = False
     wait: bool = False

@@ -98,7 +98,7 @@ class Coordinator:
             c.Detach.answered_by(self._gripping.detach),
             c.Open.answered_by(self._opening.move),
             c.Close.answered_by(self._opening.move),
-            c.Drive.answered_by(running.drive),
+            c.Drive.answered_by(frames.placed(running.drive)),
             c.Pause.answered_by(running.pause),
             c.StepOnce.answered_by(running.step),
             c.Reset.answered_by(running.reset),

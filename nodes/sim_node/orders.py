@@ -71,8 +71,8 @@ def _joints(order: BodyOrder, model: Model) -> tuple[Joint, ...]:
         Joint(
             name=leaf.joint.name,
             kind=leaf.joint.kind,
-            lower=leaf.joint.range[0],
-            upper=leaf.joint.range[1],
+            lower=leaf.joint.range and leaf.joint.range[0],
+            upper=leaf.joint.range and leaf.joint.range[1],
             closed=leaf.joint.closed,
         )
         for leaf in model.leaves

@@ -284,16 +284,21 @@ class _Foreground:
                 )
 
     def _tell_of_models(self, session: bus.Session) -> None:
-        """Say which of the files in `--models` are nobody's model."""
+        """Say which of the files in `--models` are nobody's model, and what models could not bring along."""
         if self._settings.models is None or not self._settings.sim:
             return
         from nodes.sim_node.models.sources import passed_over  # and with it MuJoCo
+        from nodes.sim_node.models.write_shapes import own_notes
 
+        folder = Path(self._settings.models)
         with contextlib.suppress(errors.SemmapError, OSError):
             classes = bus.ask(session, keys.CMD, Classes.VERB, Classes(), reply_type(Classes))
-            if strange := passed_over(Path(self._settings.models), {c.model for c in classes}):
+            names = {c.model for c in classes}
+            if strange := passed_over(folder, names):
                 said = f"ignored, because no class has a model of that name: {', '.join(strange)}"
                 self._say(f"{'models':<{_COLUMN}} {said}")
+            for note in own_notes(folder, names):
+                self._say(f"{'models':<{_COLUMN}} {note}")
 
     def _greet(self) -> None:
         usual = self._settings.reachable == bus.DEFAULT_ENDPOINT

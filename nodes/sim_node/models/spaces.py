@@ -104,8 +104,13 @@ def _as_thick_as(step: float, part: Part) -> Part:
 
 
 def _is_among(room: Interior, others: Iterable[Interior]) -> bool:
-    """Whether a hollow is still there, for the most part."""
-    return any(_shared(room, other) > 0.5 * _volume(room) for other in others)
+    """Whether a hollow is still there, no smaller and no more open than it was."""
+    return any(
+        room.open >= other.open
+        and other.fill > 0.9 * room.fill
+        and _shared(room, other) > 0.9 * _volume(room)
+        for other in others
+    )
 
 
 def _shared(one: Interior, other: Interior) -> float:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
+from contextlib import suppress
 from pathlib import Path
 
 import msgspec
@@ -11,7 +13,7 @@ from msgspec import structs
 from nodes.sim_node.models.library import ModelError, build
 from nodes.sim_node.models.model_files import SUFFIXES
 from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.sources import Models
+from nodes.sim_node.models.sources import Models, is_one_of
 from nodes.sim_node.models.spaces import shape_of
 from ontology import MODEL_SHAPES_JSON
 from ontology.model_shapes import ModelShape
@@ -41,6 +43,21 @@ def own_shapes(folder: Path) -> dict[str, ModelShape]:
         found[path.name] = shape
         found.setdefault(path.stem, shape)
     return found
+
+
+def own_notes(folder: Path, names: Collection[str]) -> list[str]:
+    """What of the model files in a folder is not in the models, or is stiff in them: a line for each file.
+
+    `names` are those of the classes' models; files that are none of these are passed over.
+    """
+    models = Models(folder)
+    told: list[str] = []
+    for path in sorted(folder.iterdir()):
+        if is_one_of(path, names):
+            with suppress(ModelError):
+                if notes := models(path.name, None).notes:
+                    told.append(f"{path.name}: {'; '.join(notes)}")
+    return told
 
 
 def write_own(folder: Path | None, target: Path) -> None:

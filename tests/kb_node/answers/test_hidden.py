@@ -61,7 +61,7 @@ def test_a_door_that_stands_open_shows_what_is_behind_it_and_nothing_else(kitche
         ),
     )
     kitchen.commit(Transaction(id="2", source="scene", edit=(edit,)))
-    assert closed_around(kitchen, milk).name == "fridge1"
+    assert closed_around(kitchen, milk) == (kitchen.entity("fridge1"), ("door",))
     edit = Edit(name="fridge1", set=(Statement(property="jointPositions", values=("door=1 freezer=0",)),))
     kitchen.commit(Transaction(id="3", source="scene", edit=(edit,)))
     assert closed_around(kitchen, milk) is None
@@ -89,9 +89,13 @@ def test_of_a_chest_only_what_is_in_a_drawer_that_was_pulled_out_can_be_seen(tmp
     made.commit(Transaction(id="2", source="scene", edit=edits))
     try:
         assert closed_around(made, made.entity("apple1")) is None
-        assert closed_around(made, made.entity("apple2")).name == "chest1"
+        closed = closed_around(made, made.entity("apple2"))
+        assert closed == (made.entity("chest1"), ("drawer_2",))
+        assert "it cannot be seen there: drawer_2 of chest1 is closed (last stated in commit 2" in in_words(
+            closed
+        )
         say(made, 3, "false", name="chest1")
         made.commit(Transaction(id="4", source="scene", edit=(Edit(name="apple1", at=(0.05, 0.0, 0.72)),)))
-        assert closed_around(made, made.entity("apple1")).name == "chest1"
+        assert closed_around(made, made.entity("apple1")) == (made.entity("chest1"), ())
     finally:
         home.close(made)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import shlex
+import sys
 from collections.abc import Callable, Iterator
-from typing import Any, Final, NoReturn, TextIO
+from pathlib import Path
+from typing import Any, Final, NoReturn
 
 import click
 
@@ -13,6 +15,7 @@ from nodes.extern.cli.output import lines
 from nodes.extern.cli.verbs.edit import set_, unset, update
 from nodes.extern.client import Client
 from nodes.extern.client_verbs import Verbs
+from nodes.extern.files import read_file
 from schemas import errors
 from schemas.commands import Command, Set, Unset, Update
 
@@ -20,29 +23,30 @@ _VERBS: Final[dict[str, click.Command]] = {"update": update, "set": set_, "unset
 
 
 @click.command()
-@click.argument("file", type=click.File(encoding="utf-8"))
+@click.argument("file", type=click.Path(path_type=Path, allow_dash=True))
 @click.option("--reason", default="", metavar="TEXT", help="Why, for the history.")
 @click.option("--id", "id", default="", metavar="ID", help="Command id; a batch sent twice is executed once.")
 @click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
 @talks
-def batch(client: Client, file: TextIO, **fields: Any) -> None:
+def batch(client: Client, file: Path, **fields: Any) -> None:
     """Make several changes in one commit, or none.
 
     FILE has one update, set or unset a line, as on the command line: set door1 isOpen true. Empty lines
     and those that begin with # do not count; - reads standard input. One undo takes all back.
     """
+    content = sys.stdin.buffer.read() if str(file) == "-" else read_file(file)
     try:
-        changes = tuple(written(file))
+        changes = tuple(written(content.decode()))
     except UnicodeDecodeError:
-        raise errors.BadFile(f"{file.name} is no text in UTF-8") from None
+        raise errors.BadFile(f"{file} is no text in UTF-8") from None
     if not changes:
         raise errors.BadRequest("there is no change: write one update, set or unset a line")
     print_lines(lines.changed(client.batch(*changes, **fields)))
 
 
-def written(file: TextIO) -> Iterator[Update | Set | Unset]:
+def written(text: str) -> Iterator[Update | Set | Unset]:
     """The changes that a text has, a line each. Raises BadRequest, which names the line."""
-    for number, line in enumerate(file, start=1):
+    for number, line in enumerate(text.splitlines(), start=1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         try:

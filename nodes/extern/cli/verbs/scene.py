@@ -108,6 +108,7 @@ def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
     metavar="X Y",
     help="A point of the floor [m]; several are driven through one after another.",
 )
+@frame_option("The frame of --to and --yaw, as it is at the start, instead of the map's")
 @yaw_option
 @click.option("--speed", type=float, default=0.4, show_default=True, help="At most so fast [m/s].")
 @click.option("--stop", is_flag=True, help="Stop where it is.")

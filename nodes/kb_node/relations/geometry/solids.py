@@ -257,4 +257,6 @@ def shape_of(entity: Entity | Placed) -> Shape:
         size = own_size_m(entity.model)
     if size is None:
         return None, None, AS_DRAWN
+    if isinstance(entity, Entity) and not entity.properties:
+        return entity.model, size, AS_DRAWN
     return entity.model, size, joints_in(entity)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 
 import pytest
@@ -22,7 +21,7 @@ set door1 isOpen true
 update chair1 --at 1 2 0 --ref "a seat" --unset note
 unset door1 hasColor 'color red'
 """
-    assert list(written(io.StringIO(text))) == [
+    assert list(written(text)) == [
         c.Set(name="door1", property="isOpen", values=("true",)),
         c.Set(name="shelf1", property="mass", values=("-3",)),
         c.Update(name="chair1", at=(1.0, 2.0, 0.0), ref="a seat", unset=("note",)),
@@ -43,7 +42,7 @@ unset door1 hasColor 'color red'
 )
 def test_a_line_that_is_none_is_named(capsys, line, said):
     with pytest.raises(errors.BadRequest, match=said):
-        list(written(io.StringIO(f"set door1 isOpen true\n{line}\n")))
+        list(written(f"set door1 isOpen true\n{line}\n"))
 
 
 def test_a_batch_over_a_real_system(tmp_path):
@@ -58,6 +57,7 @@ def test_a_batch_over_a_real_system(tmp_path):
         assert "door99" in system.cli("batch", str(file), status=1)
         file.write_bytes(b"set door1 \xff")
         assert "is no text in UTF-8" in system.cli("batch", str(file), status=2)
+        assert "there is no file" in system.cli("batch", str(tmp_path / "none.txt"), status=2)
         file.write_text("# nothing\n")
         assert "there is no change" in system.cli("batch", str(file), status=2)
         with system.client() as client:
