@@ -14,17 +14,22 @@ from schemas import errors
 from schemas.entities import Entity
 
 ROOMS = ("kitchen1", "livingroom1")
-_AT = (7.2, 0.9)
+_AT = (6.6, 1.6)
 _COURSE = (
-    *(((7.2, 1.2), yaw) for yaw in (0.0, 1.2, -0.4, -1.2, -2.4)),
-    ((8.4, 1.2), -1.2),
-    ((7.2, 1.2), 0.6),
-    ((6.5, 1.8), 0.7),
+    *(((6.6, 1.6), yaw) for yaw in (0.4, -0.4, -1.4)),
+    *(((6.6, 2.7), yaw) for yaw in (-0.1, -0.9)),
+    ((6.9, 3.3), -0.2),
+    ((6.6, 1.6), -0.2),
+    *(((7.4, 1.4), yaw) for yaw in (0.0, -1.57)),
+    *(((9.5, 1.3), yaw) for yaw in (-1.57, -2.5, 2.4)),
+    *(((9.7, 3.3), yaw) for yaw in (-2.1, -2.8)),
+    ((9.5, 1.3), math.pi),
+    ((6.6, 1.6), math.pi),
     *(((5.0, 1.8), yaw) for yaw in (math.pi, 2.4, -2.4)),
     *(((3.6, 1.9), yaw) for yaw in (math.pi, 2.2, 1.4, -2.2, -1.4)),
 )
 """Where it stops to look, and which way it looks then: a place [m] and a yaw [rad]."""
-_LOOKS_S = 2.5
+_LOOKS_S = 2.0
 _NEAR_M = 0.6
 _WRONG_M = 0.2
 
@@ -78,7 +83,7 @@ def _drive(client: Client) -> int:
         time.sleep(0.2)
     for at, yaw in _COURSE:
         try:
-            client.drive("robot1", to=(at,), yaw=yaw, speed=0.3, wait=True)
+            client.drive("robot1", to=(at,), yaw=yaw, speed=0.4, wait=True)
         except errors.Refused:
             stuck += 1
         time.sleep(_LOOKS_S)

@@ -1,0 +1,25 @@
+"""Looks one after the other, each of which knows what the ones before it have seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from nodes.perception_node.input.cloud import Cloud
+from nodes.perception_node.pipeline import Look, look
+from nodes.perception_node.recognition.shipped_votes import Learnt
+from nodes.perception_node.views.remembered import Remembered
+
+
+class Watching:
+    """Looks at clouds, and remembers what moving cameras see. Bound to one thread."""
+
+    def __init__(self, learnt: Learnt) -> None:
+        """Nothing was seen yet."""
+        self._learnt = learnt
+        self._remembered = Remembered()
+
+    def __call__(self, clouds: Sequence[Cloud]) -> Look:
+        """What clouds of one moment show; see `pipeline.look`."""
+        found = look(clouds, self._learnt, self._remembered)
+        self._remembered = found.remembered
+        return found
