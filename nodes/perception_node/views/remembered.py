@@ -2,7 +2,7 @@
 
 Of each thing one segment is remembered, in the map frame. What a camera sees just now outweighs it: only
 points that are out of the picture, or hidden, are kept. Those that are seen again are replaced by what is
-seen, and those through which a camera looks are gone. A camera that has never moved is told nothing.
+seen, and those through which a camera looks are gone. Of a camera that has never moved, or has no name, nothing is remembered.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class Remembered:
         first, moving = dict(self.first), set(self.moving)
         for sight in sights:
             cloud = sight.cloud
-            if cloud.intrinsics is None or cloud.map_from_camera is None:
+            if not cloud.camera or cloud.intrinsics is None or cloud.map_from_camera is None:
                 continue
             if _apart(first.setdefault(cloud.camera, cloud.map_from_camera), cloud.map_from_camera):
                 moving.add(cloud.camera)
