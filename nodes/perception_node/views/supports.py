@@ -42,7 +42,8 @@ class Support(NamedTuple):
         if self.height_m < _FLOOR_M:
             return True
         sides = np.maximum((high - low)[:2], 1e-3)
-        shared = np.minimum(high[:2], self.high_m) - np.maximum(low[:2], self.low_m) + 2.0 * _MARGIN_M
+        ends, begins = np.asarray(self.high_m) + _MARGIN_M, np.asarray(self.low_m) - _MARGIN_M
+        shared = np.minimum(high[:2], ends) - np.maximum(low[:2], begins)
         is_over = np.prod(np.clip(shared / sides, 0.0, 1.0)) >= _BELOW
         return bool(is_over and self.area_m2 >= _SMALLER * sides.prod())
 
