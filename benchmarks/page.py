@@ -1,11 +1,12 @@
 """What a person at the page waits for, and what the page costs, in a headless Chromium.
 
-    python -m benchmarks.page [--entities 5000] [--changes 50] [--minutes 0.5] [--json]
+    python -m benchmarks.page [--entities 5000] [--changes 50] [--moves 10] [--minutes 0.25] [--json]
 
-How long until the page can be used after its start, until it shows a command's effect, until a table of many
-entities is there and filtered; and its memory and processor time while it is open. The scene is hidden while
-effects are measured, and left out where there are many entities, for Chromium draws it in software; what it
-costs while many bodies move is measured by `python -m benchmarks.page_scene`.
+How long until the page can be used after its start, until it shows a command's effect and, after a drag, that
+the body rests elsewhere, until a table of many entities is there and filtered; and its memory and processor
+time while it is open. The scene is out of view while effects are measured, and left out where there are many
+entities, for Chromium draws it in software; what it costs while many bodies move is measured by
+`python -m benchmarks.page_scene`, and memory over an hour by `python -m benchmarks.page_memory`.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -28,15 +30,28 @@ from typing import Any
 import psutil  # type: ignore[import-untyped]
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from benchmarks.table import Row, as_json, lines
+from nodes import bus
 from nodes.extern.client import Client
 from nodes.extern.testing import free_endpoint, own_system
+from schemas import keys
+from schemas.commits import Commit
+from schemas.scenes import Poses
 
 _SEMMAP = str(Path(sys.executable).with_name("semmap"))
-_FLAGS = ("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking")
-_SHOWN = """n => {
-  const said = /commit ([0-9,]+)/.exec(document.querySelector(".semmap-state").innerText);
-  return said && Number(said[1].replaceAll(",", "")) >= n;
+FLAGS = ("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking")
+_WATCH = """() => {
+  const shown = window.semmapShown = {}, state = document.querySelector(".semmap-state");
+  const look = () => {
+    const said = /commit ([0-9,]+)/.exec(state.querySelector(".semmap-commit").textContent);
+    if (said) requestAnimationFrame(() => { shown[Number(said[1].replaceAll(",", ""))] ??= Date.now(); });
+  };
+  new MutationObserver(look).observe(state, { subtree: true, childList: true, characterData: true });
+  look();
 }"""
+_IS_SHOWN = "n => Object.keys(semmapShown).some(key => Number(key) >= n)"
+_SHOWN_AT = """n => Math.min(...Object.entries(semmapShown)
+  .filter(([key]) => Number(key) >= n).map(([, when]) => when))"""
 _ROWS = ".entity-table .ag-row"
 _COUNTED = "n => [...document.querySelectorAll('[role=status]')].some(e => e.innerText.includes(n))"
 _WAIT_MS = 60_000
@@ -85,16 +100,93 @@ def _used_by_children_s() -> float:
     return used_s
 
 
-def effects(client: Client, tab: Page, changes: int) -> list[float]:
+class Shown:
+    """When a tab has shown which commit, told by the tab itself, by the clock of this machine."""
+
+    def __init__(self, tab: Page) -> None:
+        self._tab = tab
+        tab.evaluate(_WATCH)
+
+    def since(self, commit: int, began_s: float) -> float:
+        """From `began_s`, the time of day, until the commit was there to be seen, or one after it [s]."""
+        self._tab.wait_for_function(_IS_SHOWN, arg=commit, polling=50, timeout=_WAIT_MS)
+        return float(self._tab.evaluate(_SHOWN_AT, commit)) / 1e3 - began_s
+
+
+def effects(client: Client, shown: Shown, changes: int) -> list[float]:
     """Of changes one by one: from when it was sent until the tab shows its commit [s]."""
     taken = []
     for i in range(changes):
-        began = time.monotonic()
-        commit = client.add("Cup", f"measured{i}", at=(2.0 + i % 10 / 10, 3.0, 1.0)).commit
-        tab.wait_for_function(_SHOWN, arg=commit, polling="raf", timeout=_WAIT_MS)
-        taken.append(time.monotonic() - began)
+        began_s = time.time()
+        commit = client.add("Cup", at=(2.0 + i % 10 / 10, 3.0, 1.0)).commit
+        taken.append(shown.since(commit, began_s))
         time.sleep(0.13)  # not in step with the page, which tells ten times a second
     return taken
+
+
+class Rest:
+    """When the simulator said that a body rests, and which commit of the scene's followed."""
+
+    def __init__(self, client: Client, name: str) -> None:
+        self._name = name
+        self._is_moving = False
+        self._rested = threading.Event()
+        self._followed = threading.Event()
+        self._rested_s, self._commit = 0.0, 0
+        self._following = (
+            bus.follow(client.session, keys.POSES, self._on_poses),
+            bus.follow(client.session, keys.COMMIT, self._on_commit),
+        )
+
+    def begin(self) -> None:
+        """From now on it is waited for that it has moved, and rests."""
+        self._is_moving = False
+        self._rested.clear()
+        self._followed.clear()
+
+    def wait(self) -> tuple[float, int]:
+        """The time of day when it rested [s], and the commit."""
+        if not (self._rested.wait(_WAIT_MS / 1e3) and self._followed.wait(_WAIT_MS / 1e3)):
+            raise RuntimeError(f"{self._name} has not come to rest, or the map has not followed")
+        return self._rested_s, self._commit
+
+    def _on_poses(self, _: str, poses: Poses) -> None:
+        if self._name not in poses.names or self._rested.is_set():
+            return
+        rests = poses.resting[poses.names.index(self._name)]
+        if self._is_moving and rests:
+            self._rested_s = time.time()
+            self._rested.set()
+        self._is_moving = self._is_moving or not rests
+
+    def _on_commit(self, _: str, commit: Commit) -> None:
+        if commit.source == "scene" and any(entity.name == self._name for entity in commit.changed):
+            self._commit = commit.seq
+            self._followed.set()
+
+
+def drags(client: Client, shown: Shown, moves: int) -> list[float]:
+    """Of moves as a drag sends them: from when the body rests until the tab shows the map's commit [s]."""
+    name, taken = "dragged", []
+    client.add("Chair", name, at=(3.0, 2.2, 0.0), wait=True)
+    rest = Rest(client, name)
+    time.sleep(1.0)
+    for i in range(moves):
+        rest.begin()
+        client.move(name, at=(3.0 + 0.4 * ((i + 1) % 2), 2.2, 0.3), carry=True)
+        rested_s, commit = rest.wait()
+        taken.append(shown.since(commit, rested_s))
+        time.sleep(0.37)
+    return taken
+
+
+def percentile(values: list[float], share: float) -> float:
+    """The value that this share of all does not exceed."""
+    return sorted(values)[math.ceil(share * len(values)) - 1]
+
+
+def _used_s(times: Any) -> float:
+    return float(times.user + times.system)
 
 
 def cost(process: psutil.Process, seconds: float) -> tuple[float, float]:
@@ -102,11 +194,10 @@ def cost(process: psutil.Process, seconds: float) -> tuple[float, float]:
     before, memory = process.cpu_times(), process.memory_info().rss
     time.sleep(seconds)
     after = process.cpu_times()
-    used = after.user + after.system - before.user - before.system
-    return used / seconds, (process.memory_info().rss - memory) / 1e6
+    return (_used_s(after) - _used_s(before)) / seconds, (process.memory_info().rss - memory) / 1e6
 
 
-def of_the_flat(browser: Browser, changes: int, minutes: float) -> dict[str, float]:
+def of_the_flat(browser: Browser, changes: int, moves: int, minutes: float) -> list[Row]:
     """The demo flat with its simulator, and one tab."""
     endpoint = free_endpoint()
     with (
@@ -118,23 +209,29 @@ def of_the_flat(browser: Browser, changes: int, minutes: float) -> dict[str, flo
         tab, ready_s, browser_s = opened(browser, address)
         tab.get_by_role("tab", name="Check").click()  # drawn in software, the scene takes all there is
         time.sleep(2.0)
-        taken = sorted(effects(client, tab, changes))
+        shown, before = Shown(tab), process.cpu_times()
+        taken = effects(client, shown, changes)
+        used_s = _used_s(process.cpu_times()) - _used_s(before)
+        dragged = drags(client, shown, moves)
         share, grown_mb = cost(process, minutes * 60)
-        return {
-            "served after start [s]": served_s,
-            "processor time until served [s]": times.user + times.system,
-            "tab usable after it was opened [s]": ready_s,
-            "the browser's processor time for that [s]": browser_s,
-            "usable after start [s]": served_s + ready_s,
-            "effect of a command, p50 [ms]": 1e3 * taken[len(taken) // 2],
-            "effect of a command, p95 [ms]": 1e3 * taken[math.ceil(0.95 * len(taken)) - 1],
-            "share of a core with one tab": share,
-            "memory [MB]": process.memory_info().rss / 1e6,
-            f"memory grown in {minutes:g} min [MB]": grown_mb,
-        }
+        return [
+            Row("served after start", served_s, "s"),
+            Row("processor time until served", _used_s(times), "s"),
+            Row("tab usable after it was opened", ready_s, "s"),
+            Row("the browser's processor time for that", browser_s, "s"),
+            Row("usable after start", served_s + ready_s, "s", reach=3.0),
+            Row("effect of a command, p50", 1e3 * percentile(taken, 0.5), "ms"),
+            Row(f"effect of a command, p95 of {changes}", 1e3 * percentile(taken, 0.95), "ms", reach=200.0),
+            Row("processor time of the page's process for a command", 1e3 * used_s / changes, "ms"),
+            Row("commit of a drag after the body rests, p50", 1e3 * percentile(dragged, 0.5), "ms"),
+            Row(f"commit of a drag, the latest of {moves}", 1e3 * max(dragged), "ms", reach=500.0),
+            Row("share of a core with one tab", share, ""),
+            Row("memory", process.memory_info().rss / 1e6, "MB"),
+            Row(f"memory grown in {minutes:g} min", grown_mb, "MB"),
+        ]
 
 
-def of_many(browser: Browser, entities: int) -> dict[str, float]:
+def of_many(browser: Browser, entities: int) -> list[Row]:
     """A map of many entities, without a simulator."""
     side = math.ceil(math.sqrt(entities))
     things = [
@@ -158,11 +255,11 @@ def of_many(browser: Browser, entities: int) -> dict[str, float]:
             tab.get_by_label("Filter entities by text").fill("cup77")
             few = "() => document.querySelectorAll('.ag-center-cols-container .ag-row').length < 20"
             tab.wait_for_function(few, polling=50, timeout=_WAIT_MS)
-            return {
-                f"table of {entities:,} entities there [s]": shown_s,
-                f"{entities:,} entities: the browser's processor time [s]": browser_s,
-                f"{entities:,} entities filtered [s]": time.monotonic() - began,
-            }
+            return [
+                Row(f"table of {entities:,} entities there", shown_s, "s"),
+                Row(f"{entities:,} entities: the browser's processor time", browser_s, "s"),
+                Row(f"{entities:,} entities filtered", time.monotonic() - began, "s"),
+            ]
 
 
 def main() -> None:
@@ -172,23 +269,20 @@ def main() -> None:
     )
     parser.add_argument("--entities", type=int, default=5000, help="of the map of many; 0 leaves it out")
     parser.add_argument("--changes", type=int, default=50)
-    parser.add_argument("--minutes", type=float, default=0.5, help="how long memory is watched")
+    parser.add_argument("--moves", type=int, default=10)
+    parser.add_argument("--minutes", type=float, default=0.25, help="how long memory is watched")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
     path = shutil.which("chromium") or shutil.which("chromium-browser")
     if path is None:
         sys.exit("there is no Chromium: sudo apt-get install chromium")
     with sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=path, args=[*_FLAGS])
-        found: dict[str, Any] = of_the_flat(browser, options.changes, options.minutes)
+        browser = driver.chromium.launch(executable_path=path, args=[*FLAGS])
+        rows = of_the_flat(browser, options.changes, options.moves, options.minutes)
         if options.entities:
-            found |= of_many(browser, options.entities)
+            rows += of_many(browser, options.entities)
         browser.close()
-    if options.json:
-        print(json.dumps(found, indent=2))
-        return
-    for what, value in found.items():
-        print(f"{what:<42} {value:10.2f}")
+    print(json.dumps([as_json(row) for row in rows], indent=2) if options.json else lines(rows))
 
 
 if __name__ == "__main__":

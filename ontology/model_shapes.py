@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
+from typing import Literal
 
 import msgspec
 from msgspec import Struct
@@ -31,12 +32,18 @@ class Surface(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """A hollow that holds things: its box in the model's frame [m]; `open` at the top, or closed."""
+    """A hollow that holds things: its box in the model's frame [m]; `open` at the top, or closed.
+
+    `behind` names the joints whose leaves close it: it is closed while all of these are shut. `carried_by`
+    names the joint that carries it, as a drawer does; "" for a hollow of the model's frame.
+    """
 
     low: Corner
     high: Corner
     fill: float = 1.0
     open: bool = True
+    behind: tuple[str, ...] = ()
+    carried_by: str = ""
 
 
 class ConvexPart(Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -53,17 +60,40 @@ class ConvexPart(Struct, frozen=True, kw_only=True, omit_defaults=True):
     points: tuple[Corner, ...] = ()
 
 
+class LeafShape(Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """What one joint of a model moves: a door, a lid, a drawer.
+
+    A hinge turns about `axis` through `anchor` [m], a slide shifts along it; all is in the model's frame, and
+    as it is drawn the joint stands at 0. `limits` are the least and the greatest position [rad, m], `closed`
+    is the one at which it is shut; None for a joint that opens nothing.
+    """
+
+    name: str
+    kind: Literal["hinge", "slide"]
+    anchor: Corner
+    axis: Corner
+    limits: Flat | None = None
+    closed: float | None = None
+    parts: tuple[int, ...] = ()
+    """Which of the model's parts it moves."""
+    surfaces: tuple[int, ...] = ()
+    """Which of the model's surfaces it moves."""
+    interiors: tuple[Interior, ...] = ()
+    """The hollows that it carries, as it is drawn; while it is shut they are within those of the model."""
+
+
 class ModelShape(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """A model at the size `size_m`; an entity of another size has it stretched along each axis.
 
     `turns`: one that is long where the model is wide has it turned a quarter first, as the simulator does
-    with the library's models.
+    with the library's models. `leaves` are what moves; all else is as it is drawn, with every joint at 0.
     """
 
     size_m: Size
     surfaces: tuple[Surface, ...] = ()
     interiors: tuple[Interior, ...] = ()
     parts: tuple[ConvexPart, ...] = ()
+    leaves: tuple[LeafShape, ...] = ()
     turns: bool = True
 
 

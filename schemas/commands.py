@@ -220,21 +220,46 @@ class Attach(Command[Changed], frozen=True, tag="attach"):
     centre [m]), turned there by `yaw` [rad]. Where it was taken is committed, and the map states
     `isGraspedBy` and `graspPose`. Refused for places, for what is fixed, part of something or held already,
     and for what holds the holder.
+
+    With `carry`, what stands on the entity or is inside it goes with it, each as it stands there: it is held
+    by the entity until that is detached. `leave` names what is not to, nor what only that bears.
     """
 
     name: Word
     to: Word
     at: Vector | None = None
     yaw: Angle | None = None
+    carry: bool = False
+    leave: tuple[Word, ...] = ()
     unchanged: tuple[Word, ...] = ()
     since: Since = 0
     dry_run: bool = False
 
 
 class Detach(Command[Changed], frozen=True, tag="detach"):
-    """Let go of what something holds: it is put where it is just now, which is committed."""
+    """Let go of what something holds: it is put where it is just now, which is committed.
+
+    What was taken along with it (`carry`) is let go with it.
+    """
 
     name: Word
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
+    dry_run: bool = False
+
+
+class Batch(Command[Changed], frozen=True, tag="batch"):
+    """Several changes of entities in one commit: all of them or, where one is refused, none.
+
+    `changes` are `update`, `set` and `unset` in any order, for they happen together: an entity is updated
+    once at most, and a property of it is set or unset once. Who makes them and why, `confidence`,
+    `unchanged`, `since` and `dry_run` are said of the batch. Positions are in the map frame.
+    """
+
+    LARGEST: ClassVar[int] = MANY
+
+    changes: Annotated[tuple[Update | Set | Unset, ...], Meta(min_length=1, max_length=10_000)]
+    confidence: Probability | None = None
     unchanged: tuple[Word, ...] = ()
     since: Since = 0
     dry_run: bool = False
@@ -470,7 +495,7 @@ class FindWay(Command[Way], frozen=True, tag="route"):
 class Export(Command[Document], frozen=True, tag="export"):
     """Export the map as a document, checked first; with `inferred` including inferred facts.
 
-    With `as_of` the map as it was then, as it was asserted.
+    With `as_of` the map as it was then; what followed and was measured then is worked out again.
     """
 
     format: RdfFormat = "rdfxml"
@@ -667,14 +692,16 @@ class Close(Command[Moved], frozen=True, tag="close"):
 class Drive(Command[Moved], frozen=True, tag="drive"):
     """Drive a robot of the simulator to a point, or through several, in a straight line to each.
 
-    At the end it faces `yaw`. It turns to where it goes first, and goes at most at `speed` [m/s]. With `stop`
-    it stops where it is. `wait` delays the reply until it is there; where it gets no further, or falls, that
-    is Refused.
+    At the end it faces `yaw`. Points and `yaw` are in the map frame, or in `frame` as that is when the
+    command begins. It turns to where it goes first, and goes at most at `speed` [m/s]. With `stop` it stops
+    where it is. `wait` delays the reply until it is there; where it gets no further, or falls, that is
+    Refused.
     """
 
     name: Word
     to: tuple[Point, ...] = ()
     yaw: Angle | None = None
+    frame: FrameName | None = None
     speed: Annotated[float, Meta(gt=0.0, le=2.0)] = 0.4
     stop: bool = False
     wait: bool = False

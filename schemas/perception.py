@@ -63,3 +63,61 @@ class SegmentedCloud(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     positions: bytes
     colors: bytes
     labels: bytes
+
+
+class SeenInFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One object in a frame of a dataset: as in `Observation`, and where in the picture.
+
+    `box_px`: first column and row, and those after the last [pixel].
+    """
+
+    class_: str = field(name="class")
+    probability: Probability
+    candidates: dict[str, Probability] = {}
+    pose: Pose
+    size_m: Size
+    box_px: tuple[int, int, int, int]
+    points: int
+
+
+class FrameRow(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What one frame of a dataset shows, or what is wrong with it."""
+
+    frame: str
+    objects: tuple[SeenInFrame, ...] = ()
+    error: str = ""
+
+
+class MaskRun(Struct, frozen=True, kw_only=True):
+    """A mask as COCO writes it: `counts` are run lengths, column after column, as numbers or compressed.
+
+    `size` is (height, width) [pixel]. `label` is what its thing is taken for, in the detector's own words.
+    """
+
+    size: tuple[int, int]
+    counts: str | tuple[int, ...]
+    label: str = ""
+    score: Probability = 1.0
+
+
+class MaskImage(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Masks as one image: `labels` (H, W) little-endian 16-bit, 0: none, n: what `names[n - 1]` names."""
+
+    labels: bytes
+    names: tuple[str, ...] = ()
+    scores: tuple[Probability, ...] = ()
+
+
+class DetectedMasks(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What a 2-D detector has found in a picture of a camera, which was taken at `stamp_ns`.
+
+    Either `masks` or an `image`. With `alone`, nothing but these is to be found in it.
+    """
+
+    camera: str
+    stamp_ns: int
+    width: int
+    height: int
+    masks: tuple[MaskRun, ...] = ()
+    image: MaskImage | None = None
+    alone: bool = False

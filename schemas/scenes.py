@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Final, Literal
 
 from msgspec import Meta, Struct, field
 
@@ -12,6 +12,10 @@ from schemas.joints import Joint
 
 PixelCount = Annotated[int, Meta(ge=1, le=1 << 14)]
 """How wide or high a picture may be."""
+
+
+UPRIGHT: Final = 0.85
+"""A robot stands as long as its own z axis is so much of an upright one; at 32 degrees it falls over."""
 
 
 class BodyOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -36,7 +40,8 @@ class BodyOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A body as it stands in the scene.
 
-    `commit` is the commit whose pose it was last ordered to take, 0 for what the map never placed.
+    `commit` is the commit whose pose it was last ordered to take, 0 for what the map never placed, and -1
+    for a robot and its parts until it is first placed, moved or driven in this run of the simulator.
     `shape_commit` is the commit it was made for. `entity` tells bodies made from the map from the
     world's own furniture. `size_m` is what it really measures. `joints` are those that move parts of it, and
     `joint_commit` is the commit whose positions these were last ordered to take. It rests when these do, too.
@@ -64,6 +69,11 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     grip_commit: int = -1
     robot: bool = False
     """It was put there by `semmap up --robot`: it becomes an entity whatever the truth is, and is tracked."""
+
+    @property
+    def has_fallen(self) -> bool:
+        """Whether it is a robot that lies on its side."""
+        return self.robot and not self.part_of and self.pose.upright < UPRIGHT
 
 
 class Spawned(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -237,7 +247,7 @@ class Surface(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Surfaces(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Those of the bodies that are there and were made from a model; the world's own are not."""
+    """Those of the bodies that are there; of the world's own as their parts stood when it was asked."""
 
     surfaces: dict[str, Surface]
 

@@ -8,10 +8,10 @@
             print(entity.name, entity.pose)
 
 `semmap.aio` has the same client for an event loop, `semmap.fleet` asks several robots together,
-`semmap.testing` has a system for your tests, `semmap.reasoner` the OWL 2 RL reasoner by itself,
-`semmap.commands` what can be sent, and `semmap.wire` what programs need that speak Zenoh themselves. Only the
-names in `__all__` of these modules are public; `nodes`, `schemas` and `ontology` are private, and may change
-with any version.
+`semmap.recordings` films and replays the past, `semmap.testing` has a system for your tests,
+`semmap.reasoner` the OWL 2 RL reasoner by itself, `semmap.commands` what can be sent, and `semmap.wire` what
+programs need that speak Zenoh themselves. Only the names in `__all__` of these modules are public; `nodes`,
+`schemas` and `ontology` are private, and may change with any version.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ from schemas.replies import (
 from schemas.sparql import RowsChanged, SparqlResult
 
 if TYPE_CHECKING:
-    from semmap import aio, commands, fleet, reasoner, testing, wire
+    from semmap import aio, commands, fleet, reasoner, recordings, testing, wire
 
 __all__ = [
     "BadFile",
@@ -101,12 +101,13 @@ __all__ = [
     "fleet",
     "local_name",
     "reasoner",
+    "recordings",
     "restore",
     "testing",
     "wire",
 ]
 
-_MODULES = {"aio", "commands", "fleet", "reasoner", "testing", "wire"}
+_MODULES = {"aio", "commands", "fleet", "reasoner", "recordings", "testing", "wire"}
 
 
 def __getattr__(name: str) -> ModuleType | str:

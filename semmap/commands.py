@@ -2,6 +2,7 @@
 
 from schemas.commands import (
     Add,
+    Batch,
     Check,
     Classes,
     Clear,
@@ -18,16 +19,19 @@ from schemas.commands import (
     Pause,
     Remove,
     Reset,
+    Set,
     Sparql,
     Status,
     StepOnce,
     TakePicture,
     Undo,
+    Unset,
     Update,
 )
 
 __all__ = [
     "Add",
+    "Batch",
     "Check",
     "Classes",
     "Clear",
@@ -44,10 +48,12 @@ __all__ = [
     "Pause",
     "Remove",
     "Reset",
+    "Set",
     "Sparql",
     "Status",
     "StepOnce",
     "TakePicture",
     "Undo",
+    "Unset",
     "Update",
 ]

@@ -1,5 +1,6 @@
 """Things that are held over the wire: words, hands and the map agree on who holds what."""
 
+import json
 import os
 import signal
 
@@ -125,7 +126,7 @@ def test_the_last_word_wins(client):
         (("cup1", "kitchen1"), "kitchen1 is a place, which neither holds anything nor is held"),
         (("kitchen1", "cup1"), "kitchen1 is a place"),
         (("cup1", "cup9"), "no entity is named 'cup9'"),
-        (("tray1", "cup1"), "cup1 is held by tray1, so it cannot hold it"),
+        (("tray1", "cup1"), "cup1 is held by tray1, so it cannot hold tray1"),
         (("cup1", "table1"), "cup1 is held by tray1 already; first: semmap detach cup1"),
     ],
 )
@@ -165,3 +166,77 @@ def test_on_the_command_line(shared):
     assert "tray1 holds cup1 already" in shared.cli("attach", "cup1", "--to", "tray1")
     assert "where tray1 holds it" in shared.cli("get", "cup1")
     assert "dry run" in shared.cli("detach", "cup1", "--dry-run")
+
+
+@pytest.fixture
+def porter(tmp_path):
+    """A robot beside a tray with two cups on it."""
+    with running(tmp_path, *OPTIONS, "--robot", "porter") as system, system.client() as client:
+        client.add("Tray", "tray1", at=(0.0, -2.0, 0.0), wait=True)
+        client.add("Cup", "cup1", at=(0.08, -2.0, 0.02), wait=True)
+        client.add("Cup", "cup2", at=(-0.08, -2.0, 0.02), wait=True)
+        until(lambda: client.status().in_agreement, "all is at rest")
+        yield system
+
+
+def off_tray_m(client, cup):
+    """How far a cup is from where the tray has it, by where both are just now."""
+    there = {e.name: (e.live.pose if e.live else e.pose) for e in client.list()}
+    return distance_m(there[cup], compose(there["tray1"], grip_of(client.get(cup))))
+
+
+def test_what_stands_on_a_tray_is_carried_by_a_robot_and_free_again(porter):
+    with porter.client() as client:
+        dry = client.attach("tray1", to="robot1_gripper", dry_run=True)
+        assert dry.notes[-1].startswith("cup1 and cup2 are on or inside tray1 and held by nothing")
+        reply = client.attach("tray1", to="robot1/gripper", at=(0.25, 0.0, 0.0), yaw=0.0, carry=True)
+        assert reply.text.endswith("; tray1 carried cup1 and cup2 along")
+        assert set(reply.names) == {"tray1", "cup1", "cup2"}
+        in_agreement(client)
+        assert client.attach("tray1", to="robot1_gripper", carry=True).commit is None
+        client.drive("robot1", to=((1.0, 0.0), (1.0, 1.0), (0.0, 0.0)), wait=True)
+        for cup in ("cup1", "cup2"):
+            assert holder_of(client.get(cup)) == "tray1"
+            assert off_tray_m(client, cup) < 0.02
+        before = in_agreement(client) and client.status().commit
+        reply = client.detach("tray1")
+        assert reply.text.endswith("; cup1 and cup2 are free again, too")
+        assert reply.commit == before + 1
+        assert {holder_of(client.get(n)) for n in ("tray1", "cup1", "cup2")} == {""}
+        in_agreement(client)
+        client.undo(reply.commit)
+        assert {holder_of(client.get(n)) for n in ("cup1", "cup2")} == {"tray1"}
+        assert client.detach("tray1").text.endswith("; cup1 and cup2 are free again, too")
+
+
+WORLD = {
+    "entities": [
+        {"class": "Table", "name": "table1", "at": [3.0, 0.0, 0.0]},
+        {"class": "Tray", "name": "tray1", "at": [0.0, -2.0, 0.0]},
+        {"class": "Cup", "name": "cup1", "at": [0.08, -2.0, 0.02]},
+        {"class": "Cup", "name": "cup2", "at": [-0.08, -2.0, 0.02]},
+    ]
+}
+
+
+def test_where_the_scene_is_the_truth_what_stands_on_it_is_taken_along_there_first(tmp_path):
+    (tmp_path / "world.json").write_text(json.dumps(WORLD))
+    options = ("--abox", "none", "--world", tmp_path / "world.json", "--truth", "scene")
+    with running(tmp_path, *options) as system, system.client() as client:
+        until(lambda: [e.name for e in client.list(on="tray1")] == ["cup1", "cup2"], "the map follows")
+        in_agreement(client)
+        with pytest.raises(errors.BadRequest, match="--leave says what is not to be carried along"):
+            client.attach("tray1", to="table1", leave=("cup1",))
+        reply = client.attach("tray1", to="table1", at=(0.0, 0.0, 0.8), carry=True, leave=("cup1",))
+        assert "tray1 carried cup2 along" in reply.text
+        in_agreement(client)
+        assert [holder_of(client.get(n)) for n in ("cup1", "cup2")] == ["", "tray1"]
+        scene = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene)
+        there = {body.name: body for body in scene.bodies}
+        assert {name: body.held_by for name, body in there.items()} == {
+            "table1": "", "tray1": "table1", "cup1": "", "cup2": "tray1"
+        }  # fmt: skip
+        assert there["cup2"].pose.position_m == pytest.approx((2.92, 0.0, 0.81), abs=0.03)
+        assert client.detach("tray1").names == ("tray1", "cup2")
+        in_agreement(client)
+        assert holder_of(client.get("cup2")) == ""

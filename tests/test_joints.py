@@ -70,6 +70,27 @@ def test_a_robot_that_opens_it_changes_the_map(client):
     assert len(rows) == 1
 
 
+def test_what_is_in_a_drawer_is_inside_it_open_or_shut(client):
+    client.add("Drawer", "chest1", at=(0.0, 3.0, 0.0), wait=True)
+    client.add("Apple", "apple1", at=(0.05, 3.1, 0.72), wait=True)
+
+    def inside():
+        found = client.list(in_="chest1")
+        return [entity.name for entity in found] == ["apple1"]
+
+    assert inside()
+    client.open("chest1", joint="drawer_1", wait=True)
+    until(lambda: client.get("apple1").pose.position_m[0] > 0.25 and inside(), "the apple has come along")
+    why = client.explain("apple1", "isInside", "chest1")
+    assert "within drawer_1 of chest1, which is open to 100%" in why.text
+    assert "cannot be seen" not in client.last_seen("apple1").text
+    client.close("chest1", wait=True)
+    until(lambda: client.get("apple1").pose.position_m[0] < 0.1 and inside(), "the apple has gone back in")
+    assert "it cannot be seen there: chest1 has been closed since" in client.last_seen("apple1").text
+    client.open("chest1", joint="drawer_2", wait=True)
+    assert "it cannot be seen there: drawer_1 of chest1 is closed" in client.last_seen("apple1").text
+
+
 @pytest.mark.parametrize(
     ("name", "why"),
     [("cup1", "cup1 has no door, lid or drawer to open"), ("fridge2", "no entity is named 'fridge2'")],

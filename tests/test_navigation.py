@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from PIL import Image
+from scipy import ndimage
 
 from schemas import errors
 from tests.conftest import running
@@ -29,6 +30,19 @@ def test_a_plan_to_files_and_back_as_rooms(system, tmp_path):
     missing = tmp_path / "missing.yaml"
     missing.write_text("image: nothing.pgm\nresolution: 0.05\n")
     assert "the image of missing.yaml is missing" in system.cli("load", missing, status=2)
+
+
+@pytest.mark.parametrize("turn_deg", [0, 20, 45, 60])
+def test_furniture_makes_no_rooms_however_the_plan_is_turned(system, tmp_path, turn_deg):
+    plan = tmp_path / "full.png"
+    system.cli("floorplan", plan)
+    pixels = np.asarray(Image.open(plan))
+    turned = ndimage.rotate(pixels, turn_deg, order=0, cval=205)  # grey is unknown
+    Image.fromarray(turned).save(plan)
+    told = system.cli("load", tmp_path / "full.yaml", "--dry-run").splitlines()
+    assert len([line for line in told if line.startswith("  room")]) == 6
+    widths = [float(line.split()[1]) for line in told if line.startswith("  doorway") and " wide at" in line]
+    assert widths == pytest.approx([0.9] * 6, abs=0.06)
 
 
 def test_plans_of_other_kinds(system, tmp_path):

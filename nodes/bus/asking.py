@@ -37,6 +37,7 @@ _SLOWER: Final = 1.5
 """How much longer one who was sent away again waits than the last time."""
 _LONGEST_S: Final = 5.0
 
+_TIME_IS_UP = b"Timeout"
 _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _AS_THEY_COME = zenoh.ConsolidationMode.NONE
 
@@ -167,7 +168,7 @@ def _ask(
             for reply in replies if meanwhile is None or last is None else _polled(replies, meanwhile):
                 if lifelines is not None:
                     lifelines.look(servers)
-                if lifelines is None or lifelines.vouch(servers, reply):
+                if lifelines is None or _is_late(reply) or lifelines.vouch(servers, reply):
                     if (whole := read_reply(key, reply, kind, round_s, gathered)) is not None:
                         return whole.decode()
                     continue
@@ -283,7 +284,7 @@ def ask_later(
     gathered = pieces.Gathered()
 
     def on_reply(reply: zenoh.Reply) -> None:
-        if lifelines is not None and not lifelines.vouch(servers, reply):
+        if lifelines is not None and not _is_late(reply) and not lifelines.vouch(servers, reply):
             foreign.append(reply)
         elif not waiting:
             return
@@ -363,6 +364,14 @@ def read_reply(
     if str(error.encoding) != _ERROR_ENCODING:
         raise TimedOut(f"{key} did not answer within {timeout_s:g} s")
     raise errors.from_message(codec.decode(error.payload.to_bytes(), errors.ErrorMessage))
+
+
+def _is_late(reply: zenoh.Reply) -> bool:
+    """Is it no answer, but Zenoh's word that time has run out? It may come as its next neighbour's."""
+    error = reply.err
+    if error is None or str(error.encoding) == _ERROR_ENCODING:
+        return False
+    return error.payload.to_bytes() == _TIME_IS_UP
 
 
 def _foreign(key: str, servers: tuple[str, ...]) -> str:

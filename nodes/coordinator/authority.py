@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 from nodes.coordinator.config import Truth
 from schemas import errors
-from schemas.commands import Add, Clear, Command, Remove, Update
+from schemas.commands import Add, Batch, Clear, Command, Remove, Update
 from schemas.entities import LESSER, Entity
 
 _COMES_BACK = {
@@ -32,12 +32,17 @@ def require_authority(command: Command, concerned: Iterable[Entity]) -> None:
             )
 
 
-def note(command: Add | Update | Remove | Clear, truth: Truth) -> str | None:
+def note(command: Add | Update | Batch | Remove | Clear, truth: Truth) -> str | None:
     """What will become of a change where the map does not own what it changes; None where it does."""
     if isinstance(command, (Remove, Clear)):
         return _COMES_BACK.get(truth)
-    placed = any(value is not None for value in (command.at, command.yaw, command.orientation))
-    return _GOES_BACK.get(truth) if isinstance(command, Update) and placed else None
+    changes = command.changes if isinstance(command, Batch) else (command,)
+    return _GOES_BACK.get(truth) if any(map(is_placing, changes)) else None
+
+
+def is_placing(change: Command) -> bool:
+    """Does it say where an entity that is there stands from now on?"""
+    return isinstance(change, Update) and (change.at, change.yaw, change.orientation) != (None, None, None)
 
 
 def require_operator(command: Command, what: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 
+from schemas import keys
 from schemas.health import Health
 from schemas.replies import NodeStatus
 from schemas.wording import counted
@@ -15,15 +16,19 @@ _NODES = 50
 
 
 class HealthView:
-    """The last heartbeat of each node on each host, and when it came."""
+    """The last heartbeat of each node on each host, and when it came.
+
+    A page is no node that has to be there: any number may be, and one that has ended is not told any more.
+    """
 
     def __init__(self) -> None:
-        self._last: dict[tuple[str, str], tuple[Health, float]] = {}
+        self._last: dict[tuple[str, str, int], tuple[Health, float]] = {}
         self._told_from = time.monotonic() + _HEARD_WITHIN_S
 
     def take(self, health: Health) -> None:
         """Remember a heartbeat; of strange nodes no more than a few."""
-        which = health.node, health.host
+        self._forget_pages()
+        which = health.node, health.host, health.pid if health.node == keys.WEB else 0
         if which not in self._last and len(self._last) >= _NODES:
             return
         self._last[which] = (health, time.monotonic())
@@ -31,7 +36,7 @@ class HealthView:
     def alive(self, node: str) -> bool:
         """Was the node heard of lately?"""
         now_s = time.monotonic()
-        return any(name == node and now_s - at < SILENT_AFTER_S for (name, _), (_, at) in self._last.items())
+        return any(name == node and now_s - at < SILENT_AFTER_S for (name, *_), (_, at) in self._last.items())
 
     def may_be_there(self, node: str) -> bool:
         """Is the node alive, or is it too early to tell? A heart beats once a second."""
@@ -39,7 +44,15 @@ class HealthView:
 
     def nodes(self) -> tuple[NodeStatus, ...]:
         """One row a node, by its name and its host's."""
+        self._forget_pages()
         return tuple(self._status(health, at) for _, (health, at) in sorted(self._last.items()))
+
+    def _forget_pages(self) -> None:
+        """Those that were not heard of lately."""
+        now_s = time.monotonic()
+        for which, (health, at) in list(self._last.items()):
+            if health.node == keys.WEB and now_s - at >= SILENT_AFTER_S:
+                del self._last[which]
 
     def _status(self, health: Health, at: float) -> NodeStatus:
         age_s = time.monotonic() - at

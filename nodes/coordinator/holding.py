@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 from schemas import errors, wording
 from schemas.entities import Entity, Pose, compose, orientation_from_yaw, relative
@@ -31,15 +31,59 @@ def require_graspable(
         raise errors.Refused(f"{name} cannot hold itself")
     if name in (above := bearers(to, entities)):
         how = "is held by" if holder_of(holder) == name else "is part of" if len(above) == 1 else "goes with"
-        raise errors.Refused(f"{to} {how} {name}, so it cannot hold it")
+        raise errors.Refused(f"{to} {how} {name}, so it cannot hold {name}")
     by = holder_of(held)
     if by and by != to:
         raise errors.Refused(f"{name} is held by {by} already; first: semmap detach {name}")
-    body = bodies.get(name)
+    if why := _stays(held, bodies):
+        raise errors.Refused(why)
+
+
+def load(
+    borne: Sequence[str],
+    held: Entity,
+    holder: Entity,
+    entities: Mapping[str, Entity],
+    bodies: Mapping[str, Body],
+) -> tuple[str, ...]:
+    """What goes with a thing that is taken, of all that it bears: not what is fixed, or part of something.
+
+    Raises Refused where it bears what is to hold it.
+    """
+    above = {holder.name, *bearers(holder.name, entities)}
+    for name in borne:
+        if name in above:
+            who = holder.name if name == holder.name else f"{name}, which {holder.name} goes with,"
+            raise errors.Refused(
+                f"{who} stands on {held.name} or is inside it, so {holder.name} cannot take {held.name} away"
+            )
+    there = (entities[name] for name in borne if name in entities)
+    return tuple(entity.name for entity in there if not (_stays(entity, bodies) or holder_of(entity)))
+
+
+def taken_with(entity: Entity, held: Mapping[str, Entity]) -> tuple[str, ...]:
+    """What a held thing holds since it was taken itself, in the same commit: that came along with it."""
+    since = entity.grip_provenance
+    return tuple(
+        sorted(
+            name
+            for name, other in held.items()
+            if holder_of(other) == entity.name
+            and since is not None
+            and other.grip_provenance is not None
+            and other.grip_provenance.commit == since.commit
+        )
+    )
+
+
+def _stays(held: Entity, bodies: Mapping[str, Body]) -> str:
+    """Why nothing can take a thing: it is fixed, or part of another; "" for what can be taken."""
+    body = bodies.get(held.name)
     if body is not None and body.part_of:
-        raise errors.Refused(f"{name} is part of {body.part_of}, which cannot let go of it")
+        return f"{held.name} is part of {body.part_of}, which cannot let go of it"
     if held.fixed or (body is not None and body.fixed):
-        raise errors.Refused(f"{name} is fixed where it stands, so nothing can take it")
+        return f"{held.name} is fixed where it stands, so nothing can take it"
+    return ""
 
 
 def grip(

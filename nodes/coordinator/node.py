@@ -74,7 +74,9 @@ class Coordinator:
         running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
         self._opening = Opening(door, self._keeping, self._ask_sim)
         scene = self._keeping.scene
-        self._gripping = Gripping(config.truth, door, scene, self._turns.change, self._ask_sim)
+        self._gripping = Gripping(
+            config.truth, door, scene, self._turns.change, self._ask_sim, self._bridge.ask_later
+        )
         door.map.where, door.map.bodies = self._live.where, lambda: scene.bodies
         relay = self._bridge.relay
         of_the_map = calls.by_verb(
@@ -82,6 +84,7 @@ class Coordinator:
             c.Update.answered_by(frames.placed(self._with_body)),
             c.Set.answered_by(self._turns.change),
             c.Unset.answered_by(self._turns.change),
+            c.Batch.answered_by(self._noted),
             c.Track.answered_by(self._track),
             c.Remove.answered_by(self._noted),
             c.Clear.answered_by(self._noted),
@@ -95,7 +98,7 @@ class Coordinator:
             c.Detach.answered_by(self._gripping.detach),
             c.Open.answered_by(self._opening.move),
             c.Close.answered_by(self._opening.move),
-            c.Drive.answered_by(running.drive),
+            c.Drive.answered_by(frames.placed(running.drive)),
             c.Pause.answered_by(running.pause),
             c.StepOnce.answered_by(running.step),
             c.Reset.answered_by(running.reset),
@@ -249,7 +252,7 @@ class Coordinator:
             future.set_result(structs.replace(changed, text=f"{changed.text}; body: {status}"))
         self._waiting = still
 
-    def _noted(self, command: c.Add | c.Update | c.Remove | c.Clear) -> Future[Changed]:
+    def _noted(self, command: c.Add | c.Update | c.Batch | c.Remove | c.Clear) -> Future[Changed]:
         """With a word on what will become of it where the map does not own what it changes."""
         made, note = self._turns.change(command), authority.note(command, self._config.truth)
         if note is None:

@@ -7,7 +7,7 @@ from collections.abc import Collection
 
 from ontology.model_shapes import own_size_m
 from schemas import errors
-from schemas.commands import Move, Update
+from schemas.commands import Attach, Move, Update
 from schemas.entities import ClassInfo, Entity, Pose, Size
 from schemas.polygons import extent_of
 
@@ -26,7 +26,7 @@ def require_same_nature(entity: Entity, found: ClassInfo | None, *, force: bool)
     )
 
 
-def require_carrying(command: Update | Move) -> None:
+def require_carrying(command: Update | Move | Attach) -> None:
     """Raises BadRequest where something is to be left of what is not carried."""
     if command.leave and not command.carry:
         raise errors.BadRequest("--leave says what is not to be carried along: add --carry")

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Final, NamedTuple
 
 from schemas import errors, polygons
-from schemas.commands import Add, Attach, Command, Detach, Set, Track, Unset, Update
+from schemas.commands import Add, Attach, Batch, Command, Detach, Set, Track, Unset, Update
 from schemas.commits import Edit, NewEntity, Statement, Transaction
 from schemas.entities import IDENTITY, ClassInfo, Entity, Pose, Size, Value, Vector
 from schemas.grips import GRASP_POSE, IS_GRASPED_BY, pose_text
 from schemas.scene_files import Described, pose_of
+
+_FEW: Final = 4
+"""Of so many changes that are made together the reason names each."""
 
 
 def transaction(
@@ -118,6 +122,17 @@ def unstate(command: Unset) -> Transaction:
     return transaction(command, f"unset {command.name} {command.property}{said}", edit=[edit])
 
 
+def together(command: Batch, changes: Sequence[Transaction]) -> Transaction:
+    """All of these changes as one."""
+    reasons = [change.reason for change in changes]
+    said = "; ".join(reasons if len(reasons) <= _FEW else [*reasons[: _FEW - 1], _more(reasons)])
+    return transaction(command, said, edit=[edit for change in changes for edit in change.edit])
+
+
+def _more(reasons: Sequence[str]) -> str:
+    return f"and {len(reasons) - _FEW + 1} more changes"
+
+
 def track(command: Track) -> Transaction:
     """An entity is tracked from now on, or not any more."""
     edit = Edit(name=command.name, tracked="" if command.off else command.from_)
@@ -125,27 +140,42 @@ def track(command: Track) -> Transaction:
     return transaction(command, f"track {command.name} {said}", edit=[edit])
 
 
-def attach(command: Attach, to: str, grip: Pose | None, pose: Pose | None) -> Transaction:
-    """An entity is held from now on, at `grip` in its holder's frame, and is at `pose` just now."""
-    edit = Edit(
-        name=command.name,
-        at=None if pose is None else pose.position_m,
-        orientation=None if pose is None else pose.orientation_wxyz,
-        unset=(Statement(property=GRASP_POSE),) if grip is None else (),
-        set=gripped(to, grip),
-    )
-    return transaction(command, f"attach {command.name} --to {to}", edit=[edit])
+class Taken(NamedTuple):
+    """What is held from now on: by what, where in the frame of that, and where it is just now (map frame)."""
+
+    name: str
+    holder: str
+    grip: Pose | None
+    pose: Pose | None
 
 
-def detach(command: Detach, pose: Pose | None) -> Transaction:
-    """Nothing holds an entity any more, which is at `pose` just now."""
-    edit = Edit(
-        name=command.name,
-        at=None if pose is None else pose.position_m,
-        orientation=None if pose is None else pose.orientation_wxyz,
-        unset=gripped("", None),
-    )
-    return transaction(command, f"detach {command.name}", edit=[edit])
+def attach(command: Attach, to: str, taken: Iterable[Taken]) -> Transaction:
+    """Entities are held from now on: the one that was named, by `to`, and what goes with it."""
+    edits = [
+        Edit(
+            name=one.name,
+            at=None if one.pose is None else one.pose.position_m,
+            orientation=None if one.pose is None else one.pose.orientation_wxyz,
+            unset=(Statement(property=GRASP_POSE),) if one.grip is None else (),
+            set=gripped(one.holder, one.grip),
+        )
+        for one in taken
+    ]
+    return transaction(command, f"attach {command.name} --to {to}", edit=edits)
+
+
+def detach(command: Detach, poses: Mapping[str, Pose | None]) -> Transaction:
+    """Nothing holds these entities any more, which are at `poses` just now (map frame)."""
+    edits = [
+        Edit(
+            name=name,
+            at=None if pose is None else pose.position_m,
+            orientation=None if pose is None else pose.orientation_wxyz,
+            unset=gripped("", None),
+        )
+        for name, pose in poses.items()
+    ]
+    return transaction(command, f"detach {command.name}", edit=edits)
 
 
 def gripped(holder: str, grip: Pose | None) -> tuple[Statement, ...]:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from nodes.coordinator.scene.settled import Settled
 from nodes.runtime.futures import OwnFuture, settle
-from schemas.commands import Add, Attach, Clear, Detach, Load, Remove, Set, Track, Undo, Unset, Update
+from schemas.commands import Add, Attach, Batch, Clear, Detach, Load, Remove, Set, Track, Undo, Unset, Update
 from schemas.replies import Changed
 
 GROUP = 16
@@ -24,7 +24,7 @@ GROUP = 16
 AT_ONCE = 2
 """How many groups may be under way: one that the knowledge base works on, and one that waits there."""
 
-Change = Add | Update | Set | Unset | Track | Attach | Detach | Remove | Clear | Load | Undo | Settled
+Change = Add | Update | Set | Unset | Batch | Track | Attach | Detach | Remove | Clear | Load | Undo | Settled
 Results = list[Changed | Exception]
 
 

@@ -1,14 +1,21 @@
-"""Body surfaces, requested from the simulator once for each model and size."""
+"""Body surfaces, requested from the simulator once for each model and size, or body of the world's own."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Final
 
 from nodes.drawing.bending import bends_of, bent
 from schemas.entities import Size
 from schemas.scenes import Body, Surface
 
 Kind = tuple[str, Size]
+_OWN: Final = "body:"
+
+
+def look_of(body: Body) -> str:
+    """What a body looks like: the name of its model, or its own, for one that comes with the world."""
+    return body.model or f"{_OWN}{body.name}"
 
 
 class SurfaceCache:
@@ -30,7 +37,7 @@ class SurfaceCache:
         """One body of each kind that was never asked for; they count as asked for from now on."""
         names: dict[str, Kind] = {}
         for body in bodies:
-            if body.model and _kind(body) not in self._known:
+            if _kind(body) not in self._known:
                 names[body.name] = _kind(body)
                 self._known[_kind(body)] = None
         return names
@@ -47,4 +54,4 @@ class SurfaceCache:
 
 
 def _kind(body: Body) -> Kind:
-    return body.model, body.size_m
+    return look_of(body), body.size_m

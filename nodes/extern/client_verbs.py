@@ -158,6 +158,33 @@ def _set(
     )
 
 
+def _batch(
+    *changes: commands.Update | commands.Set | commands.Unset,
+    confidence: float | None = None,
+    unchanged: Sequence[str] = (),
+    since: int = 0,
+    dry_run: bool = False,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Changed]:
+    """Make several changes in one commit, or none: `client.batch(Set(...), Update(...))`.
+
+    They are messages of `semmap.commands` and happen together: an entity is updated once at most, and a
+    property of it set or unset once. Positions are in the map frame. Raises what the first change that is
+    refused would raise, and PreconditionFailed where one of `unchanged` was changed by a commit after
+    `since`.
+    """
+    return commands.Batch(
+        changes=changes,
+        confidence=confidence,
+        unchanged=tuple(unchanged),
+        since=since,
+        dry_run=dry_run,
+        id=id,
+        reason=reason,
+    )
+
+
 def _load(
     path: str | Path,
     *,
@@ -294,6 +321,7 @@ class Verbs:
     update = Verb(commands.Update)
     set = Verb(_set)
     unset = Verb(commands.Unset)
+    batch = Verb(_batch)
     track = Verb(commands.Track)
     remove = Verb(_remove)
     clear = Verb(commands.Clear)

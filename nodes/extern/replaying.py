@@ -18,18 +18,18 @@ from schemas.moments import When
 
 
 def replay(
-    data: Path,
+    data: str | Path,
     *,
     since: When | None = None,
     until: When | None = None,
     speed: float = 1.0,
     longest_s: float = rhythm.LONGEST_S,
     listen: str | None = None,
-    world: Path | None = None,
+    world: str | Path | None = None,
     sim: bool = True,
     record: bool = True,
     web: int | None = None,
-    say: Callable[[str], None],
+    say: Callable[[str], None] = print,
 ) -> None:
     """Run the map of the data folder `data` again, from one commit or time to another, until Ctrl-C.
 
@@ -41,6 +41,7 @@ def replay(
     Raises BadFile when there is no map, Refused when it is damaged or the span is not in its history,
     BadRequest for a span or speed that is none; and what `semmap up` raises.
     """
+    data, world = Path(data).resolve(), None if world is None else Path(world)
     rhythm.require_speed(speed)
     rhythm.require_longest(longest_s)
     extras.require(
@@ -70,19 +71,21 @@ def replay(
 
 
 def check(
-    file: Path,
-    data: Path | None = None,
+    file: str | Path,
+    data: str | Path | None = None,
     *,
     where: str | None = None,
     identity: str | None = None,
     namespace: str | None = None,
-    tell: Callable[[str], None],
+    tell: Callable[[str], None] = print,
 ) -> str:
     """Compare the commits of a recording with those in the journal of a data folder, or of a running system.
 
     Returns what was compared, in a sentence; `tell` is told of what cannot be read of the recording. Raises
-    Refused with the first difference; BadFile for no recording or no map.
+    Refused with the first difference, or with the commits that the recording lacks; BadFile for no recording
+    or no map.
     """
+    file, data = Path(file), None if data is None else Path(data)
     extras.require("semmap replay --check", "kb", "record")
     from nodes.kb_node.storage.journal import Journal
     from nodes.recorder.checking import check as compare
@@ -102,6 +105,8 @@ def check(
         verdict = compare(recorded, journal.commit, first=journal.first, last=journal.last)
     if not verdict.is_same:
         raise errors.Refused(f"{file} is not a recording of this map: {verdict.text}")
+    if not verdict.is_whole:
+        raise errors.Refused(f"{file} is not complete: {verdict.text}")
     return f"{file}: {verdict.text}"
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from itertools import chain, islice
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from msgspec import structs
 
@@ -29,12 +29,19 @@ from schemas import errors, wording
 from schemas.commits import Commit, Edit
 from schemas.entities import Entity, carried
 from schemas.explanations import Term, Triple
+from schemas.joints import OPENING
+from schemas.polygons import EXTENT
 
 _FEW = 10
 """Sentences of one kind."""
 _MANY = 1000
 """Of those that leave, so many are looked at for what they leave behind."""
-_GEOMETRY = frozenset((*stars.COORDINATE_PROPERTIES, *v.SIZE_XYZ, v.HAS_POSITION, v.HAS_SIZE, v.HAS_EXTENT))
+_OPENING = frozenset((v.IS_OPEN, v.OPENNESS, v.JOINT_POSITIONS))
+_GEOMETRY = _OPENING.union(
+    stars.COORDINATE_PROPERTIES, v.SIZE_XYZ, (v.HAS_POSITION, v.HAS_SIZE, v.HAS_EXTENT)
+)
+_SHAPING: Final = (EXTENT, *OPENING)
+"""Properties that its shape depends on."""
 
 
 class TakenBack(NamedTuple):
@@ -212,6 +219,7 @@ def _moved(
     changed = chain(gone, come)
     touched = subjects(t for t in changed if t[1] in _GEOMETRY) if own_words else subjects(gone, come)
     about = _about_after(reasoner, gone, come)
+    opened = subjects(t for t in chain(gone, come) if t[1] in _OPENING)
     concerned = {
         iri for node in reasoner.mentioned(touched) for iri in entity_reading.owners(reasoner, classes, node)
     }
@@ -219,9 +227,10 @@ def _moved(
         was = entity_changes.known(entities, iri)
         if was is not None:
             pose, size_m = entity_reading.read_place(about, classes, iri)
-            stated = classes.stated.stated(about(iri)) if was.place else was.properties
-            if (pose, size_m) != (was.pose, was.size_m) or stated.get("hasExtent") != was.properties.get(
-                "hasExtent"
+            is_reshaped = was.place or iri in opened
+            stated = classes.stated.stated(about(iri)) if is_reshaped else was.properties
+            if (pose, size_m) != (was.pose, was.size_m) or any(
+                stated.get(name) != was.properties.get(name) for name in _SHAPING
             ):
                 yield was.name, structs.replace(was, pose=pose, size_m=size_m, properties=stated)
 

@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.kb_node.relations.geometry.polygons import Point
-from nodes.kb_node.relations.geometry.regions import Region
+from nodes.geometry.polygons import Point
+from nodes.geometry.regions import Region
 from schemas import errors
 from schemas.plans import HeightRange, Plan, PlannedPlace, PlannedThing
 

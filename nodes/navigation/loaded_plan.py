@@ -8,7 +8,7 @@ from typing import Final
 
 import msgspec
 
-from nodes.kb_node.relations.geometry.polygons import Point
+from nodes.geometry.polygons import Point
 from nodes.navigation.map_server import Described, Pixels, grid_of
 from nodes.navigation.rooms import Cut, cut
 from schemas import errors, scene_files

@@ -2,8 +2,9 @@
 
 Each free cell has a clearance, its distance to the nearest obstacle. Cells are let in from the widest on, so
 that each room begins at its middle; where two of them meet, the free space there is a neck, of the clearance
-that the meeting cell has. A neck that is as narrow as a door, and plainly narrower than both sides, is the
-border of two rooms; over any other they are one. The order is fixed, so the same plan makes the same rooms.
+that the meeting cell has. A neck that is as narrow as a door, plainly narrower than both sides, and a gap in
+a wall (`jambs.py`), is the border of two rooms; over any other they are one. The order is fixed, so the same
+plan makes the same rooms.
 """
 
 from __future__ import annotations
@@ -16,8 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from nodes.kb_node.relations.geometry.polygons import Point
+from nodes.geometry.polygons import Point
 from nodes.navigation.grid import FREE, UNKNOWN, Mask, OccupancyGrid
+from nodes.navigation.jambs import Jambs
 from nodes.navigation.outlines import outline_of
 from schemas.polygons import Polygon
 
@@ -78,7 +80,7 @@ def cut(
         return Cut((), ())
     free |= _islands(free, resolution)
     clearance = ndimage.distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1] * resolution
-    labels = _basins(clearance, widest_door_m / 2.0, resolution)
+    labels = _basins(clearance, widest_door_m / 2.0, resolution, Jambs(free, resolution))
     labels = _without_small(labels, clearance, int(least_room_m2 / resolution**2))
     return _described(labels, free, grid)
 
@@ -118,7 +120,7 @@ def _islands(free: Mask, resolution: float) -> Mask:
     return found
 
 
-def _basins(clearance: NDArray[np.float64], most_m: float, resolution: float) -> Labels:
+def _basins(clearance: NDArray[np.float64], most_m: float, resolution: float, jambs: Jambs) -> Labels:
     """The basin that each free cell belongs to, from 1 on; 0 for what is not free."""
     height, width = clearance.shape
     across = width + 2
@@ -149,13 +151,15 @@ def _basins(clearance: NDArray[np.float64], most_m: float, resolution: float) ->
     ]
 
     def is_neck(cell: int, value: float, pair: tuple[int, int]) -> bool:
-        """Whether it is plainly wider a step further, on both sides."""
+        """Whether it is plainly wider a step further, on both sides, and a wall ends at it."""
         most = dict.fromkeys(pair, 0.0)
         for step in disc:
             there = cell + step
             if 0 <= there < len(label) and label[there] and (k := root(label[there])) in most:
                 most[k] = max(most[k], values[there])
-        return value < _NARROWED * min(most.values())
+        if value >= _NARROWED * min(most.values()):
+            return False
+        return jambs.are_at(cell // across - 1, cell % across - 1)
 
     for cell in order:
         value = values[cell]
@@ -180,11 +184,12 @@ def _basins(clearance: NDArray[np.float64], most_m: float, resolution: float) ->
             first = around[0]
             for other in around[1:]:
                 pair = (first, other)
-                if pair not in apart:
+                if pair not in apart and (other, first) not in apart:
                     if value <= most_m and is_neck(cell, value, pair):
                         apart.add(pair)
                     else:
                         parent[other] = first
+                        apart = {(first if a == other else a, first if b == other else b) for a, b in apart}
     names: dict[int, int] = {}
     found_labels = [names.setdefault(root(k), len(names) + 1) if k else 0 for k in label]
     return np.array(found_labels, dtype=np.int32).reshape(height + 2, across)[1:-1, 1:-1]

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from nodes.kb_node.relations.geometry.polygons import Point
+from nodes.geometry.polygons import Point
 from nodes.navigation import grid as grids
 from nodes.navigation.grid import Frame, Mask
 from nodes.navigation.search import Cell, shortest, straightened

@@ -10,14 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.input.cloud import Cloud
+from nodes.perception_node.input.masks import Masks
 from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.recognition.pieces import put_together
 from nodes.perception_node.recognition.recognise import recognise
 from nodes.perception_node.recognition.shipped_votes import Learnt, shipped
+from nodes.perception_node.recognition.told_names import Labels
 from nodes.perception_node.recognition.vote import leaves
 from nodes.perception_node.views.disputes import settled
 from nodes.perception_node.views.furniture_planes import with_what_hangs_below
 from nodes.perception_node.views.fusion import Member, fuse, held_for_one
+from nodes.perception_node.views.masked import with_masks
 from nodes.perception_node.views.merged_thing import Thing, thing_of
 from nodes.perception_node.views.remembered import Recalled, Remembered, completed
 from nodes.perception_node.views.segmented_view import Sight, see
@@ -34,12 +37,14 @@ _NOTHING = Remembered()
 class Look:
     """What one look gave: the observations, and for each cloud (H, W) whose pixel belongs to which of them.
 
-    In `labels` 0 is background and n stands for `observations.observations[n - 1]`. `remembered` is what the
-    next look is to know of this one and those before it.
+    In `labels` 0 is background and n stands for `observations.observations[n - 1]`. `unknown_labels`: what a
+    detector said that is no class here. `remembered` is what the next look is to know of this one and those
+    before it.
     """
 
     observations: Observations
     labels: tuple[NDArray[np.int32], ...]
+    unknown_labels: tuple[str, ...] = ()
     remembered: Remembered = _NOTHING
 
     @property
@@ -53,24 +58,40 @@ def observe(clouds: Sequence[Cloud], learnt: Learnt) -> Observations:
     return look(clouds, learnt).observations
 
 
-def look(clouds: Sequence[Cloud], learnt: Learnt, before: Remembered = _NOTHING) -> Look:
+def look(
+    clouds: Sequence[Cloud],
+    learnt: Learnt,
+    masks: Sequence[Masks | None] = (),
+    labels: Labels | None = None,
+    before: Remembered = _NOTHING,
+) -> Look:
     """Find the things that clouds, taken at the same time, show; what several of them see is one thing.
 
+    `masks`: of each cloud what somebody else's detector found in it; `labels`: what its labels mean here.
     What a moving camera's picture cuts off is completed by what was remembered `before`. Each cloud is taken
-    apart by a thread of its own: NumPy and SciPy let others work meanwhile.
+    apart by a thread of its own: NumPy and SciPy let others work meanwhile. Raises ValueError for masks of
+    another size than the picture.
     """
     with ThreadPoolExecutor(max(1, len(clouds))) as threads:
-        sights = list(threads.map(see, clouds))
-    return look_at(sights, learnt, before)
+        sights = list(threads.map(_seen, clouds, [*masks] or [None] * len(clouds)))
+    labels = labels or Labels(learnt)
+    return replace(look_at(sights, learnt, labels, before), unknown_labels=labels.unknown(masks))
 
 
-def look_at(sights: Sequence[Sight], learnt: Learnt, before: Remembered = _NOTHING) -> Look:
+def _seen(cloud: Cloud, masks: Masks | None) -> Sight:
+    sight = see(cloud)
+    return sight if masks is None else with_masks(sight, masks)
+
+
+def look_at(
+    sights: Sequence[Sight], learnt: Learnt, labels: Labels | None = None, before: Remembered = _NOTHING
+) -> Look:
     """The same for clouds that were taken apart already."""
     parts = parts_in(sights)
     recalled = before.recalled(sights, parts.labels)
     parts = parts.completed(recalled)
     things, chances, members = put_together(parts.things, parts.held_for_one, learnt, parts.join)
-    found = recognise(things, chances, learnt)
+    found = recognise(things, chances, learnt, labels)
     kept = [n for n, observation in enumerate(found) if observation is not None]
     observations = Observations(
         stamp_ns=max((sight.cloud.stamp_ns for sight in sights), default=0),
@@ -84,17 +105,17 @@ def look_at(sights: Sequence[Sight], learnt: Learnt, before: Remembered = _NOTHI
     return Look(
         observations,
         tuple(numbers[label] for label in parts.labels),
-        before.after(sights, [thing.segments for thing in things], elsewhere),
+        remembered=before.after(sights, [thing.segments for thing in things], elsewhere),
     )
 
 
-def one_by_one(sight: Sight, learnt: Learnt) -> dict[int, Observation | None]:
+def one_by_one(sight: Sight, learnt: Learnt, labels: Labels | None = None) -> dict[int, Observation | None]:
     """What each label of one sight is taken for, by itself; None for clutter. Table tops are left out."""
     segments = [segment for segment in sight.segments if not segment.carrier]
     if not segments:
         return {}
     things = [thing_of([segment], sight.supports) for segment in segments]
-    found = recognise(things, leaves(learnt, features_of(things)), learnt)
+    found = recognise(things, leaves(learnt, features_of(things)), learnt, labels)
     return {segment.label: observation for segment, observation in zip(segments, found, strict=True)}
 
 

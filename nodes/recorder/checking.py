@@ -15,41 +15,66 @@ _SHOWN: Final = 80
 
 
 class Verdict(NamedTuple):
-    """What came of it. `is_same`: every recorded commit that could be compared is the journal's."""
+    """What came of it.
+
+    `is_same`: every recorded commit that could be compared is the journal's. `is_whole`: from the first
+    recorded commit on, the recording has all of them.
+    """
 
     is_same: bool
+    is_whole: bool
     text: str
 
 
 def check(
     recorded: Sequence[RecordedCommit], commit_of: Callable[[int], Commit], *, first: int, last: int
 ) -> Verdict:
-    """Compare the commits of a recording, in order, with those of a journal: the first difference is named.
+    """Compare the commits of a recording, in order, with those of a journal.
 
-    The journal has the commits from `first` to `last`; `commit_of(seq)` is one of them, whole.
+    The journal has the commits from `first` to `last`; `commit_of(seq)` is one of them, whole. The first
+    difference is named, or all commits that the recording lacks.
     """
-    if not recorded:
-        return Verdict(is_same=True, text="there are no commits in the recording")
     there = [commit for commit in recorded if commit.seq >= first]
     for commit in there:
         if commit.seq > last:
-            return Verdict(
-                is_same=False, text=f"commit {commit.seq} is not in the journal, whose last one is {last}"
-            )
+            return _another(f"commit {commit.seq} is not in the journal, whose last one is {last}")
         if difference := _difference(commit, commit_of(commit.seq)):
-            return Verdict(is_same=False, text=f"commit {commit.seq} is another one: {difference}")
+            return _another(f"commit {commit.seq} is another one: {difference}")
     seqs = [commit.seq for commit in there]
     if (twice := next((a for a, b in pairwise(seqs) if a == b), None)) is not None:
-        return Verdict(is_same=False, text=f"commit {twice} is recorded twice, and not the same")
-    told = [f"{wording.counted(len(seqs), 'commit is', 'commits are')} as in the journal{_span(seqs)}"]
-    if missing := sorted({*range(seqs[0], seqs[-1])} - {*seqs} if seqs else ()):
-        told.append(f"not recorded between them: {wording.few([str(seq) for seq in missing])}")
+        return _another(f"commit {twice} is recorded twice, and not the same")
+    if seqs:
+        told = [f"{wording.counted(len(seqs), 'commit is', 'commits are')} as in the journal{_span(seqs)}"]
+    else:
+        told = ["there are no commits in the recording"] if not recorded else []
+    begins = recorded[0].seq if recorded else first
+    missing = sorted({*range(max(begins, first), last + 1)} - {*seqs})
+    if missing:
+        told.append(f"the recording lacks {_ranges(missing)}")
+    if begins > first:
+        told.append(f"it begins after {_ranges(range(first, begins))}")
     if gone := len(recorded) - len(there):
         told.append(
             f"{wording.counted(gone, 'commit', 'commits')} before commit {first} cannot be compared, because"
             " the journal was compacted"
         )
-    return Verdict(is_same=True, text="; ".join(told))
+    return Verdict(is_same=True, is_whole=not missing, text="; ".join(told))
+
+
+def _another(text: str) -> Verdict:
+    return Verdict(is_same=False, is_whole=False, text=text)
+
+
+def _ranges(seqs: Sequence[int]) -> str:
+    """`commit 3`, `commits 2 to 4 and 7`; `seqs` rise."""
+    runs: list[list[int]] = []
+    for seq in seqs:
+        if runs and runs[-1][1] == seq - 1:
+            runs[-1][1] = seq
+        else:
+            runs.append([seq, seq])
+    told = [str(a) if a == b else f"{a} to {b}" for a, b in runs]
+    return f"{'commit' if len(seqs) == 1 else 'commits'} {wording.few(told)}"
 
 
 def _span(seqs: Sequence[int]) -> str:

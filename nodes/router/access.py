@@ -87,8 +87,9 @@ def _of_outsider(role: Role) -> list[Rule]:
         ("egress", ("declare_queryable",), [*_declared(asked), f"{keys.commands_as()}/*", *recovered]),
         ("ingress", ("declare_liveliness_subscriber", "liveliness_query"), seen),
         ("egress", ("liveliness_token",), seen),
+        ("ingress", ("liveliness_token",), [keys.live_key(keys.WEB)]),
         ("ingress", ("put",), published),
-        ("egress", ("declare_subscriber",), published),
+        ("egress", ("declare_subscriber",), [*published, keys.HEALTH.key]),
     ]
 
 

@@ -118,3 +118,13 @@ def then(future: Future[T], function: Callable[[T], U]) -> Future[U]:
 
     future.add_done_callback(on_done)
     return following
+
+
+def and_then(future: Future[T], function: Callable[[T], U | Future[U]]) -> Future[U]:
+    """The future of `function(result)`, which may be a future itself; errors pass through.
+
+    Both belong to one thread.
+    """
+    following: Future[U] = OwnFuture()
+    future.add_done_callback(lambda done: settle(following, lambda: function(done.result())))
+    return following

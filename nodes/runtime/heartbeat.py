@@ -23,8 +23,7 @@ _ERROR_SHOWN_S = 3600.0
 class Heartbeat:
     """Beats for the thread that owns the node's state, and on it: when that hangs, it falls silent."""
 
-    def __init__(self, name: str, session: bus.Session, *, published: bool = True) -> None:
-        """Unless `published`, only whoever has started this process is told."""
+    def __init__(self, name: str, session: bus.Session) -> None:
         self.due_s = 0.0
         """When it beats next, by the monotonic clock."""
         self._name = name
@@ -38,7 +37,7 @@ class Heartbeat:
         self._notes: tuple[str, ...] = ()
         self._error_shown_until_s = 0.0
         self._ignored = 0
-        self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name)) if published else None
+        self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
 
     def beat(self) -> None:
         """Send the heartbeat if it is due."""
@@ -62,15 +61,13 @@ class Heartbeat:
             ignored=self._ignored,
         )
         notify(health)
-        if self._health is not None:
-            self._health.put(codec.encode(health))
+        self._health.put(codec.encode(health))
 
     def ready(self, detail: str) -> None:
         """Say so, at once, and let the liveliness token appear."""
         if self._state != "ready":
             self._state = "ready"
-            if self._health is not None:
-                self._token = bus.appear(self._session, self._name)
+            self._token = bus.appear(self._session, self._name)
             log.info("ready: %s", detail)
             self.due_s = 0.0
         self.describe(detail)

@@ -52,14 +52,8 @@ Admit = Callable[[str, Any], Any]
 class Node:
     """A running node: bind handlers, then `run`. Use `open_node`."""
 
-    def __init__(
-        self, name: str, session: bus.Session, commands: str = keys.CMD, *, published: bool = True
-    ) -> None:
-        """`commands` is the prefix under which it asks for commands.
-
-        Unless `published`, its heart beats for whoever has started the process only: it is a program beside
-        the system, and no part of it.
-        """
+    def __init__(self, name: str, session: bus.Session, commands: str = keys.CMD) -> None:
+        """`commands` is the prefix under which it asks for commands."""
         self.name = name
         self.session = session
         self._commands = commands
@@ -74,7 +68,7 @@ class Node:
         self._idle: list[Callable[[], None]] = []
         self._afterwards: list[Callable[[], None]] = []
         self._stopping = False
-        self._heartbeat = Heartbeat(name, session, published=published)
+        self._heartbeat = Heartbeat(name, session)
         self._lifelines = bus.Lifelines(session)
 
     @property
@@ -170,7 +164,10 @@ class Node:
                 message = waiting.popleft()
             handle(message)
 
-        def keep(_: str, message: Any) -> None:
+        def keep(key: str, message: Any) -> None:
+            if topic == keys.HEALTH and key != keys.health_key(message.node):
+                self._heartbeat.ignore()  # a heart beats for itself: who may publish one may not another's
+                return
             with lock:
                 is_full = len(waiting) == most
                 waiting.append(message)

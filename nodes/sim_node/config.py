@@ -23,7 +23,10 @@ class CameraConfig:
 
 @dataclass(frozen=True)
 class RobotConfig:
-    """A robot's MJCF file, the name it has as an entity, and where it stands at first (map frame)."""
+    """A robot's MJCF file, its name as an entity, and where it stands until the map says otherwise.
+
+    `at_m` is a point on the floor [m, map frame].
+    """
 
     path: Path
     name: str = "robot1"

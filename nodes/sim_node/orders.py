@@ -71,8 +71,8 @@ def _joints(order: BodyOrder, model: Model) -> tuple[Joint, ...]:
         Joint(
             name=leaf.joint.name,
             kind=leaf.joint.kind,
-            lower=leaf.joint.range[0],
-            upper=leaf.joint.range[1],
+            lower=leaf.joint.range and leaf.joint.range[0],
+            upper=leaf.joint.range and leaf.joint.range[1],
             closed=leaf.joint.closed,
         )
         for leaf in model.leaves
@@ -93,14 +93,17 @@ def _within(joint: Joint, position: float) -> float:
 def joint_targets(
     orders: Iterable[JointOrder], records: Mapping[str, BodyRecord]
 ) -> tuple[dict[str, dict[str, float]], dict[str, str]]:
-    """Where the joints of each body are to go [rad, m], by the joint's own name; and why others cannot."""
+    """Where the joints of each body are to go [rad, m], by the joint's own name; and why others cannot.
+
+    Of several orders about one joint the last counts.
+    """
     targets: dict[str, dict[str, float]] = {}
     failed: dict[str, str] = {}
     for order in orders:
         try:
             if order.name not in records:
                 raise ModelError(f"the scene has no body named {order.name}")
-            targets[order.name] = _targets(order, records[order.name].joints)
+            targets.setdefault(order.name, {}).update(_targets(order, records[order.name].joints))
         except ModelError as error:
             failed[order.name] = str(error)
     return targets, failed
@@ -173,7 +176,9 @@ def _check_grip(order: GripOrder, there: Mapping[str, BodyRecord]) -> None:
     if order.name == order.holder:
         raise ModelError(f"{order.name} cannot hold itself")
     if order.name in chain(order.holder, there):
-        raise ModelError(f"{order.holder} is held by {order.name} or part of it, so it cannot hold it")
+        raise ModelError(
+            f"{order.holder} is held by {order.name} or part of it, so it cannot hold {order.name}"
+        )
     if record.anchored or record.fixed:
         where = f"held by {record.part_of or 'its joint'}" if record.anchored else "fixed where it stands"
         raise ModelError(f"{order.name} is {where}, so nothing can take it")

@@ -16,7 +16,7 @@ from nodes.sim_node import orders
 from nodes.sim_node.bodies import Floats, Ints, pose_of
 from nodes.sim_node.models.facets import surface_of
 from nodes.sim_node.models.library import build as library_model
-from nodes.sim_node.models.world_surface import world_surface
+from nodes.sim_node.models.world_surface import body_surface, world_surface
 from nodes.sim_node.orders import ModelSource
 from nodes.sim_node.physics import base_scene, build
 from nodes.sim_node.physics.engine import Engine
@@ -24,10 +24,12 @@ from nodes.sim_node.physics.walls import walls
 from nodes.sim_node.placement.settling import Settling
 from nodes.sim_node.robots.courses import ACTUATORS, Outcome, actuators
 from nodes.sim_node.vision.view import bulk, camera_names, optical_pose, overview
+from schemas import wording
 from schemas.entities import Pose, relative
 from schemas.errors import Refused
 from schemas.plans import Outline
 from schemas.scenes import (
+    UPRIGHT,
     BodiesMoved,
     Body,
     BodyOrder,
@@ -134,6 +136,8 @@ class World:
         for placement in accepted:
             if placement.commit is not None:
                 records[placement.name].ordered = placement.pose
+            self._has_begun(placement.name)
+            self._engine.courses.stop(self.model, self.data, placement.name, "stopped")
         moved = {placement.name: placement.pose for placement in accepted}
         self._settling.put(moved)
         return BodiesMoved(bodies=self._bodies(moved), failed=failed)
@@ -169,13 +173,25 @@ class World:
         return Gripped(bodies=self._bodies(order.name for order in accepted), failed=failed)
 
     def mark_robot(self, name: str) -> None:
-        """This body is a robot, and so are those that are part of it; its joints open nothing."""
+        """This body is a robot, and so are those that are part of it; its joints open nothing.
+
+        Nobody has told it yet where to stand.
+        """
         records = self._engine.records
         for record in records.values():  # wholes come before their parts
             above = records.get(record.part_of)
             if record.name == name or (above is not None and above.robot):
-                record.robot = True
+                record.robot, record.commit = True, -1
                 record.joints = tuple(structs.replace(joint, closed=None) for joint in record.joints)
+
+    def _has_begun(self, name: str) -> None:
+        """Note that a body was placed, moved or driven; of a robot, its parts with it."""
+        records = self._engine.records
+        records[name].commit = max(0, records[name].commit)
+        if records[name].robot:
+            for record in records.values():
+                if record.robot and record.part_of and records[record.part_of].commit >= 0:
+                    record.commit = max(0, record.commit)
 
     def drive(self, order: DriveBase) -> None:
         """Begin a course, or, without points, end one.
@@ -192,12 +208,15 @@ class World:
             raise Refused(
                 f"{name} cannot drive: it is held where it is, because another body is in its place"
             )
+        if order.to and self.pose(name).upright < UPRIGHT:
+            raise Refused(f"{name} {wording.fallen(name, self.pose(name))}")
         if not order.to:
             engine.courses.stop(engine.model, engine.data, name, "stopped")
             return
         for x, y in order.to:
             if math.hypot(x, y) > orders.REACH_M:
                 raise Refused(f"({x:g}, {y:g}) is too far; the limit is {orders.REACH_M:.0f} m")
+        self._has_begun(name)
         engine.drive_base(name, order.to, order.yaw, order.speed)
 
     def ended(self) -> dict[str, Outcome]:
@@ -289,9 +308,16 @@ class World:
         )
 
     def surfaces(self, names: Iterable[str]) -> Surfaces:
-        """What bodies that were made from a model look like."""
-        shapes = {name: self._engine.shape(name) for name in names}
-        return Surfaces(surfaces={name: surface_of(shape) for name, shape in shapes.items() if shape})
+        """What bodies look like; those of the world's own as their parts stand just now."""
+        there = {name: row for row, name in enumerate(self._engine.index.names)}
+        whose, poses = self.body_names(), self._engine.poses()
+        found: dict[str, Surface | None] = {}
+        for name in names:
+            if (shape := self._engine.shape(name)) is not None:
+                found[name] = surface_of(shape)
+            elif name in there:
+                found[name] = body_surface(self.model, self.data, whose, name, poses[there[name]])
+        return Surfaces(surfaces={name: surface for name, surface in found.items() if surface is not None})
 
     def surface(self) -> Surface:
         """What the world itself looks like, apart from bodies."""

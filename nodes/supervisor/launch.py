@@ -126,7 +126,8 @@ def _robot(settings: Settings) -> RobotConfig | None:
 
     if settings.robot is None:
         return None
-    return RobotConfig(Path(settings.robot), settings.robot_name, settings.robot_at, settings.robot_yaw)
+    at_m = settings.robot_at or (0.0, 0.0, 0.0)
+    return RobotConfig(Path(settings.robot), settings.robot_name, at_m, settings.robot_yaw)
 
 
 def _sim_node(settings: Settings) -> None:
@@ -151,7 +152,7 @@ def _perception_node(settings: Settings) -> None:
     from nodes.perception_node.node import run
 
     tracking = TrackingConfig(when_gone=settings.when_gone)
-    run(PerceptionConfig(tracking, settings.network("perception_node")))
+    run(PerceptionConfig(tracking, settings.network("perception_node"), settings.label_map))
 
 
 def _recorder(settings: Settings) -> None:

@@ -62,7 +62,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     robot: str | None = None
     """The MJCF file of a robot in the world."""
     robot_name: Name = "robot1"
-    robot_at: tuple[Metres, Metres, Metres] = (0.0, 0.0, 0.0)
+    robot_at: tuple[Metres, Metres, Metres] | None = None
+    """Where it stands at first, if that was said; otherwise it begins at the origin."""
     robot_yaw: Angle = 0.0
     stale_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] = 2.0
     """After how long a live pose that is not followed by another is stale."""
@@ -91,6 +92,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     perception: bool = False
     when_gone: Literal["remove", "mark"] = "remove"
     """What becomes of an entity that perception brought in and no longer sees."""
+    label_map: dict[str, str] = {}
+    """From the labels of a detector of a person's own to classes."""
     web: bool = False
     """The page runs beside the nodes."""
     web_port: Annotated[int, Meta(ge=0, le=65_535)] = 8080

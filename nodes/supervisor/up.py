@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import math
 import os
 import re
 import shlex
@@ -27,7 +28,7 @@ from nodes.supervisor.settings import Replay, Settings
 from nodes.supervisor.watchdog import Watchdog
 from schemas import errors, keys
 from schemas.calls import reply_type
-from schemas.commands import Classes, Status
+from schemas.commands import Classes, Get, Status
 from schemas.endpoints import WEB_TOKEN_VARIABLE
 from schemas.health import Health
 
@@ -256,6 +257,7 @@ class _Foreground:
                 time.sleep(0.05)
             self._tell_of_truth(status.truth)
             self._tell_of_models(session)
+            self._tell_of_robot(session)
 
     def _tell_of_truth(self, truth: str) -> None:
         """Say where perception looks at what the map itself has placed, as the coordinator elsewhere says."""
@@ -266,17 +268,36 @@ class _Foreground:
                 " cameras only show what the map already says; start it with --truth perceived"
             )
 
+    def _tell_of_robot(self, session: bus.Session) -> None:
+        """Say where a robot stands that is not new to the map, where another place was said for a new one."""
+        name, at = self._settings.robot_name, self._settings.robot_at
+        if self._settings.robot is None or at is None or not self._settings.sim:
+            return
+        with contextlib.suppress(errors.SemmapError, OSError):
+            robot = bus.ask(session, keys.CMD, Get.VERB, Get(name=name), reply_type(Get))
+            if robot.pose is not None and math.dist(robot.pose.position_m, at) > self._settings.threshold_m:
+                stands = ", ".join(f"{value:g}" for value in robot.pose.position_m)
+                there = " ".join(f"{value:g}" for value in at)
+                self._say(
+                    f"{name:<{_COLUMN}} stands where it last stood, at ({stands}), not at --robot-at;"
+                    f" to put it there: semmap move {name} --at {there}"
+                )
+
     def _tell_of_models(self, session: bus.Session) -> None:
-        """Say which of the files in `--models` are nobody's model."""
+        """Say which of the files in `--models` are nobody's model, and what models could not bring along."""
         if self._settings.models is None or not self._settings.sim:
             return
         from nodes.sim_node.models.sources import passed_over  # and with it MuJoCo
+        from nodes.sim_node.models.write_shapes import own_notes
 
+        folder = Path(self._settings.models)
         with contextlib.suppress(errors.SemmapError, OSError):
             classes = bus.ask(session, keys.CMD, Classes.VERB, Classes(), reply_type(Classes))
-            if strange := passed_over(Path(self._settings.models), {c.model for c in classes}):
+            if strange := passed_over(folder, {c.model for c in classes}):
                 said = f"ignored, because no class has a model of that name: {', '.join(strange)}"
                 self._say(f"{'models':<{_COLUMN}} {said}")
+            for note in own_notes(folder):
+                self._say(f"{'models':<{_COLUMN}} {note}")
 
     def _greet(self) -> None:
         usual = self._settings.reachable == bus.DEFAULT_ENDPOINT

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import queue
 import threading
 
 import pytest
@@ -116,3 +117,42 @@ def test_while_no_node_is_ready_nobody_can_tell(three):
     lifelines = bus.Lifelines(client)
     reply = until(lambda: bus.ask(client, keys.BRIDGE, "get", *ASKED, lifelines=lifelines), "a reply")
     assert (reply.text, bool(stolen)) == ("stolen", True)
+
+
+@pytest.fixture
+def slow():
+    """A node that does not answer, and a client of it that is connected to somebody else."""
+    endpoint = free_endpoint()
+    with (
+        bus.open_session(bus.Network(mode="peer", listen=(endpoint,), connect=())),
+        bus.open_session(bus.Network(connect=(endpoint,))) as node,
+        bus.open_session(bus.Network(mode="client", connect=(endpoint,))) as client,
+    ):
+        held = []
+        bus.serve(node, keys.BRIDGE, held.append)
+        lifelines = bus.Lifelines(client)
+        token = bus.appear(node, "kb_node")
+        until(lambda: lifelines.is_there("kb_node"), "the token is seen")
+        yield client, lifelines
+        del token
+
+
+_OFTEN = 150
+"""Of some ten times that time runs out, one is told by the neighbour before it is noticed here."""
+
+
+def test_a_node_that_is_late_is_no_stranger(slow, caplog):
+    client, lifelines = slow
+    for _ in range(_OFTEN):
+        with pytest.raises(bus.TimedOut, match="did not answer within"):
+            bus.ask(client, keys.BRIDGE, "get", *ASKED, timeout_s=0.01, patience_s=0.1, lifelines=lifelines)
+    assert "a program that is not kb_node" not in caplog.text
+
+
+def test_nor_is_one_who_is_asked_without_waiting(slow):
+    client, lifelines = slow
+    answers = queue.SimpleQueue()
+    for _ in range(_OFTEN):
+        bus.ask_later(client, keys.BRIDGE, "get", *ASKED, answers.put, timeout_s=0.01, lifelines=lifelines)
+        with pytest.raises(bus.TimedOut, match="did not answer within"):
+            answers.get(timeout=10.0)()

@@ -5,9 +5,9 @@ from nodes.coordinator.health_view import HealthView
 from schemas.health import Health
 
 
-def beat(state, pid=1, host="", at_s=0):
+def beat(state, pid=1, host="", at_s=0, node="kb_node"):
     stamp_ns = at_s * 10**9
-    return Health(node="kb_node", host=host, pid=pid, started_ns=0, stamp_ns=stamp_ns, state=state)
+    return Health(node=node, host=host, pid=pid, started_ns=0, stamp_ns=stamp_ns, state=state)
 
 
 def test_nodes_of_one_name_on_two_hosts_are_two_rows():
@@ -40,3 +40,13 @@ def test_just_after_a_start_a_node_that_was_not_heard_of_may_be_there(monkeypatc
     assert not view.may_be_there("kb_node")
     view.take(beat("starting"))
     assert view.may_be_there("kb_node")
+
+
+def test_there_may_be_any_number_of_pages_and_one_that_has_ended_is_told_no_more(monkeypatch):
+    view = HealthView()
+    for pid in (7, 8):
+        view.take(beat("ready", pid, node="web"))
+    view.take(beat("ready", 9))
+    assert [(row.node, row.pid) for row in view.nodes()] == [("kb_node", 9), ("web", 7), ("web", 8)]
+    monkeypatch.setattr(health_view, "SILENT_AFTER_S", 0.0)
+    assert [(row.node, row.state) for row in view.nodes()] == [("kb_node", "silent")]

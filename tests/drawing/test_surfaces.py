@@ -24,3 +24,13 @@ def test_what_was_asked_for_in_vain_is_asked_for_again():
     cache.give_up(wanted.values())
     assert list(cache.wanted([chair, table])) == ["chair1"]
     assert cache.of(table) is SURFACE
+
+
+def test_each_body_of_the_world_s_own_looks_like_itself():
+    cache = SurfaceCache()
+    robots = [body("robot1"), body("robot2")]
+    wanted = cache.wanted(robots)
+    assert list(wanted) == ["robot1", "robot2"]
+    cache.take(wanted["robot1"], SURFACE)
+    assert cache.of(robots[0]) is SURFACE
+    assert cache.of(robots[1]) is None

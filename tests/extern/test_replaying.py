@@ -9,6 +9,7 @@ import pytest
 
 from nodes.extern.client import connect
 from nodes.extern.testing import free_endpoint
+from nodes.recorder.recorded_commits import read_commits
 from tests.conftest import running, until
 
 _BIN = Path(sys.executable).parent
@@ -67,7 +68,8 @@ def test_a_recording_is_compared_with_the_map_that_it_is_of(system, tmp_path):
         last = client.status().commit
     (recording,) = (system.data / "recordings").glob("*.rrd")
     check = ("replay", recording, "--check")
-    until(lambda: f"1 to {last}" in system.cli(*check), "the recorder has written all")
+    until(lambda: read_commits(recording)[-1].seq == last, "the recorder has written all")
+    assert f"commits are as in the journal: 1 to {last}" in system.cli(*check)
     with running(tmp_path / "other", "--no-sim", "--no-record") as other:  # begun as the other one was
         said = other.cli(*check, status=1)
         assert f"{recording} is not a recording of this map: commit 2 is not in the journal" in said
@@ -75,3 +77,25 @@ def test_a_recording_is_compared_with_the_map_that_it_is_of(system, tmp_path):
         said = other.cli(*check, status=1)
         assert f"{recording} is not a recording of this map: commit 2 is another one: id is '" in said
         assert "commits are as in the journal" in other.cli(*check, "--data", system.data)
+
+
+def test_of_a_recording_that_is_cut_off_the_missing_commits_are_named(system, tmp_path):
+    with system.client() as client:
+        last = client.status().commit
+    (recording,) = (system.data / "recordings").glob("*.rrd")
+    until(lambda: read_commits(recording)[-1].seq == last, "the recorder has written all")
+    whole, cut = recording.read_bytes(), tmp_path / "cut.rrd"
+    share = 0.99
+    while share > 0.0:
+        cut.write_bytes(whole[: int(share * len(whole))])
+        if read_commits(cut)[-1].seq < last:
+            break
+        share -= 0.1
+    left = read_commits(cut)[-1].seq
+    command = [_BIN / "semmap", "replay", cut, "--check", "--data", system.data]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    lacking = f"commit {last}" if left == last - 1 else f"commits {left + 1} to {last}"
+    assert f"{cut} is not complete: " in done.stderr
+    assert f"the recording lacks {lacking}" in done.stderr
+    assert "are ignored" in done.stderr

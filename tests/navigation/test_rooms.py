@@ -100,6 +100,71 @@ def test_furniture_that_stands_about_belongs_to_its_room_and_makes_no_other():
     assert min(fits(found, truth, grid.cells.shape).values()) > 0.9
 
 
+def furnished(seed, turn):
+    """The plan with eight cupboards and tables against walls, none within 80 cm of a door."""
+    grid, truth = drawn(turn)
+    y, x = (np.mgrid[: grid.cells.shape[0], : grid.cells.shape[1]] + 0.5) * SIDE
+    c, s = math.cos(-turn), math.sin(-turn)
+    u, v = 5.5 + c * (x - 6.0) - s * (y - 4.5), 3.6 + s * (x - 6.0) + c * (y - 4.5)
+    chance = np.random.default_rng(seed)
+    for room, wall in zip(chance.choice([*ROOMS], 8), chance.integers(4, size=8), strict=True):
+        x0, y0, x1, y1 = ROOMS[room]
+        wide, deep = chance.uniform(0.3, 1.8), chance.uniform(0.3, 0.35 if room == "hall" else 0.6)
+        wide, deep = (wide, deep) if wall % 2 else (deep, wide)
+        left, low = chance.uniform(x0, max(x0, x1 - wide)), chance.uniform(y0, max(y0, y1 - deep))
+        left, low = {0: (x0, low), 1: (left, y0), 2: (x1 - wide, low), 3: (left, y1 - deep)}[int(wall)]
+        if all(
+            abs(left + wide / 2 - dx) > wide / 2 + 0.8 or abs(low + deep / 2 - dy) > deep / 2 + 0.8
+            for dx, dy in ((6.05, 2.5), (3.0, 5.05), (8.0, 4.9), (8.0, 4.1))
+        ):
+            thing = (u > left) & (u < left + wide) & (v > low) & (v < low + deep)
+            grid.cells[thing & (grid.cells == FREE)] = OCCUPIED
+    return grid, truth
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.2, 0.7, 1.1])
+def test_furniture_against_walls_makes_no_doors(turn):
+    wrong = 0
+    for seed in range(6):
+        grid, truth = furnished(seed, turn)
+        found = cut(grid)
+        doors = sorted(door.rooms for door in found.doorways)
+        if (len(found.rooms), doors) == (3, [(0, 1), (0, 2), (1, 2)]):
+            assert min(fits(found, truth, grid.cells.shape).values()) > 0.5
+        else:
+            wrong += 1
+    assert wrong <= 1  # two corners that face one another look like stubs of a wall
+
+
+def test_a_corridor_of_which_a_door_takes_the_whole_end_but_two_stubs():
+    cells = np.full((60, 200), OCCUPIED, dtype=np.int8)
+    cells[10:32, 10:100] = FREE  # 1.1 m wide
+    cells[12:30, 100:102] = FREE  # 0.9 m
+    cells[5:55, 102:180] = FREE
+    found = cut(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 60), cells))
+    assert len(found.rooms) == 2
+    assert [door.width_m for door in found.doorways] == [0.9]
+
+
+def test_a_door_that_is_flush_with_a_wall():
+    cells = np.full((100, 200), OCCUPIED, dtype=np.int8)
+    cells[10:90, 10:98] = FREE
+    cells[10:28, 98:100] = FREE
+    cells[10:90, 100:190] = FREE
+    found = cut(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 100), cells))
+    assert len(found.rooms) == 2
+    assert found.doorways[0].width_m == pytest.approx(0.9, abs=0.05)
+
+
+def test_a_narrow_place_between_two_cupboards_is_no_door():
+    cells = np.full((80, 200), OCCUPIED, dtype=np.int8)
+    cells[10:70, 10:190] = FREE
+    cells[10:29, 90:106] = OCCUPIED
+    cells[49:70, 92:110] = OCCUPIED
+    found = cut(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 80), cells))
+    assert (len(found.rooms), found.doorways) == (1, ())
+
+
 def test_a_plan_becomes_places_and_doors_where_its_origin_says():
     grid, _ = drawn()
     described = Described(image="x", resolution=SIDE, origin=(10.0, 20.0, math.pi / 2))

@@ -46,7 +46,7 @@ def look_for(tab, text):
 
 
 def row(tab, name):
-    return tab.locator(f'.entity-table .ag-pinned-left-cols-container [row-id="{name}"]')
+    return tab.locator(f'.entity-table .ag-center-cols-container [row-id="{name}"]')
 
 
 def select(tab, name):
@@ -213,7 +213,9 @@ def test_several_are_moved_and_deleted_at_once(tab, client, added):
     tab.get_by_role("heading", name="2 entities selected").wait_for()
     tab.get_by_label("offset x").fill("0.5")
     tab.get_by_role("button", name="Move", exact=True).click()
-    tab.get_by_text("moved 2 of 2").wait_for()
+    tab.get_by_text(f"changed 2: {one} and {two}").wait_for()
+    ((first,), (second,)) = (client.history(limit=1, name=name) for name in (one, two))
+    assert (first.seq, first.verb) == (second.seq, "batch")
     tab.get_by_role("button", name="Delete all of them").click()
     tab.get_by_role("dialog", name="Delete").get_by_role("button", name="Delete", exact=True).click()
     until(lambda: not {one, two} & {e.name for e in client.list()}, "both are gone")

@@ -46,7 +46,7 @@ def test_five_thousand_entities_are_usable(crowded, open_tab):
     tab.get_by_text("5,020 entities", exact=True).wait_for()
     scroll = tab.locator(".entity-table .ag-body-vertical-scroll-viewport")
     scroll.evaluate("e => e.scrollTop = 60000")
-    row = tab.locator('.entity-table .ag-pinned-left-cols-container [row-index="2005"]')
+    row = tab.locator('.entity-table .ag-center-cols-container [row-index="2005"]')
     row.click()
     name = row.get_attribute("row-id")
     top = scroll.evaluate("e => e.scrollTop")
@@ -54,7 +54,7 @@ def test_five_thousand_entities_are_usable(crowded, open_tab):
         client.update(name, ref="quite another cup")
     tab.get_by_role("heading", name="quite another cup").wait_for()
     assert scroll.evaluate("e => e.scrollTop") == top
-    chosen = tab.locator(f'.entity-table .ag-pinned-left-cols-container [row-id="{name}"]')
+    chosen = tab.locator(f'.entity-table .ag-center-cols-container [row-id="{name}"]')
     assert "ag-row-selected" in chosen.get_attribute("class")
     tab.get_by_role("tab", name="Places").click()
     tab.get_by_text("kitchen3 · 250").click(timeout=_RELATED_MS)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time
 import uuid
@@ -51,9 +52,16 @@ def tab(seeing, web):
 @pytest.fixture
 def chair(system):
     """A chair of the test's own, in the middle of the living room."""
+    with standing(system, (3.0, 2.2, 0.0)) as name:
+        yield name
+
+
+@contextlib.contextmanager
+def standing(system, at, yaw=0.0):
+    """A chair with a body, removed afterwards; its name."""
     name = f"chair_{uuid.uuid4().hex[:8]}"
     with system.client() as client:
-        client.send(Add(class_="Chair", name=name, at=(3.0, 2.2, 0.0)))
+        client.send(Add(class_="Chair", name=name, at=at, yaw=yaw))
         until(lambda: client.get(name).body.status == "present", "the chair has a body")
         yield name
         client.send(Remove(names=(name,)))
@@ -124,27 +132,45 @@ def test_a_click_selects_and_one_beside_things_selects_nothing(tab, system, chai
         until(click_beside, "nothing is selected")
 
 
+def drag_along_x(tab, view, client, name) -> None:
+    """By the arrow along x, until the map follows; before it is drawn, the mouse turns the view instead."""
+    entity = client.get(name)
+    x, y, z = entity.pose.position_m
+    grip = 0.6 * arm_m(entity.size_m)
+
+    def drag() -> bool:
+        tab.get_by_role("button", name="Look at everything").click()
+        tab.wait_for_timeout(1500)
+        tab.mouse.move(*pixel(tab, view, (x + grip, y, z)))
+        tab.wait_for_timeout(500)
+        tab.mouse.down()
+        for step in range(1, 6):
+            tab.mouse.move(*pixel(tab, view, (x + grip + 0.2 * step, y, z)))
+            tab.wait_for_timeout(200)
+        tab.mouse.up()
+        tab.wait_for_timeout(2000)
+        return client.get(name).pose.position_m[0] > x + 0.5
+
+    until(drag, "the map says that the chair was moved")
+
+
 def test_what_is_dragged_with_the_mouse_is_moved_and_the_map_follows(tab, system, chair):
     with system.client() as client:
         view, entity = looking(tab, client), client.get(chair)
         select(tab, view, entity)
-        x, y, z = entity.pose.position_m
-        grip = 0.6 * arm_m(entity.size_m)
-
-        def drag() -> bool:
-            """By the arrow along x, which is there a moment after the thing has been selected."""
-            tab.mouse.move(*pixel(tab, view, (x + grip, y, z)))
-            tab.wait_for_timeout(500)
-            tab.mouse.down()
-            for step in range(1, 6):
-                tab.mouse.move(*pixel(tab, view, (x + grip + 0.2 * step, y, z)))
-                tab.wait_for_timeout(200)
-            tab.mouse.up()
-            tab.wait_for_timeout(2000)
-            return client.get(chair).pose.position_m[0] > x + 0.5
-
-        until(drag, "the map says that the chair was moved")
+        drag_along_x(tab, view, client, chair)
+        x, y, _ = entity.pose.position_m
         moved = client.get(chair).pose
         assert moved.position_m[0] == pytest.approx(x + 1.0, abs=0.35)
         assert moved.position_m[1] == pytest.approx(y, abs=0.05)
         assert math.isclose(moved.yaw_rad, entity.pose.yaw_rad, abs_tol=0.05)
+
+
+def test_what_is_dragged_keeps_its_yaw_whatever_was_selected_before(tab, system, chair):
+    with standing(system, (1.6, 2.2, 0.0), yaw=math.radians(180.0)) as turned, system.client() as client:
+        view = looking(tab, client)
+        select(tab, view, client.get(turned))
+        tab.wait_for_timeout(1500)  # its handles are drawn, turned as it is
+        select(tab, view, client.get(chair))
+        drag_along_x(tab, view, client, chair)
+        assert math.isclose(client.get(chair).pose.yaw_rad, 0.0, abs_tol=0.05)

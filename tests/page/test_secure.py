@@ -6,7 +6,7 @@ import pytest
 
 from nodes.identity import authority
 from tests.conftest import running, until
-from tests.page.conftest import Web
+from tests.page.conftest import Web, serving
 
 
 @pytest.fixture(scope="module")
@@ -23,13 +23,59 @@ def address(system):
     return line.split()[1]
 
 
-def test_up_starts_the_page_as_a_viewer_which_shows_no_way_to_change(chromium, open_tab, folder, tmp_path):
+@pytest.fixture(scope="module")
+def secured(folder, tmp_path_factory):
+    """A secure system with the page of a viewer."""
     words = ("--no-record", "--secure", folder, "--web", "--web-port", "0", "--web-as", "vera")
-    with running(tmp_path / "d", *words) as system:
-        tab = open_tab(Web(address(system), system.process))
-        until(lambda: "78 entities" in tab.locator(".semmap-state").inner_text(), "the map is there")
-        assert tab.get_by_role("button", name="Add an entity").count() == 0
-        assert tab.get_by_role("button", name="Undo the last change (u)").count() == 0
+    with running(tmp_path_factory.mktemp("page-secured") / "d", *words) as system:
+        yield system
+
+
+def shown(tab):
+    until(lambda: "78 entities" in tab.locator(".semmap-state").inner_text(), "the map is there")
+    tab.get_by_label("Filter entities by text").fill("door1")
+    tab.locator('.entity-table .ag-center-cols-container [row-id="door1"]').click()
+    tab.get_by_role("heading", name="front door").wait_for()
+    tab.get_by_text("Inferred (").wait_for()
+
+
+def test_up_starts_the_page_as_a_viewer_which_shows_all_and_no_way_to_change(chromium, open_tab, secured):
+    tab = open_tab(Web(address(secured), secured.process))
+    shown(tab)
+    for name in ("Add an entity", "Undo the last change (u)", "Save", "Delete", "Take back isOpen", "yes"):
+        assert tab.get_by_role("button", name=name, exact=True).count() == 0, name
+    tab.get_by_role("tab", name="Add").click()
+    tab.get_by_text("may look, but not add").wait_for()
+    tab.get_by_role("tab", name="Details").click()
+    tab.get_by_role("button", name="Why: class: Door").click()
+    tab.locator(".semmap-why").wait_for()
+    for panel, told in {
+        "History": "begun from flat.ttl",
+        "Plan": "SVG",
+        "SPARQL": "Run",
+        "Check": "onsistent",
+        "Files": "Export",
+        "System": "kb_node",
+    }.items():
+        tab.get_by_role("tab", name=panel, exact=True).click()
+        tab.get_by_label(panel, exact=True).get_by_text(told).first.wait_for()
+    tab.get_by_role("tab", name="Files").click()
+    assert tab.get_by_text("Choose a file, or drop it here").count() == 0
+    tab.keyboard.press("Delete")
+    tab.get_by_text("Your certificate may not delete").wait_for()
+    tab.keyboard.press("u")
+    tab.get_by_text("Your certificate may not undo").wait_for()
+
+
+def test_the_page_of_an_operator_changes(chromium, open_tab, secured, folder):
+    with serving(secured.endpoint, "--identity", str(folder / "bob")) as web:
+        tab = open_tab(web)
+        shown(tab)
+        states = tab.locator(".semmap-state-row").filter(has_text="is open")
+        states.get_by_role("button", name="yes").click()
+        tab.get_by_text("door1: isOpen: ").first.wait_for()
+        tab.get_by_role("button", name="Undo the last change (u)").click()
+        tab.get_by_text("undid ").first.wait_for()
 
 
 def test_a_secure_page_is_told_whom_it_acts_for(folder, tmp_path, capsys):

@@ -106,3 +106,19 @@ def test_the_history_of_what_is_selected_goes_to_its_commits(tab, cup):
     assert name in listed
     table.get_by_text(str(moved), exact=True).click()
     until(lambda: caption(tab).startswith(f"The past: commit {moved} of "), "the page goes there")
+
+
+def test_details_of_the_past_have_the_facts_of_then(tab, cup):
+    name, added, _, again = cup
+    until(lambda: commit_of(tab) >= again, "the page has all commits")
+    tab.get_by_label("Filter entities by text").fill(name)
+    tab.locator(f'[row-id="{name}"] [col-id="name"]').click()
+    tab.locator(".semmap-fact", has_text="class: Cup").wait_for()
+    go_to(tab, added)
+    until(lambda: caption(tab).startswith(f"The past: commit {added} of "), "it shows the past")
+    details = tab.locator(".semmap-detail")
+    details.get_by_text("there are no proofs of the past").wait_for()
+    details.locator(".semmap-fact", has_text="class: Cup").wait_for()
+    details.locator(".semmap-fact", has_text="Dishware").first.wait_for(timeout=60_000)
+    assert details.get_by_role("button", name="Why").count() == 0
+    assert "moved from" not in details.inner_text()

@@ -37,14 +37,26 @@ def checked(*commits, first=1, last=4):
 
 
 def test_what_is_the_same_is_said_to_be():
-    assert checked(*map(recorded, (1, 2, 3, 4))) == (True, "4 commits are as in the journal: 1 to 4")
-    assert checked(recorded(3)) == (True, "1 commit is as in the journal: 3")
-    assert checked() == (True, "there are no commits in the recording")
+    same = checked(*map(recorded, (1, 2, 3, 4)))
+    assert same == (True, True, "4 commits are as in the journal: 1 to 4")
+    assert checked(recorded(3), last=3) == (
+        True, True, "1 commit is as in the journal: 3; it begins after commits 1 to 2"
+    )  # fmt: skip
+    assert checked(recorded(4)).is_whole
 
 
-def test_what_lacks_in_between_and_what_was_compacted_is_said():
-    verdict = checked(*map(recorded, (1, 2, 4)))
-    assert verdict == (True, "3 commits are as in the journal: 1 to 4; not recorded between them: 3")
+def test_commits_that_the_recording_lacks_are_named():
+    assert checked(recorded(1), recorded(2), recorded(4)) == (
+        True, False, "3 commits are as in the journal: 1 to 4; the recording lacks commit 3"
+    )  # fmt: skip
+    cut = checked(recorded(1))
+    assert cut == (True, False, "1 commit is as in the journal: 1; the recording lacks commits 2 to 4")
+    assert "lacks commits 2 and 4" in checked(recorded(1), recorded(3)).text
+    none = checked()
+    assert none == (True, False, "there are no commits in the recording; the recording lacks commits 1 to 4")
+
+
+def test_what_was_compacted_is_said():
     verdict = checked(*map(recorded, (1, 2, 3, 4)), first=3)
     assert verdict.is_same
     assert "2 commits before commit 3 cannot be compared, because the journal was compacted" in verdict.text
@@ -70,6 +82,6 @@ def test_the_first_difference_is_named(others, said):
 
 def test_a_commit_that_the_journal_does_not_have_is_named():
     verdict = checked(*map(recorded, (1, 2, 3, 4)), last=3)
-    assert verdict == (False, "commit 4 is not in the journal, whose last one is 3")
+    assert verdict == (False, False, "commit 4 is not in the journal, whose last one is 3")
     verdict = checked(recorded(1), recorded(2), recorded(2))
-    assert verdict == (False, "commit 2 is recorded twice, and not the same")
+    assert verdict == (False, False, "commit 2 is recorded twice, and not the same")

@@ -98,7 +98,8 @@ class World:
 
     def _surfaces(self, query):
         self.asked.append(query.names)
-        return Surfaces(surfaces={name: surface() for name in query.names})
+        modelled = {body.name for body in self.scene.bodies if body.model}
+        return Surfaces(surfaces={name: surface() for name in query.names if name in modelled})
 
 
 @pytest.fixture

@@ -413,3 +413,20 @@ def test_of_what_is_published_the_newest_are_kept(network, monkeypatch):
     until(lambda: seen[-1] == 20, "it has seen the last")
     assert seen[-5:] == [16, 17, 18, 19, 20]
     assert len(seen) <= 7
+
+
+def test_a_heart_beats_for_itself_alone(network):
+    node, client = network
+    heard: queue.SimpleQueue[Health] = queue.SimpleQueue()
+    node.follow(keys.HEALTH, heard.put)
+    beats = [bus.publisher(client, keys.HEALTH, keys.health_key(name)) for name in ("web", "kb_node")]
+
+    def beat():
+        for pid, publisher in enumerate(beats):
+            said = Health(node="kb_node", pid=pid, started_ns=1, stamp_ns=1, state="ready")
+            publisher.put(codec.encode(said))
+        return not heard.empty()
+
+    until(beat, "the node's own is heard")
+    while not heard.empty():
+        assert heard.get().pid == 1  # never what came by the page's key

@@ -21,15 +21,16 @@ PUBLIC = {
         Explanation Inconsistent Inferred InternalError LoggedCommit Moved NameTaken NoAnswer NodeStatus Pose
         PreconditionFailed Provenance Refused Restored RowsChanged SemmapError Sighting SparqlResult
         StandingQuery SystemStatus UnknownClass UnknownName UnknownVerb
-        aio commands connect fleet local_name reasoner restore testing wire
+        aio commands connect fleet local_name reasoner recordings restore testing wire
     """,
     "semmap.aio": "AsyncClient AsyncStandingQuery connect",
     "semmap.commands": """
-        Add Check Classes Clear Command Explain Export Get History Infer LastSeen List Load Move Pause Remove
-        Reset Sparql Status StepOnce TakePicture Undo Update
+        Add Batch Check Classes Clear Command Explain Export Get History Infer LastSeen List Load Move Pause
+        Remove Reset Set Sparql Status StepOnce TakePicture Undo Unset Update
     """,
     "semmap.fleet": "Answer CopiedRobot FleetAnswer Frame Mirror Robots mirror robots sparql",
     "semmap.reasoner": "Change Explanation Inconsistent Reasoner Step Term Triple",
+    "semmap.recordings": "Film check movie replay",
     "semmap.testing": "free_endpoint own_system",
     "semmap.wire": """
         ACK COMMIT ENTITY HEALTH OBSERVATIONS POSES Ack CameraFrame CameraView Health Observation Observations

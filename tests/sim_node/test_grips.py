@@ -127,7 +127,7 @@ def test_the_robot_carries_what_its_gripper_holds():
         ("cup1", "nobody", "the scene has no body named nobody"),
         ("cup1", "cup1", "cup1 cannot hold itself"),
         ("wall1", "tray1", "wall1 is fixed where it stands, so nothing can take it"),
-        ("tray1", "cup1", "cup1 is held by tray1 or part of it, so it cannot hold it"),
+        ("tray1", "cup1", "cup1 is held by tray1 or part of it, so it cannot hold tray1"),
         ("cup1", "table1", "cup1 is held by tray1 already"),
     ],
 )

@@ -49,6 +49,15 @@ def test_it_stays_where_it_is_left_and_sleeps(world):
     assert opened(world, openness=0.0) == pytest.approx({"door": 0.0, "freezer": 0.0}, abs=0.01)
 
 
+def test_joints_of_one_body_may_be_ordered_one_by_one_in_a_batch(world):
+    door, freezer = (JointOrder(name="fridge1", joint=name, openness=0.5) for name in ("door", "freezer"))
+    overridden = structs.replace(door, openness=1.0)
+    assert world.move_joints([overridden, door, freezer]).failed == {}
+    world.step(4.0)
+    joints = bodies(world)["fridge1"].joints
+    assert {j.name: j.openness for j in joints} == pytest.approx({"door": 0.5, "freezer": 0.5}, abs=0.01)
+
+
 def test_what_is_in_the_way_stops_it(world):
     world.spawn([order("wall1", "wall", pose(0.6, 0.0), size_m=(0.1, 1.0, 2.0), fixed=True)])
     share = opened(world, joint="door")["door"]

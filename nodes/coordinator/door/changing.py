@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nodes.coordinator import holding, transactions
-from nodes.coordinator.authority import require_authority
+from nodes.coordinator.authority import is_placing, require_authority
 from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.committing import changed, commit, new_id, once, taken_anew
 from nodes.coordinator.door.known_map import KnownMap
@@ -15,10 +15,8 @@ from ontology.name_index import Ambiguous, Named, NameIndex
 from schemas import changes, errors, wording
 from schemas.commands import (
     Add,
-    Attach,
     Clear,
     Command,
-    Detach,
     Infer,
     Properties,
     Remove,
@@ -28,8 +26,7 @@ from schemas.commands import (
     Update,
 )
 from schemas.commits import Effects, Transaction
-from schemas.entities import ClassInfo, Entity, Pose, Value, rounded
-from schemas.grips import holder_of
+from schemas.entities import ClassInfo, Entity, Pose, Value
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
 
@@ -76,34 +73,43 @@ def _add(view: KnownMap, command: Add, found: ClassInfo) -> Talk[Changed]:
 @once
 def update(view: KnownMap, command: Update) -> Talk[Changed]:
     """Change an entity; omitted fields keep their values."""
+    entity, found = updatable(view, command)
+    made = yield from commit(view, transactions.update(command, entity, found))
+    return changed(
+        made,
+        f"updated {_said(entity, made)}" if made else _said(entity, made),
+        names=(entity.name, *(_others(made, entity.name) if command.carry else ())),
+        notes=notes_on(view, command, entity, found, made),
+    )
+
+
+def updatable(view: KnownMap, command: Update) -> tuple[Entity, ClassInfo | None]:
+    """The entity that is to be changed so, and the class that it is to have. Raises where it may not be."""
     entity = view.entity(command.name)
     require_carrying(command)
-    if command.source != "perception" and (command.at, command.yaw, command.orientation) != (
-        None,
-        None,
-        None,
-    ):
+    if command.source != "perception" and is_placing(command):
         holding.require_free(entity)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
     shape = (found, command.ref, command.alt, command.size, command.extent)
     if any(value is not None for value in shape):
         require_authority(command, [entity])
     require_same_nature(entity, found, force=command.force)
-    made = yield from commit(view, transactions.update(command, entity, found))
+    return entity, found
+
+
+def notes_on(
+    view: KnownMap, command: Update, entity: Entity, found: ClassInfo | None, made: Effects | None
+) -> tuple[str, ...]:
+    """What is to be known of an entity that was changed so."""
     now = _after(made, entity.name) or entity
-    return changed(
-        made,
-        f"updated {_said(entity, made)}" if made else _said(entity, made),
-        names=(entity.name, *(_others(made, entity.name) if command.carry else ())),
-        notes=(
-            *(view.classes.note(command.class_ or "", found) if found else ()),
-            *doubts(
-                entity.name,
-                found or view.classes.by_name.get(entity.class_),
-                now.pose if command.at else None,
-                command.size,
-                view.places,
-            ),
+    return (
+        *(view.classes.note(command.class_ or "", found) if found else ()),
+        *doubts(
+            entity.name,
+            found or view.classes.by_name.get(entity.class_),
+            now.pose if command.at else None,
+            command.size,
+            view.places,
         ),
     )
 
@@ -182,39 +188,6 @@ def track(view: KnownMap, command: Track) -> Talk[Changed]:
         now = f"is tracked from {source} already" if entity.tracked else "is not tracked"
         return changed(None, f"unchanged: {entity.name} {now}", names=(entity.name,))
     return changed(made, _said(entity, made), names=(entity.name,))
-
-
-@once
-def attach(view: KnownMap, command: Attach) -> Talk[Changed]:
-    """Have an entity held by another. Raises Refused where it cannot be."""
-    entity, holder = view.entity(command.name), view.entity(holding.named(command.to, view.entities))
-    holding.require_graspable(entity, holder, view.entities, view.bodies())
-    if holder_of(entity) == holder.name and command.at is None and command.yaw is None:
-        return changed(None, f"unchanged: {holder.name} holds {entity.name} already", names=(entity.name,))
-    grip = holding.grip(view.where(entity.name), view.where(holder.name), command.at, command.yaw)
-    pose = view.where(entity.name)
-    made = yield from commit(view, transactions.attach(command, holder.name, grip, pose and rounded(pose)))
-    if made is None:
-        return changed(None, f"unchanged: {holder.name} holds {entity.name} already", names=(entity.name,))
-    return changed(made, f"{holder.name} holds {entity.name}{_off(grip)}", names=(entity.name,))
-
-
-def _off(grip: Pose | None) -> str:
-    if grip is None:
-        return ""
-    return ", at ({:g}, {:g}, {:g}) in its frame".format(*(round(c, 3) + 0.0 for c in grip.position_m))
-
-
-@once
-def detach(view: KnownMap, command: Detach) -> Talk[Changed]:
-    """Let go of what something holds. Raises Refused for what nothing holds."""
-    entity = view.entity(command.name)
-    if not (by := holder_of(entity)):
-        raise errors.Refused(f"nothing holds {entity.name}")
-    pose = view.where(entity.name)
-    made = yield from commit(view, transactions.detach(command, pose and rounded(pose)))
-    at = "" if pose is None else f" at {_metres(rounded(pose))}"
-    return changed(made, f"{by} let go of {entity.name}{at}", names=(entity.name,))
 
 
 @once

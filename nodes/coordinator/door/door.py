@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from nodes.coordinator.dialogues import Ask, Talk, alone, hold, in_step
-from nodes.coordinator.door import changing, loading, undoing
+from nodes.coordinator.door import attaching, batching, changing, loading, undoing
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.scene.hands import Hand, Hands
 from nodes.coordinator.scene.settled import Settled
@@ -14,6 +14,7 @@ from nodes.coordinator.turns import Change
 from schemas.commands import (
     Add,
     Attach,
+    Batch,
     Clear,
     Command,
     Detach,
@@ -32,9 +33,10 @@ _CHANGING: Mapping[type[Command], Callable[[KnownMap, Any], Talk[Changed]]] = {
     Update: changing.update,
     Set: changing.set_,
     Unset: changing.unset,
+    Batch: batching.batch,
     Track: changing.track,
-    Attach: changing.attach,
-    Detach: changing.detach,
+    Attach: attaching.attach,
+    Detach: attaching.detach,
     Remove: changing.remove,
     Clear: changing.clear,
     Load: loading.load,

@@ -9,12 +9,12 @@ from msgspec import structs
 
 from nodes.coordinator.frames.tree import ORIGIN, seen_from
 from schemas import errors
-from schemas.commands import Add, Get, List, Move, Update
+from schemas.commands import Add, Drive, Get, List, Move, Update
 from schemas.entities import REACH_M, Entity, Pose, Vector, compose, rounded
 from schemas.relations import position_in
 from schemas.scene_files import pose_of
 
-Framed = Add | Update | Move | Get | List
+Framed = Add | Update | Move | Drive | Get | List
 """The commands that have a `frame`."""
 F = TypeVar("F", bound=Framed)
 E = TypeVar("E", bound=Entity)
@@ -27,6 +27,9 @@ def require_placing(command: Framed) -> None:
             raise errors.BadRequest("frames are known as they are now: give either --frame or --as-of")
         if isinstance(command, List) and command.format != "json":
             raise errors.BadRequest(f"the format {command.format} is in the map frame: leave --frame out")
+    elif isinstance(command, Drive):
+        if not command.to:
+            raise errors.BadRequest(f"say where in {command.frame}: --frame goes with --to X Y")
     elif isinstance(command, Add | Update):
         if command.extent is not None:
             raise errors.BadRequest("an extent is in the map frame: leave --frame out")
@@ -45,12 +48,12 @@ def into_map(command: F, frame: Pose) -> F:
     if isinstance(command, List):
         near, to = (None if word is None else _word(word, frame) for word in (command.near, command.to))
         return structs.replace(command, near=near, to=to, frame=None)
+    if isinstance(command, Drive):
+        course = tuple(_position((x, y, 0.0), frame)[:2] for x, y in command.to)
+        return structs.replace(command, to=course, yaw=_yaw(command.yaw, frame), frame=None)
     at = None if command.at is None else _position(command.at, frame)
     if isinstance(command, Move):
-        yaw = command.yaw
-        if yaw is not None:
-            yaw = compose(frame, pose_of(ORIGIN.position_m, yaw, None)).yaw_rad
-        return structs.replace(command, at=at, yaw=yaw, frame=None)
+        return structs.replace(command, at=at, yaw=_yaw(command.yaw, frame), frame=None)
     if command.yaw is None and command.orientation is None:
         return structs.replace(command, at=at, frame=None)
     turned = compose(frame, pose_of(ORIGIN.position_m, command.yaw, command.orientation))
@@ -69,6 +72,10 @@ def told_in(frame: Pose, entity: E) -> E:
 def _word(word: str, frame: Pose) -> str:
     at = position_in(word)
     return word if at is None else ",".join(map(repr, _position(at, frame)))
+
+
+def _yaw(yaw: float | None, frame: Pose) -> float | None:
+    return None if yaw is None else compose(frame, pose_of(ORIGIN.position_m, yaw, None)).yaw_rad
 
 
 def _position(at: Vector, frame: Pose) -> Vector:

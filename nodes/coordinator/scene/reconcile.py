@@ -10,7 +10,8 @@ is where its holder takes it, and neither is put anywhere nor followed.
 If only perception updates the map (`perceived`), nothing is to be done: an entity without a body is a belief,
 a body without an entity has not been seen yet, and a pose that differs will be seen. Only a robot of the
 simulator becomes an entity, and what is tracked from there is followed, all the same. What is tracked from a
-stream never follows its body. If the map is `replayed`, every pose of it is an order, also those that came
+stream never follows its body. Whatever the truth is, a robot of a simulator that has just begun is put where
+the map says that it last stood. If the map is `replayed`, every pose of it is an order, also those that came
 from the scene, and the map follows nothing.
 """
 
@@ -24,6 +25,8 @@ from schemas.entities import Entity, Pose, angle_rad, distance_m
 from schemas.grips import grip_of, holder_of
 from schemas.joints import IS_OPEN, JOINT_POSITIONS, OPEN_FROM, OPENING, OPENNESS, Joint, openness, stated
 from schemas.scenes import Body, BodyOrder, GripOrder, JointOrder, Placement
+
+_TO_THE_LETTER = Thresholds(distance_m=0.001, angle_rad=0.002, share=0.001)
 
 
 class Actions(NamedTuple):
@@ -63,8 +66,14 @@ def reconcile(
     """
     if truth == "perceived":
         tracked = (e for e in entities.values() if e.tracked == "sim" and e.name in bodies)
-        moved = (bodies[e.name] for e in tracked if _moved(e, bodies[e.name], thresholds))
+        moved = (
+            bodies[e.name]
+            for e in tracked
+            if not _begins(e, bodies[e.name]) and _moved(e, bodies[e.name], thresholds)
+        )
+        begin = (_placement(e) for e in entities.values() if e.name in bodies and _begins(e, bodies[e.name]))
         return Actions(
+            place=tuple(placement for placement in begin if not bodies[placement.name].part_of),
             follow=tuple(Placement(name=body.name, pose=body.pose) for body in moved),
             adopt=tuple(body for name, body in bodies.items() if body.robot and name not in entities),
         )
@@ -84,6 +93,9 @@ def reconcile(
                 continue
             if _is_held_otherwise(entity, body, thresholds):
                 gripped.append(name)
+            elif _begins(entity, body):
+                if not body.part_of:
+                    place.append(_placement(entity))
             elif not body.held_by and _moved(entity, body, thresholds):
                 follow.append(Placement(name=name, pose=body.pose))
             if body.joints and body.resting and _stand_elsewhere(entity, body, thresholds):
@@ -102,13 +114,18 @@ def reconcile(
                 gripped.append(name)
             if holder_of(entity) or (body.held_by and name in gripped):
                 pass  # where it is follows from what holds it
-            elif _ordered_since(entity, body) or (replayed and _posed_since(entity, body)):
-                assert entity.pose is not None
-                place.append(Placement(name=name, pose=entity.pose, commit=entity.pose_provenance.commit))
+            elif _begins(entity, body) and body.part_of:
+                pass  # it goes where the robot goes
+            elif (
+                _begins(entity, body)
+                or _ordered_since(entity, body)
+                or (replayed and _posed_since(entity, body))
+            ):
+                place.append(_placement(entity))
             elif not replayed and _moved(entity, body, thresholds):
                 follow.append(Placement(name=name, pose=body.pose))
             if body.joints and _joints_ordered_since(entity, body, whoever=replayed):
-                joints.append(joint_order(entity, body, thresholds))
+                joints.append(joint_order(entity, body))
             elif body.joints and not replayed and body.resting and _stand_elsewhere(entity, body, thresholds):
                 opened.append(name)
     for name, body in bodies.items():
@@ -149,12 +166,28 @@ def order(entity: Entity, pose: Pose) -> BodyOrder:
     )
 
 
-def joint_order(entity: Entity, body: Body, thresholds: Thresholds) -> JointOrder:
-    """The positions that an entity wants of the joints of its body; none where they suit it as they are."""
+def _placement(entity: Entity) -> Placement:
+    """A body is put where the map says that the entity stands."""
+    assert entity.pose is not None
+    return Placement(name=entity.name, pose=entity.pose, commit=entity.pose_provenance.commit)
+
+
+def _begins(entity: Entity, body: Body) -> bool:
+    """Is it a robot, or a part of one, that has yet to be put where it stood when the simulator ended?"""
+    return body.robot and body.commit < 0 and entity.pose is not None
+
+
+def joint_order(entity: Entity, body: Body) -> JointOrder:
+    """The positions that an entity wants of the joints of its body; none where they rest and suit it.
+
+    What suits it and moves may be on its way to somewhere else, by an earlier order. A word is done to the
+    letter: the thresholds are for what a hand leaves.
+    """
     said = entity.joint_provenance
+    suits = body.resting and not _stand_elsewhere(entity, body, _TO_THE_LETTER)
     return JointOrder(
         name=entity.name,
-        positions=_wanted(entity, body) if _stand_elsewhere(entity, body, thresholds) else {},
+        positions={} if suits else _wanted(entity, body),
         commit=said.commit if said is not None else entity.provenance.commit,
     )
 

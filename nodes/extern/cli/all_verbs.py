@@ -13,6 +13,7 @@ from schemas import errors
 
 _MODULES = {
     "edit": ("add", "update", "set", "unset", "track", "remove", "clear", "load"),
+    "batch": ("batch",),
     "ask": (
         *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
         *("classes", "properties", "status", "sparql", "watch"),

@@ -193,8 +193,12 @@ def carrying(function: Callable[..., None]) -> Callable[..., None]:
 
 
 def given(fields: dict[str, Any]) -> dict[str, Any]:
-    """The options that were given."""
-    return {name: value for name, value in fields.items() if value not in (None, (), False)}
+    """The options that were given; 0 is a value, though it equals False."""
+    return {
+        name: value
+        for name, value in fields.items()
+        if value is not None and value is not False and value != ()
+    }
 
 
 def complain(text: str) -> None:

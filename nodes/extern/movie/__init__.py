@@ -21,10 +21,10 @@ __all__ = ["Film", "movie"]
 
 
 def movie(
-    file: Path,
+    file: str | Path,
     wanted: Film,
     *,
-    data: Path | None = None,
+    data: str | Path | None = None,
     where: str | None = None,
     identity: str | None = None,
     namespace: str | None = None,
@@ -37,6 +37,7 @@ def movie(
     `tell` is told how far it is. Raises BadFile for a file that cannot be written, or is there and not to be
     overwritten; Refused for a span that is not in the history; BadRequest for what no movie can be like.
     """
+    file, data = Path(file), None if data is None else Path(data)
     wanted.require_sound()
     if file.suffix.lower() != ".mp4":
         raise errors.BadRequest(f"movies are written as MP4; name the file {file.stem or 'movie'}.mp4")

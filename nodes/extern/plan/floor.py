@@ -7,8 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from nodes.kb_node.relations.geometry.polygons import Point, Polygon, area, clipped, hull
+from nodes.geometry.polygons import Point, Polygon, area, clipped, hull
 from schemas.entities import Entity, Pose, Quaternion, Size
+from schemas.polygons import Polygon as Outline
 from schemas.polygons import extent_of
 
 Kind = Literal["furniture", "small", "person", "door", "window", "overhead"]
@@ -60,7 +61,7 @@ class Floor:
     def at(self, point: Point) -> str | None:
         """The name of what is at a point of the map [m], the uppermost first; of a room, if that is all."""
         shapes: list[Area | Piece] = [*reversed(self.pieces), *reversed(self.zones), *self.rooms]
-        return next((shape.name for shape in shapes if _contains(shape.outline, point)), None)
+        return next((shape.name for shape in shapes if Outline(shape.outline).contains(point)), None)
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -119,16 +120,6 @@ def footprint(pose: Pose, size: Size) -> tuple[Point, ...]:
     return tuple(
         hull([(x0 + xx * x + xy * y + xz * z, y0 + yx * x + yy * y + yz * z) for x, y, z in corners])
     )
-
-
-def _contains(outline: Polygon, point: Point) -> bool:
-    """Whether a point lies in a polygon, convex or not: a ray from it crosses an odd number of sides."""
-    px, py = point
-    odd = False
-    for (ax, ay), (bx, by) in zip(outline, (*outline[1:], outline[0]), strict=True):
-        if (ay > py) != (by > py) and px < ax + (py - ay) * (bx - ax) / (by - ay):
-            odd = not odd
-    return odd
 
 
 def _is_upright(wxyz: Quaternion) -> bool:

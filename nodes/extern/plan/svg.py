@@ -11,7 +11,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 from nodes.extern.plan.floor import Area, Floor, Piece
 from nodes.extern.plan.labels import Box, Label, Sheet, box_of, text_width_mm
-from nodes.kb_node.relations.geometry.polygons import Point, Polygon
+from nodes.geometry.polygons import Point, Polygon
 
 _SHEETS_MM: Final = ((297.0, 210.0), (210.0, 297.0))
 _MARGIN_MM: Final = 10.0

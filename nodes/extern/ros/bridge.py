@@ -12,6 +12,7 @@ from nodes.drawing.scene_state import SceneState
 from nodes.drawing.surfaces import Kind, SurfaceCache
 from nodes.extern.ros import messages
 from nodes.extern.ros.messages import Moment
+from nodes.extern.ros.published_frames import Placed, PublishedFrames
 from nodes.extern.ros.things import Thing, things_of
 from nodes.extern.ros.types import encode, topic
 from nodes.navigation.grid import occupancy
@@ -85,6 +86,8 @@ class Bridge:
         self._said: dict[str, Thing] | None = None
         self._planned: dict[str, Thing] = {}
         self._transformed: dict[str, Thing] = {}
+        self._frames = PublishedFrames(node, self._map)
+        self._told_frames: Mapping[str, Placed] = {}
         self._due_s = dict.fromkeys(("whole", "transforms", "again", "floor"), 0.0)
         self._publishers: dict[RosTopic, RosPublisher] = {made: ros.publish(made) for made in of}
         self._topics = of
@@ -185,12 +188,17 @@ class Bridge:
         self._node.ask_later(keys.CMD, PlanFloor()).add_done_callback(on_floor)
 
     def _transform(self, at: Moment) -> None:
-        """Those that moved; and all of them now and then."""
-        before = {} if self._is_due("again", _AGAIN_S) else self._transformed
+        """Those that moved, frames of others included; and all of them now and then."""
+        again = self._is_due("again", _AGAIN_S)
+        before = {} if again else self._transformed
         news = [t for t in self._things.values() if t.name not in before or not t.stands_as(before[t.name])]
         self._transformed = self._things
-        if news:
-            self._put(self._topics.transforms, messages.transforms(news, at))
+        frames = self._frames.now()
+        told = {} if again else self._told_frames
+        moved = {name: placed for name, placed in frames.items() if told.get(name) != placed}
+        self._told_frames = frames
+        if news or moved:
+            self._put(self._topics.transforms, messages.transforms(news, at, moved))
 
     def _plan(self, at: Moment) -> None:
         before, self._planned = self._planned, self._things

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from nodes.extern.ros.things import Thing, header, middle, pose_of, time_of, tra
 from nodes.extern.ros.types import new
 from nodes.navigation.grid import OccupancyGrid
 from schemas.entities import Pose
+from schemas.frames import MAP
 from schemas.scenes import Surface
 
 _ADD, _REMOVE, _MOVE = 0, 1, 3
@@ -91,18 +93,25 @@ def _marker(thing: Thing, number: int, at: Moment, kind: int, space: str) -> Any
     )
 
 
-def transforms(things: Iterable[Thing], at: Moment) -> Any:
-    """`tf2_msgs/TFMessage`: a frame of its name in the bottom centre of each."""
+def transforms(
+    things: Iterable[Thing], at: Moment, frames: Mapping[str, tuple[str, Pose]] = MappingProxyType({})
+) -> Any:
+    """`tf2_msgs/TFMessage`: a frame of its name in the bottom centre of each.
+
+    `frames` are others, by name their parents and where they are in these.
+    """
+    told = [(at.frame, thing.name, thing.pose) for thing in things]
+    told += [(at.frame if parent == MAP else parent, name, pose) for name, (parent, pose) in frames.items()]
     return new(
         "tf2_msgs/msg/TFMessage",
         transforms=[
             new(
                 "geometry_msgs/msg/TransformStamped",
-                header=at.header,
-                child_frame_id=thing.name,
-                transform=transform_of(thing.pose),
+                header=header(parent, at.stamp_ns),
+                child_frame_id=name,
+                transform=transform_of(pose),
             )
-            for thing in things
+            for parent, name, pose in told
         ],
     )
 

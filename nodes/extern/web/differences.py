@@ -10,6 +10,7 @@ from msgspec import Struct
 from schemas import changes
 from schemas.changes import Change
 from schemas.entities import Entity
+from schemas.scenes import Body, Scene
 
 Mark = Literal["added", "removed", "moved", "changed"]
 MARKS: Final[tuple[Mark, ...]] = ("added", "removed", "moved", "changed")
@@ -61,3 +62,22 @@ def counted(found: Mapping[str, Difference]) -> str:
     """`2 added, 1 moved`; how many there are of each kind."""
     number = {mark: sum(d.mark == mark for d in found.values()) for mark in MARKS}
     return ", ".join(f"{count} {mark}" for mark, count in number.items() if count) or "no differences"
+
+
+def bodies_otherwise(was: Scene | None, now: Scene | None) -> frozenset[str] | None:
+    """The names of bodies that came, went, or look otherwise than before, wherever they are.
+
+    None, for all things, where there was no scene or is none.
+    """
+    if was is None or now is None:
+        return None if was is not now else frozenset()
+    before, after = _looks(was), _looks(now)
+    return frozenset(name for name in before.keys() | after.keys() if before.get(name) != after.get(name))
+
+
+def _looks(scene: Scene) -> dict[str, tuple[object, ...]]:
+    return {body.name: _look(body) for body in scene.bodies}
+
+
+def _look(body: Body) -> tuple[object, ...]:
+    return (body.model, body.size_m, body.ghost, body.entity)

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Final
 from weakref import WeakKeyDictionary
 
+from nodes.extern.web.differences import bodies_otherwise
 from nodes.extern.web.live import Happening, Live
 from nodes.extern.web.views.steps import words_of
 from nodes.extern.web.views.whereabouts import QUERY, Whereabouts
@@ -29,7 +30,7 @@ _ROWS: Final = 100_000
 _QUERY_S: Final = 30.0
 
 Told = Callable[[frozenset[str] | None], None]
-"""Is given the names of the entities that a commit touched; None where everything may be otherwise."""
+"""Is given the names of what a commit touched, or whose body has changed; None for possibly everything."""
 
 _KNOWING: WeakKeyDictionary[Live, Knowing] = WeakKeyDictionary()
 
@@ -44,6 +45,7 @@ class Knowing:
         self.words: Words = words_of((), ())
         """What classes and properties are called in a sentence."""
         self._live = live
+        self._scene = live.scene
         self._told: list[Told] = []
         self._since: list[Commit] | None = None
         """The commits that came while the whereabouts are being read; None while they are not."""
@@ -85,7 +87,10 @@ class Knowing:
         elif happening.kind == "commit":
             self._take(happening.commits)
         elif happening.kind == "scene":
-            self._tell(None)
+            before, self._scene = self._scene, self._live.scene
+            names = bodies_otherwise(before, self._scene)
+            if names is None or names:
+                self._tell(names)
 
     def _take(self, commits: tuple[Commit, ...]) -> None:
         if self._since is not None:

@@ -48,6 +48,8 @@ CENTRE: Final[Panels] = {
     "Files": (files,),
     "System": (status, log),
 }
+_LIST_PX, _TABLE_PX = 340, 760
+"""How wide the lists are: with the columns that most want, and with all."""
 KEYS: Final = {
     "/": "search",
     "Del": "delete what is selected, after a confirmation",
@@ -67,7 +69,8 @@ def layout(page: Page) -> None:
     dark = ui.dark_mode(None)
     with ui.header(elevated=False).classes("semmap-header") as header:
         pass
-    with ui.left_drawer(bordered=False, value=True).props("width=340 breakpoint=960") as left:
+    with ui.left_drawer(bordered=False, value=True).props(f"width={_LIST_PX} breakpoint=960") as left:
+        page.widen = lambda wide: left.props(f"width={_TABLE_PX if wide else _LIST_PX}")
         _Tabs(page, LEFT, "What there is").draw()
     with ui.right_drawer(bordered=False, value=True).props("width=370 breakpoint=960") as right:
         details = _Tabs(page, RIGHT, "Details of what is selected, and adding")
@@ -88,7 +91,7 @@ def layout(page: Page) -> None:
         _header(page, left, right, dark, open_add)
     _keys(page)
     _look(page, left, right)
-    page.on_look(lambda: _begin_scene(page, stage))
+    ui.on("semmap_scene", lambda: _begin_scene(page, stage))
     ui.timer(0.05, lambda: _ready(page), once=True)
 
 
@@ -98,7 +101,7 @@ def _ready(page: Page) -> None:
 
 
 def _begin_scene(page: Page, stage: ui.element) -> None:
-    """The scene begins when the browser has drawn the rest, for both are drawn on the same thread there."""
+    """The scene begins when the browser has drawn the rest: both are drawn on the same thread there."""
     draw, page.draw_scene = page.draw_scene, None
     if draw is not None:
         with stage:
@@ -122,7 +125,7 @@ def _header(
     def toggle_dark() -> None:
         dark.value = not page.dark
 
-    _icon("dark_mode", "Dark or light", toggle_dark).classes("semmap-wide")
+    _icon("dark_mode", "Dark or light", toggle_dark)
     _icon("keyboard", "Keys (?)", help_).classes("semmap-wide")
     _icon("view_sidebar", "Show or hide the details", right.toggle)
 
@@ -139,7 +142,7 @@ def _state(page: Page) -> None:
     """Which moment is shown, whether it goes on with the map, and the way back to now."""
     with ui.element("div").classes("semmap-state").props('role="status"'):
         dot = ui.element("span").classes("semmap-dot")
-        commit = ui.label()
+        commit = ui.label().classes("semmap-commit")
         many = ui.label().classes("semmap-entities")
         back = ui.button("Back to now", on_click=lambda: page.go_to(None)).props("flat dense color=warning")
 

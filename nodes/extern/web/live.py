@@ -101,7 +101,7 @@ class Live:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._threads = ThreadPoolExecutor(_ASKED_AT_ONCE, thread_name_prefix="ask")
         self._client = Client(session, agent="web", identity=identity)
-        self._node = Node("web", session, network.commands, published=False)
+        self._node = Node(keys.WEB, session, network.commands)
         self._following = _Following(self._node, self._hand_over, secure=identity is not None)
         self._thread = threading.Thread(target=self._node.run, name="live", daemon=True)
 

@@ -29,10 +29,18 @@
     });
   }
 
+  // The scene is drawn on the same thread as the rest: it begins when the table has rows, or will not have any soon.
+  let hasBegun = false;
+  window.semmapBeginScene = () => {
+    if (!hasBegun) emitEvent("semmap_scene");
+    hasBegun = true;
+  };
+
   document.addEventListener("keydown", onKey);
   window.semmapStart = () => {
     new MutationObserver(tellLook).observe(document.body, { attributeFilter: ["class"] });
     window.matchMedia("(max-width: 960px)").addEventListener("change", tellLook);
     tellLook();
+    setTimeout(semmapBeginScene, 1500);
   };
 })();

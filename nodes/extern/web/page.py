@@ -56,6 +56,8 @@ class Page:
         """Shows why a change was refused; set by the layout."""
         self.watch: Callable[[str, bool], object] | None = None
         """Watches a query, with what follows or without; set by the panel of standing queries."""
+        self.widen: Callable[[bool], object] | None = None
+        """Makes room for a wide table among the lists, or no more; set by the layout."""
         self.draw_scene: Callable[[], None] | None = None
         """Draws the scene with its switches where it is called, once; set by the scene."""
         self.pick: Callable[[], Awaitable[Place | None]] | None = None

@@ -6,6 +6,7 @@ import contextlib
 import logging
 import os
 import socket
+import sys
 import tempfile
 from collections.abc import AsyncIterator, Callable, Iterator
 from typing import Any, Final
@@ -61,7 +62,8 @@ def _serve(
     listening: socket.socket,
     tell: Callable[[str], None],
 ) -> None:
-    from nicegui import Client, ui  # after its storage has a place
+    with _as_if_not_installed("aiohttp", "requests"):
+        from nicegui import Client, ui  # after its storage has a place
 
     from nodes.extern.web import proxy
     from nodes.extern.web.layout import layout
@@ -139,6 +141,18 @@ def _listen(host: str, port: int) -> socket.socket:
 
 def _written(host: str) -> str:
     return f"[{host}]" if ":" in host else host
+
+
+@contextlib.contextmanager
+def _as_if_not_installed(*modules: str) -> Iterator[None]:
+    """NiceGUI's sockets import these for clients that ask elsewhere, where they are there; it takes 0.2 s."""
+    absent = [module for module in modules if module not in sys.modules]
+    sys.modules.update(dict.fromkeys(absent))  # type: ignore[arg-type]
+    try:
+        yield
+    finally:
+        for module in absent:
+            del sys.modules[module]
 
 
 @contextlib.contextmanager

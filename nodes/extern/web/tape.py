@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import sys
 from bisect import bisect_right
 from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
 from typing import Final, TypeVar
 from weakref import WeakKeyDictionary
+
+from msgspec import structs
 
 from nodes.extern.web.live import Happening, Live
 from nodes.extern.web.moments import Past
@@ -32,6 +35,7 @@ _KEPT: Final = 12
 _ROWS: Final = 500
 """Commits whose headlines are asked for together."""
 _MOST_ROWS: Final = 50_000
+"""Headlines that are kept; of a longer history those of the newest."""
 _PATIENCE_S: Final = 30.0
 
 T = TypeVar("T")
@@ -128,10 +132,14 @@ class Tape:
             if last is None:
                 self.begins_there = len(newer) < _ROWS
             self.rows.extend(newer)
+            if len(self.rows) > _MOST_ROWS:
+                del self.rows[:-_MOST_ROWS]
+                self.begins_there = False
             self._tell()
 
     async def _asked(self, since: int | None, until: int | None) -> Sequence[LoggedCommit]:
-        return await self._live.ask(History(since=since, until=until, limit=_ROWS), _PATIENCE_S)
+        found = await self._live.ask(History(since=since, until=until, limit=_ROWS), _PATIENCE_S)
+        return [_headline(row) for row in found]
 
     def _tell(self) -> None:
         for told in tuple(self._told):
@@ -205,6 +213,18 @@ def _keep(kept: OrderedDict[int, T], seq: int, what: T) -> None:
     kept[seq] = what
     while len(kept) > _KEPT:
         kept.popitem(last=False)
+
+
+def _headline(row: LoggedCommit) -> LoggedCommit:
+    """A commit as it is kept: who, when and why, and what it touched, without how that was and is."""
+    return structs.replace(
+        row,
+        agent=sys.intern(row.agent),
+        verb=sys.intern(row.verb),
+        changed=tuple(map(sys.intern, row.changed)),
+        changes=(),
+        notes=(),
+    )
 
 
 def _apply(entities: dict[str, Entity], commit: Commit) -> None:

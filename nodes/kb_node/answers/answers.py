@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from itertools import chain
 from types import MappingProxyType
 from typing import NamedTuple
@@ -37,7 +37,7 @@ def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Enti
 
 def infer(semantic_map: SemanticMap, name: str) -> Inferred:
     """What follows about an entity that was not said, with what is measured on demand. Raises UnknownName."""
-    measured = set(_pairs(semantic_map)(semantic_map.places.space(), name))
+    measured = set(pairs_of(semantic_map.tbox, semantic_map.entities())(semantic_map.places.space(), name))
     subject = v.iri(semantic_map.entity(name).iri)
     further = sorted(t for t in measured if t[0] == subject and not semantic_map.reasoner.holds(t))
     return _told(chain(semantic_map.inferred(name), further), semantic_map.classes.told_apart)
@@ -56,7 +56,11 @@ class Inferring(NamedTuple):
 def inferring(semantic_map: SemanticMap) -> Inferring:
     """The map as it is now, for `infer_all`."""
     semantic_map.believe_places()
-    pairs, placed, limits = _pairs(semantic_map), semantic_map.placed(), semantic_map.classes.limits
+    pairs, placed, limits = (
+        pairs_of(semantic_map.tbox, semantic_map.entities()),
+        semantic_map.placed(),
+        semantic_map.classes.limits,
+    )
     return Inferring(
         semantic_map.reasoner.held(),
         [v.iri(entity.iri) for entity in semantic_map.entities()],
@@ -88,10 +92,12 @@ def _told(triples: Iterable[Triple], names: Mapping[Term, str]) -> Inferred:
     return Inferred(triples=triples, text=tuple(v.spoken(t, names) for t in triples))
 
 
-def _pairs(semantic_map: SemanticMap) -> Callable[[Space, str | None], Iterator[Triple]]:
-    """Measures pairs, with the names that the map has for them now."""
-    derived = Derived(semantic_map.tbox)
-    iris = {entity.name: v.iri(entity.iri) for entity in semantic_map.entities()}
+def pairs_of(
+    tbox: Collection[Triple], entities: Iterable[Entity]
+) -> Callable[[Space, str | None], Iterator[Triple]]:
+    """Measures pairs of these entities, of all or (given a name) of one, as triples."""
+    derived = Derived(tbox)
+    iris = {entity.name: v.iri(entity.iri) for entity in entities}
 
     def measured(space: Space, name: str | None) -> Iterator[Triple]:
         if not derived.sources:
@@ -155,17 +161,29 @@ def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
     following: list[Triple] = []
     if inferred:
         abox = held
-        individuals = {s for s, _, _ in abox} | {o for _, p, o in abox if p != v.RDF_TYPE}
-        for individual in individuals - {s for s, _, _ in semantic_map.tbox}:
-            following += worth_saying(semantic_map.reasoner.inferred(individual, None, None))
+        following = followed(semantic_map.reasoner, semantic_map.tbox, abox)
     declared = [(c, v.RDF_TYPE, v.OWL_CLASS) for c in undeclared_classes(abox, semantic_map.classes)]
     written = [*abox, *following, *declared]
     used = prefixes.used_by(written, semantic_map.classes.prefixes)
     made = Picture([*semantic_map.tbox, *held], written, semantic_map.seq, used)
     if not inferred:
         return made
-    pairs, placed, limits = _pairs(semantic_map), semantic_map.placed(), semantic_map.classes.limits
+    pairs, placed, limits = (
+        pairs_of(semantic_map.tbox, semantic_map.entities()),
+        semantic_map.placed(),
+        semantic_map.classes.limits,
+    )
     return made._replace(measured=lambda: pairs(Space(placed, limits), None))
+
+
+def followed(reasoner: Reasoner, tbox: Collection[Triple], abox: Collection[Triple]) -> list[Triple]:
+    """What follows about the individuals of an ABox that are none of the TBox."""
+    individuals = {s for s, _, _ in abox} | {o for _, p, o in abox if p != v.RDF_TYPE}
+    return [
+        triple
+        for individual in individuals - {s for s, _, _ in tbox}
+        for triple in worth_saying(reasoner.inferred(individual, None, None))
+    ]
 
 
 def export(picture: Picture, syntax: RdfFormat) -> Document:

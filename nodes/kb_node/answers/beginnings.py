@@ -15,6 +15,7 @@ from msgspec import Struct
 
 from nodes.kb_node.relations.facts.place_facts import Fact
 from nodes.kb_node.relations.facts.rules import RULES
+from nodes.kb_node.relations.geometry.opening import positions_of
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring import measures
@@ -55,6 +56,7 @@ class _Stood(Struct, frozen=True):
             model=self.model,
             extent=stated if isinstance(stated, str) else "",
             held_by=held_by if isinstance(held_by, str) else "",
+            joints=positions_of(self.model, self.size_m or own_size_m(self.model), self.properties),
         )
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
+from nodes.kb_node.relations.geometry.opening import joint_at
+from nodes.kb_node.relations.measuring.measures import hollow_around
 from ontology import vocabulary as v
 from schemas import wording
 from schemas.entities import Entity
-from schemas.joints import IS_OPEN
+from schemas.joints import IS_OPEN, OPEN_FROM
 
 if TYPE_CHECKING:
     from nodes.kb_node.semantic_map import SemanticMap
@@ -16,24 +18,59 @@ if TYPE_CHECKING:
 _IS_INSIDE: Final = v.dm("isInside")
 
 
-def closed_around(semantic_map: SemanticMap, entity: Entity) -> Entity | None:
+class Closed(NamedTuple):
+    """What is closed around a thing: all of an entity, or only what these joints of it close."""
+
+    entity: Entity
+    joints: tuple[str, ...] = ()
+
+
+def closed_around(semantic_map: SemanticMap, entity: Entity) -> Closed | None:
     """The closed thing that an entity is inside, as far as the map says; of several the innermost."""
-    seen: set[str] = set()
-    around = [entity.name]
-    while around:
-        inner = semantic_map.find(around.pop(0))
-        if inner is None or inner.name in seen:
-            continue
-        seen.add(inner.name)
-        if inner is not entity and inner.properties.get(IS_OPEN) is False:
-            return inner
-        outer = semantic_map.reasoner.given(v.iri(inner.iri), _IS_INSIDE, None)
-        around += sorted(v.entity_name(o) for _, _, o in outer)
+    seen = {entity.name}
+    inside = [entity]
+    while inside:
+        inner = inside.pop(0)
+        around = semantic_map.reasoner.given(v.iri(inner.iri), _IS_INSIDE, None)
+        for name in sorted(v.entity_name(outer) for _, _, outer in around):
+            outer = semantic_map.find(name)
+            if outer is None or name in seen:
+                continue
+            if outer.properties.get(IS_OPEN) is False:
+                return Closed(outer)
+            if shut := _shut_around(semantic_map, inner, outer):
+                return Closed(outer, shut)
+            seen.add(name)
+            inside.append(outer)
     return None
 
 
-def in_words(closed: Entity) -> str:
+def _shut_around(semantic_map: SemanticMap, inner: Entity, outer: Entity) -> tuple[str, ...]:
+    """The joints that close the hollow that a thing is in, if all of them are shut and others are open."""
+    solids = semantic_map.places.space().solids
+    one, around = solids.get(inner.name), solids.get(outer.name)
+    if one is None or around is None or not around.form.joints or not around.hollows:
+        return ()
+    hollow, form = hollow_around(one, around), around.form
+    closing = {*hollow.behind, *filter(None, (hollow.carried_by,))}
+    shares = {
+        leaf.name: joint_at(leaf, position).openness
+        for leaf, position in zip(form.shape.leaves, form.joints, strict=True)
+        if leaf.name in closing
+    }
+    are_shut = all(share is not None and share <= OPEN_FROM for share in shares.values())
+    return tuple(shares) if are_shut else ()
+
+
+def in_words(closed: Closed) -> str:
     """`it cannot be seen there: fridge1 has been closed since commit 7, 5 min ago`."""
-    said = closed.joint_provenance or closed.provenance
+    entity, joints = closed
+    said = entity.joint_provenance or entity.provenance
     ago = wording.duration((time.time_ns() - said.stamp_ns) / 1e9)
-    return f"it cannot be seen there: {closed.name} has been closed since commit {said.commit}, {ago} ago"
+    if not joints:
+        return f"it cannot be seen there: {entity.name} has been closed since commit {said.commit}, {ago} ago"
+    are = "is" if len(joints) == 1 else "are"
+    return (
+        f"it cannot be seen there: {' and '.join(joints)} of {entity.name} {are} closed"
+        f" (last stated in commit {said.commit}, {ago} ago)"
+    )

@@ -7,8 +7,11 @@ from typing import NamedTuple
 from nodes.kb_node.answers import answers
 from nodes.kb_node.beliefs import UNCHANGED, Beliefs, Believed
 from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.abox_document import undeclared_classes
 from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from nodes.kb_node.sparql.protocol import Surrounded
 from nodes.kb_node.sparql.service import SparqlService
@@ -17,7 +20,7 @@ from nodes.kb_node.storage.compaction.compaction import asserted_after
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
 from ontology import prefixes
-from schemas import errors
+from ontology import vocabulary as v
 from schemas.commands import Export, Sparql
 from schemas.entities import Entity
 from schemas.explanations import Triple
@@ -40,32 +43,60 @@ def map_then(journal: Journal, past: Past, seq: int, *, inferred: bool) -> MapTh
     asserted = asserted_after(journal, seq)
     if not inferred:
         return MapThen(seq, tuple(asserted))
+    held = _held(journal, past, seq, asserted)
+    placed = tuple(map(Placed.of, held.there.values()))
+    return MapThen(seq, tuple(asserted), held.beliefs.all(), placed, held.classes.limits)
+
+
+class _Held(NamedTuple):
+    """All that held after a commit, worked out again."""
+
+    tbox: frozenset[Triple]
+    abox: set[Triple]
+    reasoner: Reasoner
+    classes: ClassTable
+    beliefs: Beliefs
+    there: dict[str, Entity]
+
+
+def _held(journal: Journal, past: Past, seq: int, asserted: set[Triple]) -> _Held:
     tbox = frozenset(rdf.parse(journal.tbox(seq), f"the TBox in {journal.path}"))
     reasoner = closure_cache.reasoner(tbox, journal.path.parent, of_the_past=True)
-    limits = ClassTable(reasoner).limits
-    beliefs = Beliefs(reasoner, limits)
+    classes = ClassTable(reasoner)
+    beliefs = Beliefs(reasoner, classes.limits)
     beliefs.change((), asserted - tbox, lenient=True)
     there: dict[str, Entity] = {entity.name: entity for entity in past.entities(seq)}
     beliefs.fill(there)
-    return MapThen(seq, tuple(asserted), beliefs.all(), tuple(map(Placed.of, there.values())), limits)
+    return _Held(tbox, asserted - tbox, reasoner, classes, beliefs, there)
 
 
 def export_then(journal: Journal, past: Past, query: Export) -> Document:
-    """What was asserted as of `query.as_of`, as a document; it was checked when it was committed.
+    """The map as of `query.as_of`, as a document; it was checked when it was committed.
 
-    Raises Refused when there was no map, and where what followed is asked for; BadRequest for what is no
-    moment.
+    With `inferred` what followed and was measured then is worked out again, by the rules of today. Raises
+    Refused when there was no map; BadRequest for what is no moment.
     """
     assert query.as_of is not None
-    if query.inferred:
-        raise errors.Refused(
-            "what follows can be exported of the map as it is now only; leave out --inferred or --as-of"
-        )
     seq = past.commit_at(query.as_of)
+    if query.inferred:
+        held = _held(journal, past, seq, asserted_after(journal, seq))
+        return answers.document(_picture(held, seq), query.format)
     tbox = frozenset(rdf.parse(journal.tbox(seq), f"the TBox in {journal.path}"))
     abox = sorted(asserted_after(journal, seq) - tbox)
     used = prefixes.used_by(abox, prefixes.WELL_KNOWN)
     return answers.document(answers.Picture([], abox, seq, used), query.format)
+
+
+def _picture(then: _Held, seq: int) -> answers.Picture:
+    """What held then, to be written, what was measured of pairs among it."""
+    abox = sorted(then.abox - set(then.reasoner.set_aside()))
+    following = answers.followed(then.reasoner, then.tbox, abox)
+    declared = [(c, v.RDF_TYPE, v.OWL_CLASS) for c in undeclared_classes(abox, then.classes)]
+    written = [*abox, *following, *declared]
+    measures = answers.pairs_of(then.tbox, then.there.values())
+    space = Space(tuple(map(Placed.of, then.there.values())), then.classes.limits)
+    used = prefixes.used_by(written, prefixes.WELL_KNOWN)
+    return answers.Picture([], written, seq, used, lambda: measures(space, None))
 
 
 def ask_then(journal: Journal, past: Past, query: Sparql) -> SparqlResult:

@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from typing import Protocol, TypeVar
 
+from nodes.kb_node.answers.plans import plan_of
 from nodes.kb_node.relations.selection import only_meant
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
-from nodes.navigation.planning import plan_of
 from nodes.navigation.ways import find_way, position
 from schemas.bridge import PlanOf, WayOf
 from schemas.entities import Entity

@@ -1,10 +1,34 @@
-"""An incremental, explaining OWL 2 RL reasoner in plain Python."""
+"""An incremental, explaining OWL 2 RL reasoner in plain Python.
 
-from nodes.kb_node.reasoner.change import Change
-from nodes.kb_node.reasoner.entailment import entails
-from nodes.kb_node.reasoner.fastpaths.runs import Run
-from nodes.kb_node.reasoner.fastpaths.shapes import Alike
-from nodes.kb_node.reasoner.reasoner import Held, Inconsistent, Reasoner
-from nodes.kb_node.reasoner.refutation import refute
+Its parts are imported when they are first asked for: who only wants its words need not wait for the rules.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from nodes.kb_node.reasoner.change import Change
+    from nodes.kb_node.reasoner.entailment import entails
+    from nodes.kb_node.reasoner.fastpaths.runs import Run
+    from nodes.kb_node.reasoner.fastpaths.shapes import Alike
+    from nodes.kb_node.reasoner.reasoner import Held, Inconsistent, Reasoner
+    from nodes.kb_node.reasoner.refutation import refute
 
 __all__ = ["Alike", "Change", "Held", "Inconsistent", "Reasoner", "Run", "entails", "refute"]
+
+_WHERE = {
+    "Alike": "fastpaths.shapes",
+    "Change": "change",
+    "Held": "reasoner",
+    "Inconsistent": "reasoner",
+    "Reasoner": "reasoner",
+    "Run": "fastpaths.runs",
+    "entails": "entailment",
+    "refute": "refutation",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _WHERE:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_WHERE[name]}"), name)

@@ -1,4 +1,9 @@
-"""What goes along when a thing is carried away: all that stands on it or is inside it, and so on upward."""
+"""What goes along when a thing is carried away: all that stands on it or is inside it, and so on upward.
+
+Not what reaches deep into it: of two things whose shapes overlap, as those of an armchair pushed into a couch
+do, neither rests on the other, even where some part of one meets a part of the other from above. Nor what
+something holds: that goes where its holder goes.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +13,7 @@ from typing import NamedTuple
 
 from nodes.kb_node.relations.facts.place_facts import Facts
 from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring import measures
 from nodes.kb_node.relations.measuring.space import Space
 
 
@@ -47,9 +53,18 @@ class Loads:
         else:
             beside = [o for o in self._space.around(solid) if self._space.may_bear(solid, o)]
         for other in sorted(beside, key=lambda other: other.name):
+            if other.name in self._space.held:
+                continue
             bearer = self._bearer(other)
-            if bearer is not None and bearer.name == name:
+            if bearer is None or bearer.name != name:
+                continue
+            if bearer.is_inside or not self._overlap(solid, other):
                 yield other.name, bearer
+
+    def _overlap(self, solid: Solid, other: Solid) -> bool:
+        """Whether two reach into one another by more than what rests may be off."""
+        contact = measures.touches(solid, other, self._space.limits)
+        return contact is not None and contact.gap_m < -self._space.limits.gap_m
 
     def _bearer(self, solid: Solid) -> Bearer | None:
         if solid.name not in self._bearers:

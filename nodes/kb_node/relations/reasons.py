@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nodes.kb_node.relations.geometry.polygons import distance
+from nodes.geometry.polygons import distance
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring import measures
 from nodes.kb_node.relations.measuring.arrangement import attached, between, next_to

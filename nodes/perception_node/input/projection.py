@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Cloud, Transform
 
+MOST_PIXELS = 640 * 480 * 3 // 2
+"""Of a picture with more, every second, third ... row and column is used."""
 _FOCAL = (0.1, 20.0)
 """A focal length is this many times as long as its picture is wide and high: a view of 3 to 157 degrees."""
 
@@ -36,6 +40,24 @@ def is_pose(transform: Transform) -> bool:
         and np.linalg.det(turn) > 0.0
         and np.allclose(transform[3], [0, 0, 0, 1], atol=1e-6)
     )
+
+
+def thinning(width: int, height: int) -> int:
+    """Every how many-th row and column of a picture of this size is used."""
+    return max(1, math.ceil(math.sqrt(width * height / MOST_PIXELS)))
+
+
+def thinned(
+    depth_m: NDArray[np.float32], rgb: NDArray[np.uint8], intrinsics: Transform, step: int
+) -> tuple[NDArray[np.float32], NDArray[np.uint8], Transform]:
+    """Every `step`-th row and column of a depth and a colour picture, and the intrinsics (3, 3) of that."""
+    if step == 1:
+        return depth_m, rgb, intrinsics
+    fewer = intrinsics.copy()
+    fewer[:2, 2] -= 0.5
+    fewer[:2] /= step
+    fewer[:2, 2] += 0.5
+    return np.ascontiguousarray(depth_m[::step, ::step]), np.ascontiguousarray(rgb[::step, ::step]), fewer
 
 
 def cloud_of(

@@ -22,12 +22,17 @@ _LEAST = 1e-3
 
 
 def near(things: Sequence[Thing]) -> list[tuple[int, int]]:
-    """Pairs (a, b), a < b, that stand close together or are above one another; no table tops."""
+    """Pairs (a, b), a < b, that stand close together or are above one another.
+
+    No table tops, and no two that somebody else's detector took for two.
+    """
     low = np.array([thing.cells.min(axis=0) for thing in things]).reshape(-1, 3)
     high = np.array([thing.cells.max(axis=0) for thing in things]).reshape(-1, 3)
     small = np.array([not thing.carrier for thing in things], dtype=bool)
     apart = np.maximum(low[:, None] - high, low - high[:, None])
+    masked = np.array([thing.masked for thing in things], dtype=bool)
     close = (apart < [_BESIDE_M, _BESIDE_M, _ABOVE_M]).all(axis=2) & small & small[:, None]
+    close &= ~(masked & masked[:, None])
     return [(int(a), int(b)) for a, b in np.argwhere(np.triu(close, 1))]
 
 

@@ -5,8 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, Learnt
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
 from nodes.perception_node.recognition.sides import completed, side_features
+from nodes.perception_node.recognition.standing_alone import stand_alone
+from nodes.perception_node.recognition.told_names import Labels, told_class, with_names
 from nodes.perception_node.recognition.trimming import looked_at_again
 from nodes.perception_node.recognition.vote import answer, expected_sizes
 from nodes.perception_node.views.boxes import Box, Numbers
@@ -19,18 +24,34 @@ _CLUTTER = 0.7
 _WORTH_SAYING = 0.01
 
 
-def recognise(things: Sequence[Thing], chances: Numbers, learnt: Learnt) -> list[Observation | None]:
+def recognise(
+    things: Sequence[Thing], chances: Numbers, learnt: Learnt, labels: Labels | None = None
+) -> list[Observation | None]:
     """An observation of each thing, None for one that is rather clutter than a thing.
 
-    `chances`: (N, K) the probabilities of the leaves.
+    What stands alone is no clutter, but of no class that is known. `chances`: (N, K) the probabilities of the
+    leaves. `labels`: what detectors' own labels mean here.
     """
-    chances = looked_at_again(things, chances, learnt)
+    labels = labels or Labels(learnt)
+    chances = _no_clutter(looked_at_again(things, chances, learnt), stand_alone(things), learnt)
+    chances = with_names(chances, things, learnt, labels)
     expected = expected_sizes(chances, learnt.sizes_m)
-    return [_observation(*row, learnt) for row in zip(things, chances, expected, strict=True)]
+    told = [told_class(thing, learnt, labels) for thing in things]
+    return [_observation(*row, learnt) for row in zip(things, chances, expected, told, strict=True)]
+
+
+def _no_clutter(chances: Numbers, alone: NDArray[np.bool_], learnt: Learnt) -> Numbers:
+    """The same, but what stands `alone` and would be clutter is of `UNKNOWN` instead."""
+    clutter, unknown = learnt.classes.index(CLUTTER), learnt.classes.index(UNKNOWN)
+    kept = alone & (chances[:, clutter] > _CLUTTER)
+    chances = chances.copy()
+    chances[kept, unknown] += chances[kept, clutter]
+    chances[kept, clutter] = 0.0
+    return chances
 
 
 def _observation(
-    thing: Thing, probabilities: Numbers, expected_m: Numbers, learnt: Learnt
+    thing: Thing, probabilities: Numbers, expected_m: Numbers, told: tuple[str, float] | None, learnt: Learnt
 ) -> Observation | None:
     chances = dict(zip(learnt.classes, probabilities.tolist(), strict=True))
     clutter = chances.pop(CLUTTER)
@@ -38,6 +59,8 @@ def _observation(
         return None
     chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
     class_, probability = answer(chances, learnt.ancestors, learnt.sure)
+    if told is not None and told[1] > probability:
+        class_, probability = told
     likely = sorted(chances, key=chances.__getitem__, reverse=True)[:_CANDIDATES]
     box = completed(thing, side_features(thing, expected_m), learnt.sides)
     box = _turned(box, bool(learnt.sideways[learnt.classes.index(likely[0])]))

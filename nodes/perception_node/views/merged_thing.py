@@ -47,6 +47,11 @@ class Thing:
         return any(segment.carrier for segment in self.segments)
 
     @property
+    def masked(self) -> bool:
+        """Somebody else's detector cut it out."""
+        return any(segment.masked for segment in self.segments)
+
+    @property
     def whole(self) -> bool:
         """No picture's edge cuts it."""
         return not any(segment.cut for segment in self.segments)

@@ -2,7 +2,8 @@
 
 Of each thing one segment is remembered, in the map frame. What a camera sees just now outweighs it: only
 points that are out of the picture, or hidden, are kept. Those that are seen again are replaced by what is
-seen, and those through which a camera looks are gone. Of a camera that has never moved, or has no name, nothing is remembered.
+seen, and those through which a camera looks are gone. Of a camera that has never moved, or has no name,
+nothing is remembered.
 """
 
 from __future__ import annotations

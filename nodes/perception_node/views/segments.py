@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.input.cloud import Cloud, Floats, Transform
+from nodes.perception_node.input.masks import Said
 
 MOST_POINTS = 3000
 """A segment of more points is thinned: what is learnt from it does not get better with more."""
@@ -27,7 +28,8 @@ class Segment:
     `points`: (N, 3), map frame [m]. `colors`: (N, 3) rgb, or None. `label`: its number in the view.
     `eye`: (3,), where the camera was [m]. `cut`: the picture's edge runs through it. `count`: how many points
     it had before it was thinned. `carrier`: it is a plane on which things may stand, or a side of one.
-    `ends`: (E, 3), some of its points at the picture's edge, map frame [m].
+    `masked`: somebody else's detector cut it out; `said`: what that takes it for. `ends`: (E, 3), some of its
+    points at the picture's edge, map frame [m].
     """
 
     points: Floats
@@ -37,6 +39,8 @@ class Segment:
     cut: bool
     count: int
     carrier: bool = False
+    masked: bool = False
+    said: Said | None = None
     ends: Floats = field(default_factory=lambda: np.empty((0, 3), np.float32))
 
 

@@ -18,6 +18,7 @@ from nodes.sim_node.models.parts import (
     Vec3,
     bounds,
     box,
+    felt,
     inertial,
     quarter_turned,
 )
@@ -62,6 +63,8 @@ class Model:
     inertial: Inertial
     size_m: Vec3
     leaves: tuple[Leaf, ...] = ()
+    notes: tuple[str, ...] = ()
+    """What of its file is not in it, or is stiff in it: a clause each."""
 
     @property
     def mass_kg(self) -> float:
@@ -114,7 +117,7 @@ def _plain_box(size_m: Vec3) -> Model:
     return assemble("box", [box(size_m, (0.0, 0.0, z / 2), _BOX_COLOUR)], DENSITY * x * y * z)
 
 
-def assemble(name: str, parts: Sequence[Part], mass_kg: float) -> Model:
+def assemble(name: str, parts: Sequence[Part], mass_kg: float, notes: tuple[str, ...] = ()) -> Model:
     """Parts as a model, moved so that the origin is the bottom centre.
 
     The mass is shared out by the volumes of what collides.
@@ -133,6 +136,7 @@ def assemble(name: str, parts: Sequence[Part], mass_kg: float) -> Model:
         inertial=_weighed(frame, share) if leaves else inertial(parts, mass_kg),
         size_m=(float(high[0] - low[0]), float(high[1] - low[1]), float(high[2] - low[2])),
         leaves=leaves,
+        notes=notes,
     )
 
 
@@ -152,5 +156,8 @@ def _torque(joint: Joint, weighed: Inertial) -> float:
 
 
 def _weighed(parts: Sequence[Part], density: float) -> Inertial:
+    """Of what collides; of what does not, a gram where it is seen."""
     volume = sum(part.volume for part in parts if part.role is not Role.SEEN)
+    if volume == 0.0:
+        parts = felt(parts)
     return inertial(parts, max(density * volume, 0.001))

@@ -173,6 +173,7 @@ MODELS: dict[str, ModelKind] = {
     "bin": _K(containers.bin_, (0.28, 0.28, 0.36), 1.0, (0.40, 0.44, 0.48)),
     "book": _K(stationery.book, (0.21, 0.15, 0.030), 0.5, (0.55, 0.16, 0.18)),
     "box": _K(containers.crate, (0.30, 0.40, 0.30), 2.5, (0.72, 0.55, 0.36)),
+    "cardboard_box": _K(containers.cardboard_box, (0.30, 0.40, 0.30), 1.2, (0.72, 0.55, 0.36)),
     "broom": _K(tools.broom, (0.07, 0.32, 1.35), 0.8, (0.25, 0.50, 0.60)),
     "bucket": _K(containers.bucket, (0.30, 0.30, 0.42), 0.9, (0.25, 0.45, 0.75)),
     "candle": _K(lights.candle, (0.100, 0.100, 0.160), 0.3, (0.95, 0.92, 0.82)),

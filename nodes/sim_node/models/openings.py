@@ -12,6 +12,8 @@ WIDE = math.radians(100.0)
 """How far a door opens [rad]."""
 GAP_M = 0.002
 """Between what moves and what does not."""
+SIDES = ((-1, "left"), (1, "right"))
+"""Of who stands before it: the sign of y, and what a door there is called."""
 
 
 def cabinet_box(

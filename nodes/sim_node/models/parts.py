@@ -51,16 +51,16 @@ class Joint:
     """How some parts of a model move against the rest; where they are drawn, the joint is at 0.
 
     A hinge turns about `axis` through `anchor` [m], a slide shifts along it. `range` is from the least to
-    the greatest position [rad, m], `closed` the end of it at which what moves is shut. `friction` [N m, N]
-    holds it where it was left.
+    the greatest position [rad, m], `closed` the end of it at which what moves is shut; without limits both
+    are None, and it opens nothing. `friction` [N m, N] holds it where it was left.
     """
 
     name: str
     kind: Literal["hinge", "slide"]
     anchor: Vec3
     axis: Vec3
-    range: tuple[float, float]
-    closed: float = 0.0
+    range: tuple[float, float] | None
+    closed: float | None = 0.0
     friction: float = 0.5
 
 
@@ -137,6 +137,14 @@ def pill(radius: float, height: float, centre: Vec3, colour: Colour, turn: Quat 
     """A capsule along its z axis, `height` long from tip to tip."""
     straight = max(height / 2 - radius, 1e-4)
     return Part(Shape.CAPSULE, (radius, radius, straight), centre, colour, turn)
+
+
+def mesh(vertices: Floats, faces: NDArray[np.int32], colour: Colour, role: Role = Role.BOTH) -> Part:
+    """Triangles where their `vertices` (N, 3) [m] are; they have yet to be given a key."""
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    triangles = Mesh("", vertices - middle, np.asarray(faces, dtype=np.int32))
+    return Part(Shape.MESH, _vec3(half), _vec3(middle), colour, role=role, mesh=triangles)
 
 
 def seen(parts: Part | Iterable[Part]) -> Parts:

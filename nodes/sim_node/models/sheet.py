@@ -39,7 +39,8 @@ def portrait(model: Model, pixels: int, *, is_open: bool | None = None) -> Image
 
 def _stands(part: Part, *, is_open: bool) -> Part:
     """A part as it stands when its joint is at one end."""
-    if (joint := part.joint) is None:
+    joint = part.joint
+    if joint is None or joint.range is None or joint.closed is None:
         return part
     lower, upper = joint.range
     return moved(part, (upper if joint.closed == lower else lower) if is_open else joint.closed)

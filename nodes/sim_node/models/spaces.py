@@ -9,16 +9,19 @@ solid to the physics and hollow to the eye, as a fridge is the other way round.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from msgspec import structs
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from nodes.sim_node.models.convex_parts import convex_part
 from nodes.sim_node.models.library import Model
 from nodes.sim_node.models.parts import Floats, Part, Role, Shape, rotation_matrix
-from ontology.model_shapes import Interior, ModelShape, Surface
+from ontology.model_shapes import Interior, LeafShape, ModelShape, Surface
 
 CELLS = 64
 """Cells along the longer side of the footprint."""
@@ -34,6 +37,8 @@ LEAST_FILL = 0.25
 """Of the rectangle around a patch; what is thinner is a rim, which carries things only at the model's top."""
 LEAST_VOLUME = 0.03
 """Of the bounding box."""
+LEAST_TRAY = 0.004
+"""The same, of what a drawer holds."""
 
 Intervals = list[tuple[Floats, Floats]]
 """For each part both ends of its cut with each cell's vertical line: (nx, ny), nan for none."""
@@ -45,14 +50,89 @@ def shape_of(model: Model) -> ModelShape:
     step = max(x, y) / CELLS
     xs = np.arange(-x / 2 + step / 2, x / 2, step)
     ys = np.arange(-y / 2 + step / 2, y / 2, step)
-    felt = [_cut(part, xs, ys) for part in model.parts if part.role is not Role.SEEN]
-    seen = [_cut(part, xs, ys) for part in model.parts if part.role is not Role.FELT]
+    solid = [part for part in model.parts if part.role is not Role.SEEN]
+    walls = [(part, _cut(_as_thick_as(step, part), xs, ys)) for part in model.parts]
+
+    def hollows(joints: Collection[str | None], least: float = LEAST_VOLUME) -> list[Interior]:
+        """Those between the parts that these joints carry."""
+        some = [(part.role, cut) for part, cut in walls if (part.joint and part.joint.name) in joints]
+        seen, felt = ([cut for role, cut in some if role is not out] for out in (Role.FELT, Role.SEEN))
+        return _together(*(_interiors(one, xs, ys, step, z, least) for one in (seen, felt)))
+
+    names = [leaf.joint.name for leaf in model.leaves]
+    interiors = hollows([None, *names])
+    for name in names:
+        without = hollows([None, *(other for other in names if other != name)])
+        interiors = [
+            room if _is_among(room, without) else structs.replace(room, behind=(*room.behind, name))
+            for room in interiors
+        ]
+    surfaces = _surfaces([_cut(part, xs, ys) for part in solid], xs, ys, step)
+    leaves = []
+    for leaf in model.leaves:
+        own = [_cut(part, xs, ys) for part in leaf.parts if part.role is not Role.SEEN]
+        tops = _surfaces(own, xs, ys, step) if own else []
+        trays = hollows([leaf.joint.name], LEAST_TRAY) if leaf.joint.kind == "slide" else []
+        leaves.append(
+            LeafShape(
+                name=leaf.joint.name,
+                kind=leaf.joint.kind,
+                anchor=leaf.joint.anchor,
+                axis=leaf.joint.axis,
+                limits=leaf.joint.range,
+                closed=leaf.joint.closed,
+                parts=tuple(k for k, part in enumerate(solid) if part.joint == leaf.joint),
+                surfaces=tuple(k for k, top in enumerate(surfaces) if any(_is_one(top, o) for o in tops)),
+                interiors=tuple(_up_to_the_lid(tray, interiors) for tray in trays),
+            )
+        )
     return ModelShape(
         size_m=model.size_m,
-        surfaces=tuple(_surfaces(felt, xs, ys, step)),
-        interiors=tuple(_together(_interiors(seen, xs, ys, step, z), _interiors(felt, xs, ys, step, z))),
-        parts=tuple(convex_part(part) for part in model.parts if part.role is not Role.SEEN),
+        surfaces=tuple(surfaces),
+        interiors=tuple(interiors),
+        parts=tuple(map(convex_part, solid)),
+        leaves=tuple(leaves),
     )
+
+
+def _as_thick_as(step: float, part: Part) -> Part:
+    """A wall that no line of the grid would meet, made so thick that one does."""
+    if part.shape is not Shape.BOX or min(part.half) > step / 2.0:
+        return part
+    x, y, z = (max(extent, 0.51 * step) for extent in part.half)
+    return replace(part, half=(x, y, z))
+
+
+def _is_among(room: Interior, others: Iterable[Interior]) -> bool:
+    """Whether a hollow is still there, no smaller and no more open than it was."""
+    return any(
+        room.open >= other.open
+        and other.fill > 0.9 * room.fill
+        and _shared(room, other) > 0.9 * _volume(room)
+        for other in others
+    )
+
+
+def _shared(one: Interior, other: Interior) -> float:
+    """The volume that two hollows have in common [m^3]."""
+    extents = np.minimum(one.high, other.high) - np.maximum(one.low, other.low)
+    return float(np.prod(np.maximum(extents, 0.0)))
+
+
+def _is_one(one: Surface, other: Surface) -> bool:
+    """Whether two surfaces are level, and most of the first is the second's."""
+    extents = np.minimum(one.high, other.high) - np.maximum(one.low, other.low)
+    shared = float(np.prod(np.maximum(extents, 0.0)))
+    return abs(one.height - other.height) < LEVEL_M and shared > 0.5 * float(
+        np.prod(np.subtract(one.high, one.low))
+    )
+
+
+def _up_to_the_lid(tray: Interior, rooms: Iterable[Interior]) -> Interior:
+    """A drawer holds also what is higher than its sides: up to what is above it when it is shut."""
+    x, y, z = tray.high
+    lid = max([z, *(room.high[2] for room in rooms if _shared(tray, room) > 0.5 * _volume(tray))])
+    return structs.replace(tray, high=(x, y, lid))
 
 
 class _Top(NamedTuple):
@@ -66,7 +146,7 @@ def _surfaces(cuts: Intervals, xs: Floats, ys: Floats, step: float) -> list[Surf
     tops = _tops(cuts)
     owner: dict[tuple[int, int, int], int] = {}
     surfaces: list[Surface] = []
-    highest = max(top.height for here in tops.values() for top in here)
+    highest = max((top.height for here in tops.values() for top in here), default=0.0)
     least = max(LEAST_AREA * len(xs) * len(ys), 4.0)
     for (i, j), here in sorted(tops.items()):
         for k, top in enumerate(here):
@@ -131,7 +211,9 @@ def _tops(cuts: Intervals) -> dict[tuple[int, int], list[_Top]]:
     return tops
 
 
-def _interiors(cuts: Intervals, xs: Floats, ys: Floats, step: float, height: float) -> list[Interior]:
+def _interiors(
+    cuts: Intervals, xs: Floats, ys: Floats, step: float, height: float, least: float
+) -> list[Interior]:
     rise = height / LEVELS
     levels = (np.arange(LEVELS) + 0.5) * rise
     solid = np.zeros((len(xs), len(ys), LEVELS), dtype=bool)
@@ -147,7 +229,7 @@ def _interiors(cuts: Intervals, xs: Floats, ys: Floats, step: float, height: flo
     found: list[Interior] = []
     for label in range(1, count + 1):
         cells = np.argwhere(labels == label)
-        if len(cells) < LEAST_VOLUME * walled.size:
+        if len(cells) < least * walled.size:
             continue
         low, high = cells.min(axis=0), cells.max(axis=0) + 1
         lid = solid[cells[:, 0], cells[:, 1]].shape[1]

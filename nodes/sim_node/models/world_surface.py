@@ -1,16 +1,16 @@
-"""What the world itself looks like: walls and whatever else of its file is no body, as triangles."""
+"""What the geoms of a world look like, as triangles: its walls, and the bodies that its file has."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Final
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from nodes.sim_node.models.facets import facets
-from nodes.sim_node.models.parts import Mesh, Part, Shape
+from nodes.sim_node.models.parts import Floats, Mesh, Part, Shape
 from nodes.sim_node.physics.build import FELT_GROUP
 from schemas.scenes import Surface
 
@@ -24,18 +24,46 @@ _SHAPES = {
 }
 
 
+_MOST_TRIANGLES: Final = 100_000
+"""A body of more than that is not drawn as it looks."""
+
+
 def world_surface(model: mujoco.MjModel, data: mujoco.MjData, names: Sequence[str]) -> Surface:
     """The surface, in the map frame, of the geoms that belong to no body, by `names` (ngeom,): those of "".
 
     What has no end (planes) or no triangles of its own (height fields) is left out, and so is what cannot be
     seen.
     """
+    return _surface(
+        model, data, [geom for geom, name in enumerate(names) if not name], np.zeros(3), np.eye(3)
+    )
+
+
+def body_surface(
+    model: mujoco.MjModel, data: mujoco.MjData, names: Sequence[str], name: str, pose: Floats
+) -> Surface | None:
+    """The surface of a body of the world's own, as its parts stand just now, in its frame.
+
+    `names` (ngeom,) says whose each geom is, and `pose` (7,) where the body is: position [m] and quaternion
+    wxyz, map frame. None for one that cannot be seen or has too many triangles.
+    """
+    turn = np.zeros(9)
+    mujoco.mju_quat2Mat(turn, np.asarray(pose[3:], dtype=float))
+    geoms = [geom for geom, whose in enumerate(names) if whose == name]
+    surface = _surface(model, data, geoms, pose[:3], turn.reshape(3, 3))
+    return surface if 0 < len(surface.triangles) <= 12 * _MOST_TRIANGLES else None
+
+
+def _surface(
+    model: mujoco.MjModel, data: mujoco.MjData, geoms: Sequence[int], origin: Floats, frame: Floats
+) -> Surface:
+    """That of these geoms, in a frame: its `origin` (3,) [m] and its axes, the columns of `frame` (3, 3)."""
     points, normals, colours, triangles, count = [], [], [], [], 0
-    for geom, name in enumerate(names):
-        if name or (part := _part(model, geom)) is None:
+    for geom in geoms:
+        if (part := _part(model, geom)) is None:
             continue
-        piece, turn = facets(part), data.geom_xmat[geom].reshape(3, 3)
-        points.append(piece.points @ turn.T + data.geom_xpos[geom])
+        piece, turn = facets(part), frame.T @ data.geom_xmat[geom].reshape(3, 3)
+        points.append(piece.points @ turn.T + (data.geom_xpos[geom] - origin) @ frame)
         normals.append(piece.normals @ turn.T)
         colours.append(np.tile(part.colour, (len(piece.points), 1)))
         triangles.append(piece.triangles + count)

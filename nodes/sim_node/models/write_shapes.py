@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from pathlib import Path
 
 import msgspec
@@ -41,6 +42,17 @@ def own_shapes(folder: Path) -> dict[str, ModelShape]:
         found[path.name] = shape
         found.setdefault(path.stem, shape)
     return found
+
+
+def own_notes(folder: Path) -> list[str]:
+    """What of the model files in a folder is not in the models, or is stiff in them: a clause each."""
+    models = Models(folder)
+    told: list[str] = []
+    for path in sorted(folder.iterdir()):
+        if path.suffix in SUFFIXES:
+            with suppress(ModelError):
+                told += (f"{path.name}: {note}" for note in models(path.name, None).notes)
+    return told
 
 
 def write_own(folder: Path | None, target: Path) -> None:

@@ -78,8 +78,8 @@ def read_mjcf(path: Path, *, compiles: bool = True) -> mujoco.MjSpec:
     """A scene from a file. Raises BadFile if it is missing or, where that is asked for, does not compile."""
     try:
         spec = mujoco.MjSpec.from_file(str(path))
-        if compiles:
-            spec.copy().compile()
+        if compiles:  # not a copy of it, which has lost what refers to a name that there is not
+            mujoco.MjSpec.from_file(str(path)).compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
         raise BadFile(
             f"the world file {path} is not an MJCF scene that compiles: {_one_line(error)}"
@@ -167,7 +167,7 @@ def bodies_of(
     """
     model, data = _compiled(spec)
     classes = _declared(spec)
-    closed = _closed_ends(spec)
+    closed = closed_ends(spec)
     records: dict[str, BodyRecord] = {}
     owner = [""] * model.nbody
     for number in range(1, model.nbody):  # wholes have lower numbers than their parts
@@ -243,7 +243,7 @@ def _texts(spec: mujoco.MjSpec, prefix: str) -> dict[str, str]:
     return {name.removeprefix(prefix): data for name, data in texts if name.startswith(prefix)}
 
 
-def _closed_ends(spec: mujoco.MjSpec) -> dict[str, str]:
+def closed_ends(spec: mujoco.MjSpec) -> dict[str, str]:
     """Which end of a joint is the closed one, where a text says so: `lower` or `upper`."""
     return {name: end for name, end in _texts(spec, _CLOSED_TEXT).items() if end in _ENDS}
 

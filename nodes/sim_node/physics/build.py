@@ -113,10 +113,14 @@ def _add_leaf(spec: mujoco.MjSpec, body: mujoco.MjsBody, record: BodyRecord, lea
         type=_JOINT[leaf.joint.kind],
         pos=[at + shift for at, shift in zip(leaf.joint.anchor, (x, y, z), strict=True)],
         axis=list(leaf.joint.axis),
-        limited=mujoco.mjtLimited.mjLIMITED_TRUE,
-        range=[_as_compiled(spec, leaf.joint.kind, limit) for limit in leaf.joint.range],
         frictionloss=leaf.joint.friction,
     )
+    if leaf.joint.range is not None:
+        joint.limited = mujoco.mjtLimited.mjLIMITED_TRUE
+        joint.range = [_as_compiled(spec, leaf.joint.kind, limit) for limit in leaf.joint.range]
+        joint.solimp_limit = IMPEDANCE  # what stands on a lid does not press it in
+    else:
+        joint.limited = mujoco.mjtLimited.mjLIMITED_FALSE
     joint.damping = [0.1 * leaf.joint.friction, 0.0, 0.0]
     for part in leaf.parts:
         if part.mesh is not None:

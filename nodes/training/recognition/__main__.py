@@ -22,7 +22,7 @@ from nodes.training.recognition.gathering import Gathered, gather, read, write
 from nodes.training.recognition.learn_joining import learn_joining
 from nodes.training.recognition.learn_novelty import learn_novelty
 from nodes.training.recognition.samples import NOTHING, Samples
-from nodes.training.scenes.simulated_scenes import STRANGE
+from nodes.training.scenes.simulated_scenes import STRANGE, foreign_class
 from nodes.training.segmentation.fit import trees_of
 from nodes.training.taxonomy import class_of_models, hierarchy
 
@@ -35,13 +35,19 @@ _FARTHEST = 1.0
 """A side that is off by more of the thing's size than this was not seen at all."""
 
 
-def learn(gathered: Gathered, *, without: Collection[str] = ()) -> Learnt:
-    """Train on four scenes of five, calibrate on the fifth; classes in `without` are left out altogether."""
-    class_of = class_of_models(MODELS) | {STRANGE: UNKNOWN, NOTHING: CLUTTER}
-    names = np.array([class_of[kind] for kind in gathered.things.kind])
-    known = ~np.isin(names, list(without))
-    samples, names = gathered.things[known], names[known]
-    left_out = [kind for kind, name in class_of.items() if name in without]
+def learn(gathered: Gathered, *, without: Collection[str] = (), unseen: Collection[str] = ()) -> Learnt:
+    """Train on four scenes of five, calibrate on the fifth.
+
+    Classes in `without`, and foreign things whose names are in `unseen`, are left out altogether.
+    """
+    class_of = classes_of(gathered)
+    left_out = [
+        kind
+        for kind, name in class_of.items()
+        if name in without or ((of := foreign_class(kind)) is not None and of[0] in unseen)
+    ]
+    samples = gathered.things[~np.isin(gathered.things.kind, left_out)]
+    names = np.array([class_of[kind] for kind in samples.kind])
     pairs = gathered.pairs[np.asarray(~np.isin(gathered.pairs.kinds, left_out).any(axis=1))]
     classes = tuple(sorted(set(names.tolist())))
     target = np.searchsorted(classes, names)
@@ -71,6 +77,15 @@ def learn(gathered: Gathered, *, without: Collection[str] = ()) -> Learnt:
         "rendered from the model library, 2 cameras",
     )
     return replace(learnt, joining=learn_joining(learnt, pairs))
+
+
+def classes_of(gathered: Gathered) -> dict[str, str]:
+    """The class of each kind of things in the samples and pairs."""
+    class_of = class_of_models(MODELS) | {STRANGE: UNKNOWN, NOTHING: CLUTTER}
+    for kind in {*gathered.things.kind.tolist(), *gathered.pairs.kinds.ravel().tolist()}:
+        if (foreign := foreign_class(kind)) is not None:
+            class_of[kind] = foreign[1] or UNKNOWN
+    return class_of
 
 
 def _calibrated(
@@ -117,6 +132,7 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=1200)
     parser.add_argument("--heaps", type=int, default=400, help="to learn from which pieces are one thing")
     parser.add_argument("--seed", type=int, default=101)
+    parser.add_argument("--foreign", type=Path, help="a folder of foreign things to learn from, too")
     parser.add_argument("--samples", type=Path, help="keep the samples there, or take them from there")
     parser.add_argument("--out", type=Path, default=SHIPPED)
     options = parser.parse_args()
@@ -124,7 +140,7 @@ def main() -> None:
     if options.samples and options.samples.exists():
         gathered = read(options.samples)
     else:
-        gathered = gather(options.scenes, options.heaps, options.seed)
+        gathered = gather(options.scenes, options.heaps, options.seed, options.foreign)
         if options.samples:
             write(gathered, options.samples)
     print(f"{len(gathered.things)} segments after {time.perf_counter() - started:.0f} s")

@@ -36,7 +36,6 @@ def overlap(a: Rectangle, b: Rectangle, gap_m: float) -> bool:
 
 
 def spread(
-    kinds: Sequence[str],
     sizes: Sequence[Vec3],
     area_m: tuple[float, float],
     gap_m: float,
@@ -52,7 +51,7 @@ def spread(
         return _pushed(sizes, area_m, float(rng.uniform(0.0, 0.004)), rng)
     taken: list[Rectangle] = []
     placements: list[Rectangle | None] = []
-    for (x, y, _), _kind in zip(sizes, kinds, strict=True):
+    for x, y, _ in sizes:
         free: list[Rectangle] = []
         for _ in range(60 if crowded else 25):
             at = rng.uniform(-0.5, 0.5, 2) * (np.array(area_m) - 0.7 * max(x, y))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import mujoco
 import numpy as np
@@ -13,22 +14,38 @@ from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.input.projection import cloud_of
 from nodes.sim_node.models.library import Model, assemble
 from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.parts import Colour, Vec3
+from nodes.sim_node.models.parts import Colour, Vec3, rotation_matrix
 from nodes.sim_node.vision.camera import Eye
 from nodes.sim_node.vision.noise import kinect_noise
 from nodes.sim_node.vision.view import View
 from nodes.sim_node.world import World
+from nodes.training.scenes.paint import Paint, painted
+from nodes.training.scenes.varieties import Form
 from schemas.entities import Pose, orientation_from_yaw
 from schemas.scenes import Body, BodyOrder
 
 STRANGE = "strange"
+_FOREIGN = "@"
+_MASS_KG = 0.4
+
+
+def foreign_label(name: str, class_: str, *, new: bool) -> str:
+    """What a foreign thing is to be taken for: its class, or nothing known; it is told apart by its name."""
+    return f"{name}{_FOREIGN}{'' if new else class_}"
+
+
+def foreign_class(label: str) -> tuple[str, str] | None:
+    """The name of a foreign thing and its class, empty for none; None for what is of our own making."""
+    name, at, class_ = label.partition(_FOREIGN)
+    return (name, class_) if at else None
 
 
 @dataclass(frozen=True)
 class Item:
     """One thing to be put into a scene: a model at a size and in a colour, standing at a pose.
 
-    A `strange` one is so far from what its model should be that nobody is to recognise it.
+    `form` builds one that does not look like its model. `said`: what it is to be taken for, if not for its
+    kind. `paint` is put on what the cameras see.
     """
 
     name: str
@@ -37,12 +54,14 @@ class Item:
     colour: Colour
     position_m: Vec3
     yaw_rad: float
-    strange: bool = False
+    form: Form | None = None
+    said: str = ""
+    paint: Paint | None = None
 
     @property
     def label(self) -> str:
         """What it is to be taken for."""
-        return STRANGE if self.strange else self.kind
+        return self.said or self.kind
 
 
 @dataclass(frozen=True)
@@ -60,9 +79,11 @@ class Shot:
 
 def tinted(item: Item) -> Model:
     """The item's model at its size, in its colour."""
-    kind = MODELS[item.kind]
+    kind = MODELS.get(item.kind)
     x, y, z = item.size_m
-    return assemble(item.kind, kind.parts(x, y, z, item.colour), kind.mass_kg)
+    form = item.form or (kind and kind.parts)
+    assert form is not None, item.kind
+    return assemble(item.kind, form(x, y, z, item.colour), kind.mass_kg if kind else _MASS_KG)
 
 
 class Stage:
@@ -104,18 +125,38 @@ class Stage:
         model.vis.headlight.ambient[:] = light
         model.vis.headlight.diffuse[:] = light
 
-    def shoot(self, bodies: Sequence[Body], views: Sequence[View], rng: np.random.Generator) -> Shot:
-        """What cameras with a real sensor's faults see of the scene."""
-        clouds, owners = zip(*(self._look(bodies, view, rng) for view in views), strict=True)
+    def shoot(
+        self,
+        bodies: Sequence[Body],
+        views: Sequence[View],
+        rng: np.random.Generator,
+        paints: Mapping[str, Paint] = MappingProxyType({}),
+    ) -> Shot:
+        """What cameras with a real sensor's faults see of the scene; bodies with `paints` are painted."""
+        clouds, owners = zip(*(self._look(bodies, view, rng, paints) for view in views), strict=True)
         return Shot(clouds, owners, tuple(bodies))
 
     def _look(
-        self, bodies: Sequence[Body], view: View, rng: np.random.Generator
+        self, bodies: Sequence[Body], view: View, rng: np.random.Generator, paints: Mapping[str, Paint]
     ) -> tuple[Cloud, NDArray[np.int32]]:
         model, data = self._world.model, self._world.data
         rgb, depth = self._eye.see(model, data, view)
         geoms = self._eye.segment(model, data, view)
         number = {body.name: at for at, body in enumerate(bodies, 1)}
-        owner = np.array([number.get(name, 0) for name in self._world.body_names()] + [0], np.int32)
-        cloud = cloud_of(kinect_noise(depth, rng), rgb, view.intrinsics, view.map_from_camera)
-        return cloud, owner[geoms]
+        owners = np.array([number.get(name, 0) for name in self._world.body_names()] + [0], np.int32)[geoms]
+        bare = cloud_of(depth, rgb, view.intrinsics, view.map_from_camera)
+        for body in bodies:
+            where = owners == number[body.name]
+            if body.name in paints and where.any():
+                _put_on(paints[body.name], rgb, bare, where, body)
+        return cloud_of(kinect_noise(depth, rng), rgb, view.intrinsics, view.map_from_camera), owners
+
+
+def _put_on(paint: Paint, rgb: NDArray[np.uint8], cloud: Cloud, where: NDArray[np.bool_], body: Body) -> None:
+    """Paint the pixels of a picture (H, W, 3) that see a body."""
+    pose = np.eye(4) if cloud.map_from_camera is None else cloud.map_from_camera
+    points = cloud.points_camera[where].astype(float) @ pose[:3, :3].T + pose[:3, 3]
+    own = (points - body.pose.position_m) @ rotation_matrix(body.pose.orientation_wxyz)
+    half = np.array(body.size_m) / 2.0
+    own[:, 2] -= half[2]
+    rgb[where] = painted(rgb[where], np.nan_to_num(own / half).astype(np.float32), paint)

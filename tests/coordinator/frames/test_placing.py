@@ -8,7 +8,7 @@ import pytest
 
 from nodes.coordinator.frames.placing import into_map, require_placing
 from schemas import errors
-from schemas.commands import Add, Get, List, Move, Update
+from schemas.commands import Add, Drive, Get, List, Move, Update
 from schemas.entities import Pose, orientation_from_yaw
 
 TURNED = Pose(position_m=(2.0, 1.0, 0.5), orientation_wxyz=orientation_from_yaw(math.pi / 2))
@@ -35,6 +35,14 @@ def test_an_angle_is_in_the_frame_too():
     assert into_map(Move(name="cup1", at=(0.0, 1.0, 0.0), frame="f"), TURNED).yaw is None
 
 
+def test_a_course_is_in_the_frame_as_it_is_at_the_start():
+    course = Drive(name="robot1", to=((1.0, 0.0), (1.0, 1.0)), yaw=0.0, frame="robot1", wait=True)
+    driven = into_map(course, TURNED)
+    assert driven.to == ((2.0, 2.0), (1.0, 2.0))
+    assert (driven.yaw, driven.frame, driven.wait) == (pytest.approx(math.pi / 2), None, True)
+    assert into_map(Drive(name="robot1", to=((1.0, 0.0),), frame="f"), TURNED).yaw is None
+
+
 def test_positions_among_words_are_in_the_frame_and_names_stay():
     asked = into_map(List(near="1,0,0", within=1.0, nearest=2, to="cup1", frame="f"), TURNED)
     assert (asked.near, asked.to, asked.frame) == ("2.0,2.0,0.5", "cup1", None)
@@ -49,6 +57,7 @@ def test_positions_among_words_are_in_the_frame_and_names_stay():
             Add(class_="Room", at=(0.0, 0.0, 0.0), extent="POLYGON ((0 0, 1 0, 1 1, 0 0))", frame="f"),
             "an extent",
         ),
+        (Drive(name="r", stop=True, frame="f"), "--frame goes with --to"),
         (Get(name="c", as_of=3, frame="f"), "either --frame or --as-of"),
         (List(as_of=3, frame="f"), "either --frame or --as-of"),
         (List(format="legacy", frame="f"), "leave --frame out"),

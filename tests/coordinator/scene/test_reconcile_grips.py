@@ -83,7 +83,7 @@ def test_circles_are_refused():
     tray = structs.replace(entity("tray1", at(0.0)), properties={"isGraspedBy": "robot1"})
     robot = structs.replace(entity("robot1", at(0.0)), properties={"isDirectPartOf": ("cup1",)})
     there = {"cup1": cup(), "tray1": tray, "robot1": robot}
-    with pytest.raises(Refused, match="tray1 goes with cup1, so it cannot hold it"):
+    with pytest.raises(Refused, match="tray1 goes with cup1, so it cannot hold cup1"):
         holding.require_graspable(there["cup1"], tray, there, {})
     holding.require_graspable(tray, robot, there, {})
 
@@ -96,3 +96,37 @@ def test_where_it_is_follows_from_its_holder():
     assert holding.carried_pose(cup(), where) is None
     assert holding.grip(None, where("tray1"), None, None) is None
     assert holding.grip(None, None, (1.0, 0.0, 0.0), None).position_m == (1.0, 0.0, 0.0)
+
+
+def taken(name: str, holder: str, commit: int):
+    grip = provenance(commit, "operator")
+    return structs.replace(entity(name, at(0.0)), properties={"isGraspedBy": holder}, grip_provenance=grip)
+
+
+def test_what_goes_along_is_let_go_together():
+    tray = taken("tray1", "gripper1", 7)
+    others = [taken("cup1", "tray1", 7), taken("cup2", "tray1", 8), taken("apple1", "gripper1", 7)]
+    there = {e.name: e for e in (tray, *others)}
+    assert holding.taken_with(tray, there) == ("cup1",)
+    assert holding.taken_with(entity("table1", at(0.0)), there) == ()
+
+
+def test_what_is_fixed_or_a_part_or_held_does_not_go_along():
+    tray, gripper = entity("tray1", at(0.0)), entity("gripper1", at(0.0))
+    there = {
+        "cup1": cup(),
+        "hook1": structs.replace(entity("hook1", at(0.0)), fixed=True),
+        "lid1": entity("lid1", at(0.0)),
+        "apple1": taken("apple1", "person1", 3),
+    }
+    bodies = {"lid1": structs.replace(body("lid1", at(0.0)), part_of="pot1")}
+    assert holding.load((*there, "gone1"), tray, gripper, there, bodies) == ("cup1",)
+
+
+def test_what_stands_on_a_thing_does_not_take_it_away():
+    tray, person = entity("tray1", at(0.0)), taken("person1", "cup1", 3)
+    there = {"tray1": tray, "person1": person, "cup1": cup()}
+    with pytest.raises(Refused, match=r"^person1 stands on tray1 or is inside it, so person1 cannot take"):
+        holding.load(("person1",), tray, person, there, {})
+    with pytest.raises(Refused, match=r"^cup1, which person1 goes with, stands on tray1"):
+        holding.load(("cup1",), tray, person, there, {})

@@ -57,6 +57,12 @@ def detected(message: Any) -> list[Any]:
     return [[d.id, d.results[0].hypothesis.class_id] for d in message.detections]
 
 
+def transformed(message: Any) -> list[Any]:
+    """Frames; of those that are in another than the map's, that as well: `parent>child`."""
+    told = [(t.header.frame_id, t.child_frame_id) for t in message.transforms]
+    return [child if parent == "map" else f"{parent}>{child}" for parent, child in told]
+
+
 def gridded(message: Any) -> list[Any]:
     """Its size, and what its cells may be."""
     return [message.info.width, message.info.height, sorted(set(message.data.tolist()))]
@@ -70,7 +76,7 @@ def main() -> None:
         subscribe("/latched", of.detections.type, detected, latched=True),
         subscribe(of.grid.name, of.grid.type, gridded),
         subscribe(of.markers.name, of.markers.type, lambda m: [k.text for k in m.markers]),
-        subscribe(of.transforms.name, of.transforms.type, lambda m: [t.child_frame_id for t in m.transforms]),
+        subscribe(of.transforms.name, of.transforms.type, transformed),
         subscribe(
             of.planning_scene.name,
             of.planning_scene.type,

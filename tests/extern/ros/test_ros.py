@@ -99,6 +99,25 @@ def test_another_party_sees_the_map_and_its_changes(bridged, router):
         assert values == [-1, 0, 100]
         client.remove("cup77")
         assert ros.hears("/planning_scene", lambda objects: ["cup77", REMOVE] in objects)
+        drawn = ros.hears("/semmap/markers", lambda texts: "cup77" not in texts)
+        assert drawn[0] == ""  # deletes all that was drawn
+        assert "table1" in drawn
+
+
+def test_another_party_sees_the_frames_that_others_publish(bridged, router):
+    with bridged.client() as client, listening(router) as ros:
+        client.publish_frame("dock", "map", at=(4.0, 1.0, 0.0), fixed=True)
+        client.publish_frame("dock/beacon", "dock", at=(0.0, 0.0, 0.4), fixed=True)
+        client.publish_frame("fridge1", "dock", fixed=True)  # the entity keeps its name
+        assert ros.hears("/tf", lambda frames: {"dock", "dock>dock/beacon"} <= set(frames))
+        client.publish_frame("dock", "dock/beacon", fixed=True)  # in one another: ignored
+        for _ in range(5):
+            heard = ros.hears("/tf", lambda frames: "table1" in frames)
+        assert "dock/beacon>dock" not in heard
+        assert "dock>fridge1" not in heard
+        client.withdraw_frame("dock/beacon")
+        assert ros.hears("/tf", lambda frames: "dock" in frames and "dock>dock/beacon" not in frames)
+        client.withdraw_frame("dock")
 
 
 def test_who_comes_later_hears_what_is_latched(router):

@@ -10,6 +10,7 @@ from nodes.extern.web.live import Happening
 from schemas import errors
 from schemas.commands import Properties
 from schemas.sparql import SparqlResult
+from tests.extern.web.scene.things import body, pose, scene
 from tests.extern.web.views.worlds import commit, fact, thing
 
 CUP = thing("cup1")
@@ -19,6 +20,7 @@ class Live:
     """Answers when it is let."""
 
     classes = ()
+    scene = None
 
     def __init__(self, seq, *facts):
         self.commit = seq
@@ -111,5 +113,25 @@ def test_a_map_that_is_begun_anew_while_one_is_read_is_read_once_more():
         known = Knowing(live)
         await settled()
         assert known.whereabouts.bearer(CUP) == "new1"
+
+    asyncio.run(scenario())
+
+
+def test_of_a_body_that_comes_only_those_are_told_whose_body_is_otherwise():
+    async def scenario():
+        live = Live(5)
+        live.may_answer.set()
+        known = Knowing(live)
+        await settled()
+        told = []
+        known.listen(told.append)
+        live.scene = scene(body("chair1"), body("cup1"))
+        live.happen("scene")
+        live.scene = scene(body("chair1", pose(2.0)), body("cup1", ghost=True), body("cup2"))
+        live.happen("scene")
+        live.happen("scene")
+        live.scene = None
+        live.happen("scene")
+        assert told == [None, frozenset(("cup1", "cup2")), None]
 
     asyncio.run(scenario())

@@ -1,3 +1,6 @@
+import subprocess
+import sys
+
 import pytest
 
 from nodes import bus
@@ -14,3 +17,22 @@ def test_a_port_that_is_taken_is_told_before_anything_begins():
             errors.BadRequest, match=f"cannot listen on 127.0.0.1:{taken}: another program uses"
         ):
             run(WebConfig(network=bus.Network(connect=(endpoint,)), port=taken), print)
+
+
+_IMPORTED = """
+import sys
+from nodes.extern.web.server import _as_if_not_installed
+with _as_if_not_installed("aiohttp", "requests"):
+    import nicegui
+assert "aiohttp" not in sys.modules and "requests" not in sys.modules
+import requests
+with _as_if_not_installed("requests"):  # what is there already stays
+    assert sys.modules["requests"] is requests
+"""
+
+
+def test_clients_that_the_page_has_no_use_for_are_not_imported_and_can_be_by_others():
+    pytest.importorskip("nicegui")
+    pytest.importorskip("requests")
+    done = subprocess.run([sys.executable, "-c", _IMPORTED], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -221,3 +221,22 @@ def test_there_is_one_for_all_tabs():
         assert tape_module.tape_of(live) is tape_module.tape_of(live)
 
     run(see())
+
+
+def test_of_a_long_history_the_newest_headlines_are_kept(monkeypatch):
+    monkeypatch.setattr(tape_module, "_MOST_ROWS", 20)
+
+    async def scenario():
+        live = Map(18)
+        tape = Tape(live)
+        tape.read()
+        await asyncio.sleep(0.05)
+        assert (tape.first, tape.begins_there) == (1, True)
+        for _ in range(5):
+            live.grow()
+            await asyncio.sleep(0.01)
+        assert [row.seq for row in tape.rows] == list(range(4, 24))
+        assert not tape.begins_there
+        assert tape.row(3) is None
+
+    asyncio.run(scenario())

@@ -2,6 +2,7 @@
 
 import pytest
 
+from nodes.kb_node.answers import answers
 from nodes.kb_node.answers.map_then import ask_then, export_then, map_then
 from nodes.kb_node.beliefs import Believed
 from nodes.kb_node.documents import rdf
@@ -100,6 +101,17 @@ def test_an_export_of_the_past_leaves_the_ontology_out_and_says_of_when_it_is(fl
     assert not [s for s, p, o in triples if p == v.RDF_TYPE and o == v.OWL_CLASS]
 
 
-def test_what_followed_then_is_not_exported_and_it_is_said(flat):
-    with pytest.raises(errors.Refused, match="leave out --inferred or --as-of"):
-        exported(flat, 3, inferred=True)
+def test_what_followed_and_was_measured_then_is_exported_if_it_is_wanted(flat):
+    on_counter = (v.entity_iri("cup9"), v.dm("isOn"), v.entity_iri("counter1"))
+    on_table = (v.entity_iri("cup9"), v.dm("isOn"), v.entity_iri("table1"))
+    graspable = (v.entity_iri("cup9"), v.RDF_TYPE, v.dm("Graspable_Thing"))
+    then = exported(flat, 3, inferred=True)[1]
+    assert {on_counter, graspable} <= then
+    assert on_table not in then  # it was said, and denied by geometry
+    assert [t for t in then if t[0] == v.entity_iri("cup9") and t[1] == v.dm("isNextTo")]
+    assert on_counter not in exported(flat, 4, inferred=True)[1]
+
+
+def test_the_last_commit_is_exported_with_what_follows_as_the_map_is_now(flat):
+    now = answers.document(answers.picture(flat, inferred=True), "turtle")
+    assert exported(flat, 5, inferred=True)[1] == set(rdf.parse(now.content, "now.ttl"))

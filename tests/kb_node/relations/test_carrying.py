@@ -3,11 +3,13 @@
 import math
 
 import pytest
+from msgspec import structs
 
 from nodes.kb_node.relations.carrying import Loads
 from nodes.kb_node.relations.facts.place_facts import Facts
 from schemas.entities import Pose, carried, orientation_from_yaw
-from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
+from schemas.grips import IS_GRASPED_BY
+from tests.kb_node.relations.made import NOBODY, ROOM, TABLE, TOP, thing
 
 TRAY = thing("tray1", (0.0, 0.0, TOP), "unheard of", size=(0.5, 0.4, 0.02))
 BOWL = thing("bowl1", (0.1, 0.0, TOP + 0.02))
@@ -85,3 +87,16 @@ def test_carried_without_a_turn_keeps_the_orientation():
     was, now = Pose(position_m=(0.0, 0.0, 0.0)), Pose(position_m=(1.0, 0.0, 0.0))
     assert carried(cup, was, now).position_m == (1.0, 0.0, 0.0)
     assert carried(cup, was, now).orientation_wxyz == pytest.approx(cup.orientation_wxyz, abs=1e-6)
+
+
+@pytest.mark.parametrize(("x", "y", "yaw"), [(-0.7, 0.5, 0.0), (-0.7, 0.5, math.pi / 2), (-0.8, 0.0, 0.4)])
+def test_furniture_that_overlaps_does_not_carry_the_other(loads, x, y, yaw):
+    couch, armchair = thing("couch1", (0.0, 0.0, 0.0)), thing("armchair1", (x, y, 0.005), yaw=yaw)
+    there = loads(ROOM, couch, armchair)
+    assert "couch1" not in there.all_of("armchair1")
+    assert "armchair1" not in there.all_of("couch1")
+
+
+def test_what_is_held_is_carried_by_its_holder_only(loads):
+    held = structs.replace(CUP, properties={IS_GRASPED_BY: "tray1"}, grip_provenance=NOBODY)
+    assert loads(ROOM, TABLE, TRAY, BOWL, held).all_of("table1") == ["tray1", "bowl1"]

@@ -72,8 +72,11 @@ def test_a_file_takes_the_place_of_a_built_in_model(folder):
     assert Models()("chair", None).name == "chair"
 
 
-def test_mjcf_is_taken_as_one_rigid_body(folder):
+def test_mjcf_brings_its_bodies_and_their_joints(folder):
     toy = Models(folder)("toy", None)
+    (leaf,) = toy.leaves
+    assert (leaf.joint.name, leaf.joint.range, leaf.joint.closed) == ("joint", None, None)
+    assert [part.role for part in leaf.parts] == [Role.SEEN]
     assert [part.role for part in toy.parts] == [Role.BOTH, Role.BOTH, Role.SEEN]
     assert toy.size_m == pytest.approx((0.3, 0.4, 0.4), abs=0.001)
     assert toy.parts[0].colour == (1.0, 0.0, 0.0)

@@ -22,6 +22,8 @@ OPENING = {
     "desk": {"drawer_1", "drawer_2", "drawer_3"},
     "laptop": {"lid"},
     "suitcase": {"lid"},
+    "bin": {"lid"},
+    "cardboard_box": {"left", "right"},
 }
 
 
@@ -81,3 +83,32 @@ def test_milk_stays_in_the_fridge_while_its_door_opens_and_shuts():
         world.move_joints([JointOrder(name="fridge1", openness=share)])
         world.step(4.0)
     assert bodies(world)["milk1"].pose.position_m == pytest.approx(before, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("model", "at"),
+    [("bin", (0.05, 0.0, 0.02)), ("cardboard_box", (0.0, 0.0, 0.02)), ("suitcase", (-0.03, 0.0, 0.07))],
+)
+def test_what_is_put_in_stays_there_while_it_opens_and_shuts(model, at):
+    world = spawned(order("it", model, pose(0.0, 0.0)))
+    world.spawn([order("apple1", "apple", pose(*at), size_m=(0.06, 0.06, 0.06))])
+    world.step(2.0)
+    before = bodies(world)["apple1"].pose.position_m
+    for share in (1.0, 0.0):
+        world.move_joints([JointOrder(name="it", openness=share)])
+        world.step(5.0)
+        found = bodies(world)
+        assert [j.openness for j in found["it"].joints] == pytest.approx(
+            [share] * len(found["it"].joints), abs=0.02
+        )
+        assert found["apple1"].pose.position_m == pytest.approx(before, abs=0.03)
+
+
+def test_what_is_put_on_a_shut_box_does_not_press_its_flaps_in():
+    world = spawned(order("box1", "cardboard_box", pose(0.0, 0.0)))
+    world.spawn([order(f"book{k}", "book", pose(0.0, 0.0, 0.31 + 0.04 * k), size_m=None) for k in range(5)])
+    world.step(5.0)
+    top = bodies(world)["box1"].size_m[2]
+    assert bodies(world)["book0"].pose.position_m[2] == pytest.approx(top, abs=0.01)
+    assert [joint.openness for joint in bodies(world)["box1"].joints] == pytest.approx([0.0, 0.0], abs=0.02)
+    assert all(body.resting for body in bodies(world).values())

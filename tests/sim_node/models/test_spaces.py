@@ -47,3 +47,34 @@ def test_a_plain_box_carries_with_all_of_its_top():
     assert top.height == pytest.approx(0.3)
     assert top.high[0] - top.low[0] == pytest.approx(0.4, abs=0.02)
     assert top.fill == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("model", "behind"),
+    [
+        ("fridge", {("door",), ("freezer",)}),
+        ("cabinet", {("left", "right")}),
+        ("wardrobe", {("left", "right")}),
+        ("oven", {("door",)}),
+        ("washing_machine", {("door",)}),
+        ("bin", {("lid",)}),
+        ("cardboard_box", {("left", "right")}),
+        ("suitcase", {("lid",)}),
+        ("drawer", {("drawer_1",), ("drawer_2",), ("drawer_3",), ("drawer_4",)}),
+        ("bowl", {()}),
+    ],
+)
+def test_a_hollow_says_what_closes_it(model, behind):
+    assert {room.behind for room in shape_of(build(model, None)).interiors} == behind
+
+
+@pytest.mark.parametrize("model", ["drawer", "desk"])
+def test_a_drawer_carries_what_is_in_its_tray(model):
+    shape = shape_of(build(model, None))
+    for leaf in shape.leaves:
+        (tray,) = leaf.interiors
+        (room,) = (room for room in shape.interiors if leaf.name in room.behind)
+        assert all(low >= least - 0.02 for low, least in zip(tray.low, room.low, strict=True))
+        assert all(high <= most + 0.02 for high, most in zip(tray.high, room.high, strict=True))
+        assert tray.high[2] == pytest.approx(room.high[2])
+        assert any(shape.surfaces[k].height == pytest.approx(tray.low[2], abs=0.01) for k in leaf.surfaces)

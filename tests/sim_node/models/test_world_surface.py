@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.world_surface import world_surface
+from nodes.sim_node.models.world_surface import body_surface, world_surface
 
 ROOM = """<mujoco>
   <asset>
@@ -67,3 +67,23 @@ def test_triangles_turn_their_faces_outwards(told):
     faces = np.cross(b - a, c - a)
     large = np.linalg.norm(faces, axis=1) > 1e-9
     assert (np.einsum("ij,ij->i", faces, normals[triangles[:, 0]])[large] > 0.0).all()
+
+
+def test_a_body_is_told_in_its_own_frame_with_its_parts():
+    model = mujoco.MjModel.from_xml_string("""<mujoco><worldbody>
+        <body name="robot" pos="5 6 0" euler="0 0 90">
+          <geom type="box" size="0.5 0.1 0.2" pos="0 0 0.2" rgba="1 0 0 1"/>
+          <body name="arm" pos="0 0 0.4"><geom type="box" size="0.1 0.1 0.3" pos="0.4 0 0.3"/></body>
+        </body>
+        <geom type="box" size="1 1 1"/>
+      </worldbody></mujoco>""")
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    names = ["robot" if body else "" for body in model.geom_bodyid]
+    half = np.sqrt(0.5)
+    told = body_surface(model, data, names, "robot", np.array([5.0, 6.0, 0.0, half, 0.0, 0.0, half]))
+    points = np.frombuffer(told.points, "<f4").reshape(-1, 3)
+    assert spans(points) == pytest.approx(np.array([(-0.5, -0.1, 0.0), (0.5, 0.1, 1.0)]), abs=1e-6)
+    arm = points[points[:, 2] > 0.5]
+    assert spans(arm)[:, 0] == pytest.approx([0.3, 0.5], abs=1e-6)
+    assert body_surface(model, data, names, "nobody", np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])) is None

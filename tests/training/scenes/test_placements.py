@@ -36,7 +36,7 @@ def test_what_is_pushed_together_touches():
 def _placements(seed, *, crowded):
     sizes = [(0.1, 0.2, 0.1), (0.08, 0.08, 0.2), (0.3, 0.2, 0.2)] * 3
     rng = np.random.default_rng(seed)
-    return spread(["box"] * len(sizes), sizes, (1.0, 1.5), 0.03, rng, crowded=crowded)
+    return spread(sizes, (1.0, 1.5), 0.03, rng, crowded=crowded)
 
 
 def _touching(placements):

@@ -17,14 +17,7 @@ if TYPE_CHECKING:
     from nodes.extern.client import Client
 
 _as_of = click.option("--as-of", metavar="COMMIT|TIME", help="The map as it was then.")
-
-
-@click.command()
-@click.argument("file", type=click.Path(path_type=Path))
-@click.option(
-    "--resolution", type=float, default=0.05, show_default=True, metavar="M", help="Metres a pixel."
-)
-@click.option(
+_height_range = click.option(
     "--height-range",
     "heights",
     nargs=2,
@@ -34,6 +27,14 @@ _as_of = click.option("--as-of", metavar="COMMIT|TIME", help="The map as it was 
     metavar="LOW HIGH",
     help="What has a part between these heights above the floor [m] is in the robot's way.",
 )
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option(
+    "--resolution", type=float, default=0.05, show_default=True, metavar="M", help="Metres a pixel."
+)
+@_height_range
 @click.option("--no-furniture", is_flag=True, help="Walls only.")
 @_as_of
 @talks
@@ -56,16 +57,7 @@ def floorplan(client: Client, file: Path, no_furniture: bool, **how: Any) -> Non
 @click.option(
     "--radius", type=float, default=RADIUS_M, show_default=True, metavar="M", help="Half the robot's width."
 )
-@click.option(
-    "--height-range",
-    "heights",
-    nargs=2,
-    type=float,
-    default=HEIGHTS_M,
-    show_default=True,
-    metavar="LOW HIGH",
-    help="What has a part between these heights above the floor [m] is in its way.",
-)
+@_height_range
 @_as_of
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @talks

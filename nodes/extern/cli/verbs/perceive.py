@@ -3,35 +3,51 @@
 from __future__ import annotations
 
 import io
-import math
-from collections.abc import Mapping
+import sys
+import time
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
-from rich.table import Table
 
-from nodes.extern.cli.calling import print_json
+from nodes.extern.cli.calling import complain, print_json
+from nodes.extern.cli.output.printable import say
 from nodes.extern.cli.output.show import console
-from nodes.extern.cli.output.tables import table
-from nodes.extern.files import write_atomically
+from nodes.extern.cli.output.show_perceived import as_records, as_table, show_frame
+from nodes.extern.files import read_label_map, write_atomically
 from nodes.runtime import extras
 from schemas import errors, wording
-from schemas.perception import Observation
+from schemas.perception import FrameRow
 
 if TYPE_CHECKING:
-    from nodes.perception_node.views.segmented_view import Sight
+    from nodes.perception_node.detector import Detector
 
+_SAY_S = 5.0
+"""After this time it is told again how far a dataset is."""
 _FRAMES = {"map": "map frame", "plane": "frame: the largest plane is z = 0, the camera above its origin"}
 
 
 @click.command()
-@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("files", metavar="[FILE...]", nargs=-1, type=click.Path(path_type=Path))
+@click.option(
+    "--frames",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="A dataset instead: each folder in it has rgb.png, depth.png [mm] and camera.json.",
+)
 @click.option(
     "--labels",
-    metavar="OUT.npy",
+    metavar="OUT",
     type=click.Path(path_type=Path),
-    help="Write the object label of each point to this .npy file.",
+    help="Write the object label of each point to this .npy file, or of each frame into this folder.",
+)
+@click.option(
+    "--json",
+    "rows",
+    metavar="OUT",
+    type=click.Path(path_type=Path),
+    help="With --frames: write a row for each frame to this file.",
 )
 @click.option(
     "--intrinsics",
@@ -39,39 +55,81 @@ _FRAMES = {"map": "map frame", "plane": "frame: the largest plane is z = 0, the 
     type=click.Path(path_type=Path),
     help="JSON file with fx, fy, cx, cy [pixel] and, optionally, depth_scale [m] and map_from_camera.",
 )
+@click.option(
+    "--masks",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Masks of a detector: COCO's JSON or a label image; with --frames, their name in each folder.",
+)
+@click.option(
+    "--label-map",
+    metavar="FILE.json",
+    type=click.Path(path_type=Path),
+    help='With --masks: what its labels are called here, {"coffee mug": "Cup"}.',
+)
+@click.option("--masks-only", is_flag=True, help="With --masks: find nothing but what they show.")
 @click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
-def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | None, format: str) -> None:
-    """Find the objects in point clouds or in depth images.
+def perceive(
+    files: tuple[Path, ...],
+    frames: Path | None,
+    labels: Path | None,
+    rows: Path | None,
+    intrinsics: Path | None,
+    masks: Path | None,
+    label_map: Path | None,
+    masks_only: bool,
+    format: str,
+) -> None:
+    """Find the objects in point clouds, depth images or whole datasets.
 
     Clouds are PCD or PLY files; images are one in colour and one of depth (PNG). Labels are integers in the
     cloud's own shape, (height, width), or (1, points) when it is not organised: 0 for background, 1 to n
     for the objects.
     """
+    extras.require("semmap perceive", "perception")
+    detector = _detector(masks, label_map, masks_only=masks_only)
+    if frames is not None:
+        if files or intrinsics is not None:
+            raise errors.BadRequest(
+                "--frames takes neither files nor --intrinsics; each frame has its own camera.json"
+            )
+        _dataset(frames, labels, rows, detector, format)
+        return
+    if rows is not None:
+        raise errors.BadRequest("--json goes with --frames; for files use --format json")
+    if not files:
+        raise errors.BadRequest("name at least one FILE, or a dataset with --frames DIR")
     if labels is not None and labels.suffix != ".npy":
         raise errors.BadRequest(
             f"labels are written as a NumPy array; name the file {labels.with_suffix('.npy').name}"
         )
-    extras.require("semmap perceive", "perception")
     import numpy as np  # half of what the command line would take to start
 
     from nodes.perception_node.input.files.cloud_files import read_frames
     from nodes.perception_node.pipeline import one_by_one, shipped
+    from nodes.perception_node.views.masked import with_masks
     from nodes.perception_node.views.segmented_view import see
 
-    frames = list(read_frames(files, intrinsics))
-    if labels is not None and len(frames) != 1:
-        raise errors.BadRequest(f"--labels takes one frame, and these are {len(frames)}")
+    clouds = list(read_frames(files, intrinsics))
+    for option, given in (("--labels", labels), ("--masks", masks)):
+        if given is not None and len(clouds) != 1:
+            raise errors.BadRequest(f"{option} takes one frame, and these are {len(clouds)}")
     records = []
-    for file, cloud in frames:
+    for file, cloud in clouds:
         sight = see(cloud)
-        told = one_by_one(sight, shipped())
+        if detector is not None:
+            masks_found = detector.masks_of(detector.file, sight.labels.shape)
+            if unknown_here := detector.labels.unknown([masks_found]):
+                complain(wording.unknown_labels(unknown_here))
+            sight = with_masks(sight, masks_found)
+        told = one_by_one(sight, shipped(), None if detector is None else detector.labels)
         frame = "plane" if cloud.map_from_camera is None else "map"
         if format == "json":
-            records.append({"file": str(file), "frame": frame, "objects": _records(sight, told)})
+            records.append({"file": str(file), "frame": frame, "objects": as_records(sight, told)})
         else:
             console().print(f"{file}: {wording.counted(len(told), 'object')}; {_FRAMES[frame]}")
             if told:
-                console().print(_rows(sight, told))
+                console().print(as_table(sight, told))
         if labels is not None:
             buffer = io.BytesIO()
             np.save(buffer, np.where(np.isin(sight.labels, list(sight.carriers)), 0, sight.labels))
@@ -82,30 +140,66 @@ def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | No
         print_json(records)
 
 
-def _counts(sight: Sight) -> dict[int, int]:
-    """How many points each label has."""
-    return {segment.label: segment.count for segment in sight.segments}
+def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -> Detector | None:
+    """What a detector of one's own has found."""
+    if masks is None:
+        if label_map is not None or masks_only:
+            raise errors.BadRequest("--label-map and --masks-only go with --masks")
+        return None
+    from nodes.perception_node.detector import Detector
+    from nodes.perception_node.recognition.shipped_votes import shipped
+    from nodes.perception_node.recognition.told_names import Labels
+
+    classes = read_label_map(label_map) if label_map is not None else {}
+    return Detector(masks, Labels(shipped(), classes), masks_only)
 
 
-def _records(sight: Sight, told: Mapping[int, Observation | None]) -> list[dict[str, Any]]:
-    """Each object for programs: its label, its points, and the observation; null for clutter."""
-    counts = _counts(sight)
-    return [
-        {"label": label, "points": counts[label], "observation": seen} for label, seen in sorted(told.items())
-    ]
+def _dataset(
+    folder: Path, labels: Path | None, out: Path | None, detector: Detector | None, format: str
+) -> None:
+    """What each frame of a dataset shows; what is wrong with one is told in its row, and the others go on."""
+    import msgspec
+    import numpy as np
+
+    from nodes.perception_node.datasets import perceived
+    from nodes.perception_node.input.files.frame_folders import frames_in
+    from nodes.perception_node.recognition.shipped_votes import shipped
+
+    folders = frames_in(folder)
+    if labels is not None:
+        try:
+            labels.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise errors.BadFile(f"{labels} cannot be made a folder of labels: {error.strerror}") from None
+    rows, unknown, said, began_s = [], set[str](), 0.0, time.monotonic()
+    for told in perceived(folders, shipped(), detector):
+        rows.append(told.row)
+        unknown.update(told.unknown_labels)
+        if labels is not None and told.labels is not None:
+            buffer = io.BytesIO()
+            np.save(buffer, told.labels)
+            write_atomically(labels / f"{told.row.frame}.npy", buffer.getvalue())
+        if out is None and format == "table":
+            show_frame(told.row)
+        elif time.monotonic() > said + _SAY_S:
+            said = time.monotonic()
+            say(f"semmap: {len(rows)} of {len(folders)} frames ({said - began_s:.0f} s)", file=sys.stderr)
+    if out is not None:
+        lines = b",\n".join(msgspec.json.encode(row) for row in rows)
+        write_atomically(out, b"[\n" + lines + b"\n]\n")
+    if unknown:
+        complain(wording.unknown_labels(sorted(unknown)))
+    if out is None and format == "json":
+        print_json(rows)
+        return
+    say(_summary(rows, time.monotonic() - began_s, [path for path in (out, labels) if path is not None]))
 
 
-def _rows(sight: Sight, told: Mapping[int, Observation | None]) -> Table:
-    """A row for each object: what it is taken for, and where the whole of it stands."""
-    columns = ("object", "class", "probability", "points", "x", "y", "z", "yaw", "size [m]")
-    rows = table(*columns, fold=("class", "size [m]"))
-    counts = _counts(sight)
-    for label, seen in sorted(told.items()):
-        words = [str(label), "?", "", str(counts[label])]
-        if seen is not None:
-            words[1:3] = [seen.class_, f"{seen.probability:.2f}"]
-            words += [f"{value:.3f}" for value in seen.pose.position_m]
-            words += [f"{math.degrees(seen.pose.yaw_rad):.0f}°"]
-            words += [" x ".join(f"{side:.3f}" for side in seen.size_m)]
-        rows.add(*words, *[""] * (len(columns) - len(words)))
-    return rows
+def _summary(rows: Sequence[FrameRow], took_s: float, written: Sequence[Path]) -> str:
+    bad = [row for row in rows if row.error]
+    objects = wording.counted(sum(len(row.objects) for row in rows), "object")
+    speed = f"{took_s:.1f} s ({len(rows) / took_s:.1f} frames/s)"
+    lines = [f"{wording.counted(len(rows), 'frame')}, {objects} in {speed}"]
+    if bad:
+        lines.append(f"{wording.counted(len(bad), 'frame')} could not be used, the first: {bad[0].error}")
+    return "\n".join([*lines, *(f"wrote {path}" for path in written)])

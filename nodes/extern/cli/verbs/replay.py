@@ -60,7 +60,8 @@ def replay(
     between its commits. The map itself is only read, and may be in use meanwhile.
 
     With --check the recorded commits are compared with those in the journal of
-    --data, or of the system at --connect, and the first difference is named.
+    --data, or of the system at --connect. The first difference is named, or the
+    commits that the recording lacks; the exit status is 1 then.
     """
     if what.is_dir():
         if check:

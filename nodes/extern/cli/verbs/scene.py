@@ -44,10 +44,14 @@ def move(client: Client, **fields: Any) -> None:
     "--at", metavar="X Y Z", help="Where, in the frame of what holds it [m].  [default: where it is]"
 )
 @yaw_option
+@carrying
 @click.option("--dry-run", is_flag=True, help="Only say what would be.")
 @talks
 def attach(client: Client, **fields: Any) -> None:
-    """Have an entity held by another until it is detached."""
+    """Have an entity held by another until it is detached.
+
+    With --carry, what stands on it or is inside it is taken along as it stands there, and is let go with it.
+    """
     print_lines(lines.changed(client.attach(**given(fields))))
 
 
@@ -56,7 +60,10 @@ def attach(client: Client, **fields: Any) -> None:
 @click.option("--dry-run", is_flag=True, help="Only say what would be.")
 @talks
 def detach(client: Client, name: str, dry_run: bool) -> None:
-    """Let go of an entity that something holds."""
+    """Let go of an entity that something holds.
+
+    What was taken along with it (--carry) is let go with it.
+    """
     print_lines(lines.changed(client.detach(name, dry_run=dry_run)))
 
 
@@ -101,6 +108,7 @@ def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
     metavar="X Y",
     help="A point of the floor [m]; several are driven through one after another.",
 )
+@frame_option("The frame of --to and --yaw, as it is at the start, instead of the map's")
 @yaw_option
 @click.option("--speed", type=float, default=0.4, show_default=True, help="At most so fast [m/s].")
 @click.option("--stop", is_flag=True, help="Stop where it is.")

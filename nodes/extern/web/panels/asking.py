@@ -7,16 +7,19 @@ from typing import Any, NamedTuple
 
 from nodes.extern.web.knowing import Knowing
 from nodes.extern.web.page import Page
-from nodes.extern.web.views.facts import Facts, facts
+from nodes.extern.web.views.facts import Facts, facts, followed
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import Command, History, Infer, LastSeen, Relations, Sparql, Tell
 from schemas.entities import Entity
-from schemas.explanations import Triple
+from schemas.relations import Relation
 from schemas.replies import LoggedCommit
 
 _WORDS = 120
 _COMMITS = 100
+_PATIENCE_S = 60.0
+"""For what followed in the past: the knowledge base works it out again, in a process of its own."""
+_QUERY_S = 30.0
 
 
 class Asked(NamedTuple):
@@ -26,12 +29,13 @@ class Asked(NamedTuple):
     facts: Facts
     commits: tuple[LoggedCommit, ...]
     last_seen: str
+    relations: tuple[Relation, ...]
     problems: tuple[str, ...]
     """What was not answered, and why, a sentence each."""
 
 
 async def ask(page: Page, knowing: Knowing, entity: Entity) -> Asked:
-    """Ask everything about a thing, of the moment that the page shows."""
+    """Ask about a thing at the moment that the page shows; of the past, all but what followed then."""
     commit, name = page.moment.commit, entity.name
     problems: list[str] = []
 
@@ -44,32 +48,34 @@ async def ask(page: Page, knowing: Knowing, entity: Entity) -> Asked:
             return None
 
     is_now = commit is None
-    relations, commits, told, seen, follows = await asyncio.gather(
+    relations, commits, told, seen, inferred = await asyncio.gather(
         answer(Relations(name=name, as_of=commit)),
         answer(History(name=name, until=commit, limit=_COMMITS)),
         answer(Tell(name=name, words=_WORDS) if is_now else None),
         answer(LastSeen(name=name) if is_now else None),
-        _follows(answer, entity, commit),
+        answer(Infer(name=name) if is_now else None),
     )
+    follows = () if inferred is None else inferred.triples
+    relations = tuple(relations or ())
     return Asked(
         told="" if told is None else told.text,
-        facts=facts(entity, knowing.properties, follows, relations or (), knowing.words),
+        facts=facts(entity, knowing.properties, follows, relations, knowing.words),
         commits=commits or (),
         last_seen="" if seen is None else seen.text,
+        relations=relations,
         problems=tuple(dict.fromkeys(problems)),
     )
 
 
-async def _follows(answer: Any, entity: Entity, commit: int | None) -> tuple[Triple, ...]:
-    """What follows about it; of the past, all that held and was not asserted."""
-    if commit is None:
-        inferred = await answer(Infer(name=entity.name))
-        return () if inferred is None else tuple(inferred.triples)
+async def with_what_followed(
+    page: Page, knowing: Knowing, entity: Entity, asked: Asked, commit: int
+) -> Asked:
+    """The same with what followed after a commit of the past. Raises SemmapError."""
     iri = v.iri(entity.iri)
     query = f"SELECT ?p ?o {{ {iri} ?p ?o }}"
-    held = await answer(Sparql(query=query, inferred=True, as_of=commit))
-    said = await answer(Sparql(query=query, as_of=commit))
-    if held is None or said is None:
-        return ()
-    asserted = set(said.rows)
-    return tuple((iri, *row) for row in held.rows if row not in asserted and None not in row)
+    held = await page.live.ask(
+        Sparql(query=query, inferred=True, as_of=commit, timeout=_QUERY_S), _PATIENCE_S
+    )
+    triples = [(iri, p, o) for p, o in held.rows if p is not None and o is not None]
+    follows = followed(entity, triples)
+    return asked._replace(facts=facts(entity, knowing.properties, follows, asked.relations, knowing.words))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import Final
 
 from nicegui import ui
@@ -15,11 +16,15 @@ from nodes.extern.web.panels.history import history
 from nodes.extern.web.panels.states import States
 from nodes.extern.web.panels.view import Touched, View
 from nodes.extern.web.views.past import provenance
+from schemas import errors
 from schemas.entities import Entity
 from schemas.errors import shortened
 
 _LATER_S: Final = 0.4
 _LONGEST: Final = 2000
+_SETTLED_S: Final = 0.5
+"""So long a moment of the past is shown before what followed then is asked for: it takes seconds."""
+_WORKING: Final = "Being worked out again, as of that commit ..."
 
 
 def detail(page: Page) -> None:
@@ -89,7 +94,7 @@ class _Detail:
             self._who = ui.column().classes("w-full gap-1")
         past.value = True
         self._edit = Edit(page, entity) if page.may("update") else None
-        self._drawn: asking.Asked | None = None
+        self._drawn: tuple[asking.Asked, str] | None = None
         self._show_entity(entity)
         page.later(self._ask(entity))
 
@@ -98,7 +103,7 @@ class _Detail:
         names = self._present()
         if names != self._of:
             self._draw()
-        elif len(names) == 1:
+        elif len(names) == 1 and self._page.moment.is_now:  # the past does not change
             entity = self._page.state.entities[names[0]]
             self._show_entity(entity)
             self._page.later(self._ask(entity))
@@ -136,20 +141,36 @@ class _Detail:
     async def _ask(self, entity: Entity) -> None:
         """What is to be asked about it, drawn when it is answered, if it is still looked at."""
         self._asked_for += 1
-        number = self._asked_for
+        number, commit = self._asked_for, self._page.moment.commit
         found = await asking.ask(self._page, self._view.knowing, entity)
-        if number != self._asked_for or self._of != (entity.name,):
+        self._show(entity.name, number, found, "" if commit is None else _WORKING)
+        if commit is None:
             return
-        before, self._drawn = self._drawn, found
+        await asyncio.sleep(_SETTLED_S)
+        if number != self._asked_for:
+            return
+        pending = ""
+        try:
+            found = await asking.with_what_followed(self._page, self._view.knowing, entity, found, commit)
+        except errors.SemmapError as error:
+            pending = f"What followed then is not known: {error.text}"
+        self._show(entity.name, number, found, pending)
+
+    def _show(self, name: str, number: int, found: asking.Asked, pending: str) -> None:
+        """Draw what was answered; `pending` says why what is inferred is not among it."""
+        if number != self._asked_for or self._of != (name,):
+            return
+        before, self._drawn = self._drawn, (found, pending)
         self._words.text = shortened(found.told, _LONGEST)
         self._words.set_visibility(bool(found.told))
-        if before is None or before.facts != found.facts:
+        if before is None or (before[0].facts, before[1]) != (found.facts, pending):
             self._facts.clear()
             with self._facts:
-                fact_list(self._page, found.facts)
-        if before is None or (before.commits, before.last_seen) != (found.commits, found.last_seen):
+                fact_list(self._page, found.facts, pending)
+        past = (found.commits, found.last_seen, found.problems)
+        if before is None or (before[0].commits, before[0].last_seen, before[0].problems) != past:
             self._past.clear()
             with self._past:
-                history(self._page, entity.name, found.commits, found.last_seen)
+                history(self._page, name, found.commits, found.last_seen)
                 for problem in found.problems:
                     ui.label(problem).classes("semmap-doubt")

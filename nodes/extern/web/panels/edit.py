@@ -108,13 +108,9 @@ async def _delete(page: Page) -> None:
 async def _move(page: Page, names: tuple[str, ...], by: list[float | None]) -> None:
     there = [page.live.entities[name] for name in names if name in page.live.entities]
     try:
-        commands = forms.offset(there, by)
+        command = forms.offset(there, by)
     except errors.BadRequest as error:
         page.tell(error.text, "warning")
         return
-    done = 0
-    for command in commands:
-        if await page.change(command) is None:
-            break
-        done += 1
-    page.tell(f"moved {done} of {len(names)}", "positive" if done == len(names) else "warning")
+    if (done := await page.change(command)) is not None:
+        page.tell(done.text, "positive")

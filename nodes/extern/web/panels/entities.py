@@ -14,25 +14,27 @@ from nodes.extern.web.views.forms import class_choices
 
 _BY: Final = "entities"
 _COLUMNS: Final = (
-    {"field": "name", "headerName": "Name", "width": 120, "sort": "asc", "pinned": "left"},
-    {"field": "called", "headerName": "Called", "width": 130},
-    {"field": "class", "headerName": "Class", "width": 120},
-    {"field": "room", "headerName": "Room", "width": 110},
-    {"field": "on", "headerName": "On or in", "width": 110},
-    {"field": "x", "headerName": "x [m]", "width": 80, "type": "rightAligned"},
-    {"field": "y", "headerName": "y [m]", "width": 80, "type": "rightAligned"},
-    {"field": "z", "headerName": "z [m]", "width": 80, "type": "rightAligned"},
-    {"field": "yaw", "headerName": "Yaw [°]", "width": 90, "type": "rightAligned"},
-    {"field": "body", "headerName": "Body", "width": 130},
+    {"field": "name", "headerName": "Name", "flex": 12, "sort": "asc"},
+    {"field": "called", "headerName": "Called", "flex": 11, "hide": True},
+    {"field": "class", "headerName": "Class", "flex": 10},
+    {"field": "room", "headerName": "Room", "flex": 10},
+    {"field": "on", "headerName": "On or in", "flex": 10, "hide": True},
+    {"field": "x", "headerName": "x [m]", "flex": 6, "type": "rightAligned", "hide": True},
+    {"field": "y", "headerName": "y [m]", "flex": 6, "type": "rightAligned", "hide": True},
+    {"field": "z", "headerName": "z [m]", "flex": 6, "type": "rightAligned", "hide": True},
+    {"field": "yaw", "headerName": "Yaw [°]", "flex": 7, "type": "rightAligned", "hide": True},
+    {"field": "body", "headerName": "Body", "flex": 10, "hide": True},
 )
+"""They share the width that there is; those that are hidden are shown when there is more of it."""
+_FURTHER: Final = [column["field"] for column in _COLUMNS if column.get("hide")]
 _OPTIONS: Final = {
     "columnDefs": list(_COLUMNS),
-    "defaultColDef": {"resizable": True, "sortable": True, "suppressMovable": True},
+    "defaultColDef": {"resizable": True, "sortable": True, "suppressMovable": True, "minWidth": 40},
     "rowData": [],
     ":getRowId": "(row) => row.data.name",
     ":getRowClass": "(row) => (window.semmapMarks ?? {})[row.data?.name]",
     "rowSelection": {"mode": "multiRow", "enableClickSelection": True, "headerCheckbox": True},
-    "selectionColumnDef": {"width": 40, "pinned": "left"},
+    "selectionColumnDef": {"width": 40},
     "rowHeight": 30,
     "headerHeight": 34,
     "animateRows": False,
@@ -40,6 +42,7 @@ _OPTIONS: Final = {
     "localeText": {"noRowsToShow": "No entity fits."},
     ":onGridReady": "(grid) => { const table = document.querySelector('.entity-table [role=grid]');"
     " if (table) table.setAttribute('aria-label', 'Entities'); }",
+    ":onFirstDataRendered": "() => semmapBeginScene()",
 }
 _CHOSEN_BY_HAND: Final = (
     "(event) => { if (!/^(api|rowData|rowGroup|selectable|gridInit)/.test(event.source))"
@@ -73,6 +76,7 @@ class _Entities:
         self._page, self._view = page, View.of(page)
         self._shown: dict[str, Cells] = {}
         self._is_ready = False
+        self._is_wide = False
         self._marked: dict[str, str] = {}
         with ui.column().classes("w-full gap-1 no-wrap").style("height: 100%; min-height: 320px"):
             self._draw_filter()
@@ -107,11 +111,17 @@ class _Entities:
             self._bearer = self._choice("On or in", "bearer")
         with ui.row().classes("w-full items-center justify-between no-wrap").style("min-height: 28px"):
             self._count = ui.label().classes("text-caption").props('role="status"')
+            ui.space()
             self._clear = (
                 ui.button("Show all", on_click=self._show_all)
                 .props("flat dense size=sm no-caps")
                 .classes("q-px-sm")
             )
+            self._more = ui.button(icon="view_column", on_click=self._turn_wide).classes("semmap-wide")
+            self._more.props(
+                'flat dense round size=sm color=secondary aria-label="All columns" aria-pressed=false'
+            )
+            self._more.tooltip("All columns, or those that most want")
 
     def _choice(self, label: str, field: str) -> ui.select:
         def choose(event: Any) -> None:
@@ -124,6 +134,15 @@ class _Entities:
             .style("flex-basis: 0; min-width: 0")
             .on_value_change(choose)
         )
+
+    def _turn_wide(self) -> None:
+        """Show all columns, where there is room for them, or the few."""
+        self._is_wide = not self._is_wide
+        if self._page.widen is not None:
+            self._page.widen(self._is_wide)
+        self._more.props(f"aria-pressed={str(self._is_wide).lower()}")
+        self._more.props(f"color={'primary' if self._is_wide else 'secondary'}")
+        self._grid.run_grid_method("setColumnsVisible", _FURTHER, self._is_wide)
 
     # What is there
 

@@ -16,13 +16,20 @@ from schemas.commands import Explain, Unset
 _MOST: Final = 40
 _TIME_S: Final = 15.0
 _LONGEST: Final = 1000
+_OF_THE_PAST: Final = "Only the present can be asked why: there are no proofs of the past."
 
 
-def fact_list(page: Page, facts: Facts) -> None:
-    """Draw it where it is called."""
+def fact_list(page: Page, facts: Facts, pending: str = "") -> None:
+    """Draw it where it is called. `pending` says why what is inferred is not there; empty if it is."""
     _group(page, "Asserted", "what somebody said", facts.asserted, is_open=True)
-    _group(page, "Inferred", "what follows", facts.inferred, is_open=len(facts.inferred) <= 15)
+    if pending:
+        ui.label("Inferred: what follows").classes("semmap-title q-pt-sm q-px-md")
+        ui.label(pending).classes("semmap-sentence q-px-md").props('role="status"')
+    else:
+        _group(page, "Inferred", "what follows", facts.inferred, is_open=len(facts.inferred) <= 15)
     _group(page, "Computed", "what is measured", facts.computed, is_open=len(facts.computed) <= 10)
+    if not page.moment.is_now:
+        ui.label(_OF_THE_PAST).classes("semmap-quiet q-px-md")
 
 
 def _group(page: Page, title: str, what: str, facts: tuple[Fact, ...], *, is_open: bool) -> None:
@@ -59,10 +66,11 @@ def _fact(page: Page, fact: Fact) -> None:
             ui.button(icon="near_me", on_click=lambda: page.select([other], by="detail")).props(
                 "flat round dense size=sm"
             ).props["aria-label"] = f"Select {other}"
-        if fact.taken_back is not None and page.may("unset") and fact.why is not None:
+        if fact.why is None or not page.moment.is_now:
+            return
+        if fact.taken_back is not None and page.may("unset"):
             _take_back(page, fact.why.name, *fact.taken_back)
-        if fact.why is not None and page.moment.is_now:
-            _why(page, fact, fact.why)
+        _why(page, fact, fact.why)
 
 
 def _take_back(page: Page, name: str, property_: str, value: object) -> None:

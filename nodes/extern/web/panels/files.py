@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import Final, get_args
 
 from nicegui import events, ui
@@ -13,6 +14,7 @@ from nodes.extern.web.views.uploads import (
     LARGEST,
     megabytes,
     refusal,
+    spatial_roots,
     takes_long,
     too_large,
 )
@@ -55,6 +57,10 @@ class _Loading:
                 self._replace = ui.checkbox("In place of what is there", on_change=self._again)
                 self._skip = ui.checkbox("Leave out unknown classes", on_change=self._again)
                 self._tbox = ui.checkbox("It is the ontology (TBox)", on_change=self._again)
+            self._roots = ui.input("Classes of things in space").props("dense outlined clearable")
+            self._roots.classes("w-full").on("keydown.enter", self._rooted).on("blur", self._rooted)
+            self._roots.tooltip("By IRI or name, where the ontology does not tell by itself")
+            self._roots.bind_visibility_from(self._tbox, "value")
             self._upload = ui.upload(
                 label="Choose a file, or drop it here",
                 auto_upload=True,
@@ -89,13 +95,18 @@ class _Loading:
         if sentence := refusal(file.name, file.size(), beginning):
             self._error.text = sentence
             return
-        content = packed(await file.read())
+        content = await asyncio.to_thread(packed, await file.read())
         self._tried = Load(content=content, filename=file.name)
         await self._try()
 
     async def _again(self) -> None:
         """Another way to load the same file."""
         if self._tried is not None:
+            await self._try()
+
+    async def _rooted(self) -> None:
+        """Other classes are said to be of things in space."""
+        if self._tried is not None and spatial_roots(self._roots.value) != self._tried.spatial_root:
             await self._try()
 
     async def _try(self) -> None:
@@ -106,6 +117,7 @@ class _Loading:
             replace=bool(self._replace.value),
             skip_unknown=bool(self._skip.value),
             tbox=bool(self._tbox.value),
+            spatial_root=spatial_roots(self._roots.value) if self._tbox.value else (),
             dry_run=True,
         )
         name, size = self._tried.filename, len(self._tried.content)
@@ -135,6 +147,7 @@ class _Loading:
                 replace=tried.replace,
                 skip_unknown=tried.skip_unknown,
                 tbox=tried.tbox,
+                spatial_root=tried.spatial_root,
                 reason=f"loaded {tried.filename}"[:1000],
             )
             reply = await self._page.change(wanted, _TIMEOUT_S)
@@ -161,7 +174,7 @@ def _exporting(page: Page) -> None:
         of = ui.label().classes("text-caption")
         syntax = ui.select(dict(_FORMATS), value="turtle", label="Format").props("dense outlined")
         syntax.classes("w-full").mark("export-format")
-        inferred = ui.checkbox("With what follows").tooltip("Also what is inferred")
+        inferred = ui.checkbox("With what follows").tooltip("Also what is inferred and measured")
         error = ui.label().classes("text-negative whitespace-pre-wrap").props('role="alert"')
 
         async def export() -> None:
@@ -184,9 +197,6 @@ def _exporting(page: Page) -> None:
         def show() -> None:
             moment = "as it is now" if page.moment.is_now else f"as it was after commit {page.state.commit}"
             of.text = f"The map {moment}"
-            inferred.set_enabled(page.moment.is_now)
-            if not page.moment.is_now:
-                inferred.value = False
 
         page.on_change(show)
         show()

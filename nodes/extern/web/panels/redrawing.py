@@ -22,14 +22,14 @@ class Redrawing:
         self._draw = draw
         self._is_stale = True
         self._is_busy = False
-        self._within = tuple(_within())
+        self._is_in_view = in_view()
         page.on_turn(self._begin)
         self._begin()
 
     @property
     def is_shown(self) -> bool:
         """Is all that it is in visible?"""
-        return all(element.visible for element in self._within)
+        return self._is_in_view()
 
     def stale(self, *_: object) -> None:
         """What it shows is no longer so."""
@@ -49,6 +49,12 @@ class Redrawing:
                 await asyncio.sleep(_PAUSE_S)
         finally:
             self._is_busy = False
+
+
+def in_view() -> Callable[[], bool]:
+    """To be called where something is drawn: what is returned tells whether all that it is in is visible."""
+    within = tuple(_within())
+    return lambda: all(element.visible for element in within)
 
 
 def _within() -> Iterator[ui.element]:

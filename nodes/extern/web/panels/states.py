@@ -75,24 +75,18 @@ def states_in_common(page: Page, entities: tuple[Entity, ...]) -> None:
 
 def _sender(page: Page, names: tuple[str, ...], state: State) -> Callable[[Any], Any]:
     async def send(entered: Any) -> None:
-        done = 0
-        for name in names:
-            entity = page.live.entities.get(name)
-            now = None if entity is None else entity.properties.get(state.name)
-            try:
-                command = forms.state(name, state._replace(now=now), entered)
-            except errors.BadRequest as error:
-                page.tell(error.text, "warning")
-                return
-            if command is None:
-                continue
-            if (reply := await page.change(command)) is None:
-                return
-            done += 1
-            if len(names) == 1:
-                page.tell(reply.text, "positive")
-        if len(names) > 1:
-            page.tell(f"{state.label}: set of {done} of {len(names)}", "positive")
+        there = [page.live.entities[name] for name in names if name in page.live.entities]
+        now = {entity.name: entity.properties.get(state.name) for entity in there}
+        try:
+            command = forms.states(state, entered, now)
+        except errors.BadRequest as error:
+            page.tell(error.text, "warning")
+            return
+        if command is None:
+            return
+        single = command.changes[0] if len(names) == 1 else command
+        if (reply := await page.change(single)) is not None:
+            page.tell(reply.text, "positive")
 
     return send
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
 from msgspec import structs
 from nicegui import ui
@@ -17,6 +18,8 @@ from schemas import errors
 
 log = logging.getLogger(__name__)
 
+_SETTLED_S: Final = 0.3
+"""So long a moment of the past is shown before it is asked where everything was then: it takes seconds."""
 _VIEWS: dict[str, View] = {}
 """By tab, as long as it is open."""
 Touched = frozenset[str] | None
@@ -109,6 +112,9 @@ class View:
             self.page.later(self._fetch_past(commit))
 
     async def _fetch_past(self, commit: int) -> None:
+        await asyncio.sleep(_SETTLED_S)
+        if self.page.moment.commit != commit:
+            return
         try:
             past = await self.knowing.at(commit)
         except errors.SemmapError as error:

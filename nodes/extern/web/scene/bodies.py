@@ -10,7 +10,7 @@ import numpy as np
 from viser import BatchedGlbHandle, BatchedMeshHandle, SceneApi
 
 from nodes.extern.web.scene.meshes import cube, opacity_of
-from nodes.extern.web.scene.shown import BOX, Batch, Key, Shown, batches
+from nodes.extern.web.scene.shown import BOX, Batch, Key, Shown, batch_of, by_key
 from schemas.entities import Pose
 
 _MANY: Final = 400
@@ -28,21 +28,25 @@ class Bodies:
         self._glb_of = glb_of
         self._path = path
         self._batches: dict[Key, Batch] = {}
+        self._shown: dict[Key, Mapping[str, Shown]] = {}
+        """What the batches were made of, of those that have not been moved since."""
         self._handles: dict[Key, Handle] = {}
         self._rows: dict[str, tuple[Key, int]] = {}
         self._numbers = count()
 
     def show(self, things: Mapping[str, Shown]) -> None:
         """Show these, and nothing else."""
-        wanted = batches(things)
+        wanted, is_many = by_key(things), len(things) > _MANY
         for key in self._batches.keys() - wanted.keys():
             self._handles.pop(key).remove()
-        for key, batch in wanted.items():
-            self._set(key, batch, many=len(things) > _MANY)
-        self._batches = wanted
-        self._rows = {
-            name: (key, row) for key, batch in wanted.items() for row, name in enumerate(batch.names)
-        }
+            del self._batches[key]
+            self._shown.pop(key, None)
+        for key, some in wanted.items():
+            if not _are_same(self._shown.get(key), some):
+                batch = batch_of(some)
+                self._set(key, batch, many=is_many)
+                self._batches[key], self._shown[key] = batch, some
+        self._rows = {name: (key, row) for key, some in wanted.items() for row, name in enumerate(some)}
 
     def move(self, poses: Mapping[str, Pose]) -> None:
         """Put those that are shown where they are now."""
@@ -55,6 +59,7 @@ class Bodies:
                 batch.wxyzs[row] = pose.orientation_wxyz
                 moved.add(key)
         for key in moved:
+            self._shown.pop(key, None)
             self._send(self._handles[key], self._batches[key])
 
     def _set(self, key: Key, batch: Batch, *, many: bool) -> None:
@@ -101,6 +106,13 @@ class Bodies:
                 name, self._glb_of(key), lod="auto" if many else "off", **common
             )
         return handle
+
+
+def _are_same(before: Mapping[str, Shown] | None, now: Mapping[str, Shown]) -> bool:
+    """The very same things, in the same order? What has not changed is not made anew."""
+    if before is None or len(before) != len(now):
+        return False
+    return all(a is b for a, b in zip(before.values(), now.values(), strict=True)) and [*before] == [*now]
 
 
 def _is_like(before: Batch, now: Batch) -> bool:

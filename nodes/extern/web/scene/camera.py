@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -113,31 +114,31 @@ def uncrowded(
     if not labels:
         return []
     keys, ranks = list(labels), {key: rank for rank, key in enumerate(first)}
-    chosen: list[str] = []
-    taken: list[tuple[float, float, float, float]] = []
     at = view.project(np.array([place for _, place in labels.values()], dtype=float))
-    for row in sorted(range(len(keys)), key=lambda row: (ranks.get(keys[row], len(ranks)), at[row, 2])):
-        x, y, ahead = (float(value) for value in at[row])
-        if ahead <= _NEAREST_M or not (0.0 <= x <= view.width and 0.0 <= y <= view.height):
-            continue
-        half = _width_px(labels[keys[row]][0]) / 2.0 + 5.0
-        box = (x - half, y - _LABEL_PX, x + half, y)
-        if any(_overlap(box, other) for other in taken):
-            continue
-        taken.append(box)
-        chosen.append(keys[row])
-        if len(chosen) >= most:
-            break
+    x, y, ahead = at.T
+    halves = np.array([_width_px(text) / 2.0 + 5.0 for text, _ in labels.values()])
+    is_whole = (x >= halves) & (x <= view.width - halves)  # not cut off at an edge
+    rows = np.flatnonzero((ahead > _NEAREST_M) & is_whole & (y >= 0.0) & (y <= view.height))
+    order = [ranks.get(keys[row], len(ranks)) for row in rows]
+    rows = rows[np.lexsort((ahead[rows], order))]
+    half = halves[rows]
+    left, right, top = x[rows] - half, x[rows] + half, y[rows] - _LABEL_PX
+    chosen: list[str] = []
+    is_free = np.ones(len(rows), dtype=bool)
+    while is_free.any() and len(chosen) < most:
+        this = int(is_free.argmax())
+        chosen.append(keys[rows[this]])
+        beside = (left >= right[this]) | (right <= left[this])
+        above = np.abs(top - top[this]) >= _LABEL_PX  # or below: all are as high
+        is_free &= beside | above
+        is_free[this] = False
     return chosen
 
 
+@lru_cache(maxsize=8192)
 def _width_px(text: str) -> float:
     """About how wide a text is written; rooms have capitals, and larger ones."""
     return sum(_CAPITAL_PX if letter.isupper() else _LETTER_PX for letter in text)
-
-
-def _overlap(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> bool:
-    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
 def _vector(row: Floats) -> Vector:

@@ -7,6 +7,7 @@ from typing import Final
 from nicegui import ui
 
 from nodes.extern.web.page import Page
+from nodes.extern.web.panels.redrawing import in_view
 from nodes.extern.web.proxy import PATH
 from nodes.extern.web.scene.tab import SWITCHES, Switch, TabScene
 
@@ -24,6 +25,7 @@ _ICONS: Final[dict[Switch, str]] = {
 
 def scene(page: Page, tab: TabScene) -> None:
     """Draw it where it is called."""
+    tab.is_in_view = in_view()
     frame = ui.element("iframe").props(f'src="{PATH}/{page.id}/" title="The scene in three dimensions"')
     with ui.element("div").classes("semmap-scene-tools").props('role="toolbar" aria-label="The scene"'):
         for name in SWITCHES:

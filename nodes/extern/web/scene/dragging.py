@@ -32,6 +32,10 @@ class Gizmo:
         self._is_open = is_open
         self._handles: tuple[TransformControlsHandle, ...] = ()
         self._pose: Pose | None = None
+        self._shown = 0
+        """How often it has been shown: part of its handles' names, so that none is used twice. A browser that
+        is told at once to remove a node and to add one of the same name leaves it turned as it was, and an
+        orientation that is the identity is not sent."""
 
     @property
     def is_shown(self) -> bool:
@@ -46,9 +50,10 @@ class Gizmo:
         self._pose = upright
         if not self._handles:
             scale = arm_m(size_m)
+            self._shown += 1
             self._handles = (
-                self._add("/gizmo/level", scale, (True, True, False)),
-                self._add("/gizmo/lift", scale, (False, False, True)),
+                self._add(f"/gizmo/level/{self._shown}", scale, (True, True, False)),
+                self._add(f"/gizmo/lift/{self._shown}", scale, (False, False, True)),
             )
         for handle in self._handles:
             handle.position = upright.position_m

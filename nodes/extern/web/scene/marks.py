@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import count
 
@@ -16,6 +17,7 @@ Rgb = tuple[int, int, int]
 Segments = NDArray[np.float32]
 Written = tuple[str, Vector]
 """A text and where it is written [m], map frame."""
+_STAYS_M = 1e-3
 
 
 class Labels:
@@ -24,7 +26,7 @@ class Labels:
     def __init__(self, scene: SceneApi, path: str, *, scale: float = 1.0, depth_test: bool = False) -> None:
         self._scene, self._path = scene, path
         self._scale, self._depth_test = scale, depth_test
-        self._drawn: dict[str, tuple[LabelHandle, str]] = {}
+        self._drawn: dict[str, tuple[LabelHandle, str, Vector]] = {}
         self._numbers = count()
 
     def show(self, wanted: Mapping[str, Written]) -> None:
@@ -34,12 +36,13 @@ class Labels:
         for key, (text, at) in wanted.items():
             found = self._drawn.get(key)
             if found is not None and found[1] == text:
-                if not np.allclose(found[0].position, at, atol=1e-3):
+                if math.dist(found[2], at) > _STAYS_M:
                     found[0].position = at
+                    self._drawn[key] = (found[0], text, at)
                 continue
             if found is not None:
                 found[0].remove()
-            self._drawn[key] = (self._add(text, at), text)
+            self._drawn[key] = (self._add(text, at), text, at)
 
     def _add(self, text: str, at: Vector) -> LabelHandle:
         return self._scene.add_label(

@@ -15,10 +15,10 @@ from schemas.scenes import Surface
 
 _SHEET_M = 0.01
 _ROOMS_IN_ROOM = 2
-_LIGHT, _DARK = 1.0, 0.03
-"""The background, as linear light."""
+_LIGHT, _DARK = 0.12, 0.03
+"""What floors are toned down with, as linear light: less than a light background has, for lamps add to it."""
 _PALE = 0.6
-"""How much of a room's colour is the background's."""
+"""How much of a room's colour that takes the place of."""
 
 
 class Rooms:

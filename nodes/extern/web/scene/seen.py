@@ -30,7 +30,7 @@ What = Literal["observations", "cloud", "cameras"]
 _PICTURE_PX: Final = 320
 _PICTURE_S: Final = 0.5
 """A camera's picture is shown no more often."""
-_FRUSTUM_M: Final = 0.25
+_FRUSTUM_M: Final = 0.6
 _POINT_M: Final = 0.008
 
 
@@ -92,7 +92,7 @@ class Seen:
         self._boxes.show(
             [(edges_of(one.pose, one.size_m), colour_of(one.class_)) for one in seen.observations]
         )
-        self._labels.show({str(i): (_label(one), _top(one)) for i, one in enumerate(seen.observations)})
+        self._labels.show({str(i): (_label(one), _middle(one)) for i, one in enumerate(seen.observations)})
 
     def _show_cloud(self, cloud: SegmentedCloud) -> None:
         if "cloud" in self._stops:
@@ -188,6 +188,7 @@ def _label(one: Observation) -> str:
     return f"{one.entity}: {said}" if one.entity else said
 
 
-def _top(one: Observation) -> Vector:
+def _middle(one: Observation) -> Vector:
+    """Not above it, where the entity's name is."""
     x, y, z = one.pose.position_m
-    return (x, y, z + one.size_m[2] + 0.02)
+    return (x, y, z + one.size_m[2] / 2.0)

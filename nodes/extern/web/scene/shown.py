@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import Final
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from nodes.drawing.bending import Bends
 from nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of
 from nodes.drawing.palette import GREY, colour_of
+from nodes.drawing.surfaces import look_of
 from nodes.extern.web.scene.meshes import Look, linear, srgb, veiled
 from schemas.entities import Entity, Pose, Size
 from schemas.joints import JOINT_POSITIONS, positions_of
@@ -74,7 +75,7 @@ def shown(
     pose = pose or pose_of(entity, body)
     if figure is None or pose is None or figure.look == "place":
         return None
-    model = body.model if body is not None else _model_of(entity)
+    model = look_of(body) if body is not None else _model_of(entity)
     size_m = figure.size_m
     if not model or surface_of(model, size_m) is None:
         model = BOX
@@ -110,20 +111,23 @@ def _model_of(entity: Entity | None) -> str:
     return entity.body.model if entity.body is not None and entity.body.model else entity.model
 
 
-def batches(things: Mapping[str, Shown]) -> dict[Key, Batch]:
-    """Everything that is shown, by key; the names of a batch are in the order of `things`."""
-    names: dict[Key, list[str]] = {}
+def by_key(things: Mapping[str, Shown]) -> dict[Key, dict[str, Shown]]:
+    """Everything that is shown, by key and by name, in the order of `things`."""
+    found: dict[Key, dict[str, Shown]] = {}
     for name, thing in things.items():
-        names.setdefault(thing.key, []).append(name)
-    return {key: _batch(some, [things[name] for name in some]) for key, some in names.items()}
+        found.setdefault(thing.key, {})[name] = thing
+    return found
 
 
-def _batch(names: Iterable[str], things: list[Shown]) -> Batch:
-    rgb = np.array([thing.rgb for thing in things], dtype=np.uint8)
+def batch_of(things: Mapping[str, Shown]) -> Batch:
+    """Things of one key as rows, in their order."""
+    several = things.values()
+    rgb = np.array([thing.rgb for thing in several], dtype=np.uint8)
+    (look,) = {thing.look for thing in several}
     return Batch(
-        names=tuple(names),
-        positions=np.array([thing.pose.position_m for thing in things], dtype=np.float32),
-        wxyzs=np.array([thing.pose.orientation_wxyz for thing in things], dtype=np.float32),
-        sizes=np.array([thing.size_m for thing in things], dtype=np.float32),
-        colours=srgb(veiled(linear(rgb), things[0].look)),
+        names=tuple(things),
+        positions=np.array([thing.pose.position_m for thing in several], dtype=np.float32),
+        wxyzs=np.array([thing.pose.orientation_wxyz for thing in several], dtype=np.float32),
+        sizes=np.array([thing.size_m for thing in several], dtype=np.float32),
+        colours=srgb(veiled(linear(rgb), look)),
     )

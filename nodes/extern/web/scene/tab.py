@@ -55,6 +55,8 @@ _CHANGED: Final[dict[Mark, Rgb]] = {
 _SKY: Final[Rgb] = (255, 255, 255)
 _GROUND: Final[Rgb] = (190, 180, 170)
 _LABELS_S: Final = 0.25
+_AFTER_S: Final = 0.03
+"""So long after the panels the scene follows a change: they are a matter of a moment, and it may not be."""
 _MODIFIERS: Final = (None, "shift", "cmd/ctrl", "cmd/ctrl+shift")
 _TOLD_S: Final = 0.2
 """After so long it is known that a body stands where it was put."""
@@ -88,10 +90,17 @@ class TabScene:
         self._asked = 0
         self._dragging = ""
         self._picking: asyncio.Future[Place | None] | None = None
-        self._labels_due = False
+        self._labelling: asyncio.TimerHandle | None = None
+        self._drawing: asyncio.TimerHandle | None = None
+        self._rendering: list[asyncio.TimerHandle] = []
+        self._is_stale = False
+        """Something has changed while it was out of view."""
+        self.is_in_view: Callable[[], bool] = lambda: True
+        """Is the view that its frame is in the one that the tab shows? Set by who makes the frame."""
         self._camera: tuple[Any, ...] | None = None
         """The last camera of this tab, for a frame that has to connect again."""
-        page.on_change(self._draw)
+        page.on_change(self._draw_soon)
+        page.on_turn(self._on_turn)
         page.on_poses(self._on_poses)
         page.on_select(self._on_select)
         page.on_look(self._on_look)
@@ -133,6 +142,8 @@ class TabScene:
         """The frame of this client has gone; what was half done is not done."""
         if self._client is not None and self._client.client_id == client_id:
             self._client = None
+            _cancel(self._drawing, self._labelling, *self._rendering)
+            self._drawing = self._labelling = None
             self._dragging = ""
             self._seen.close()
             self._end_picking(None)
@@ -228,7 +239,26 @@ class TabScene:
             wanted[self._dragging] = structs.replace(thing, look="ghost")
         return wanted
 
+    def _draw_soon(self) -> None:
+        """After a change: when the panels have been told, and in view; changes until then go in one."""
+        if self._client is None or self._is_put_off():
+            return
+        if self._drawing is None:
+            self._drawing = self._loop.call_later(_AFTER_S, self._draw)
+
+    def _is_put_off(self) -> bool:
+        """Is it out of view? Then it is drawn when it comes into view."""
+        self._is_stale = self._is_stale or not self.is_in_view()
+        return self._is_stale
+
+    def _on_turn(self) -> None:
+        if self._is_stale and self.is_in_view():
+            self._is_stale = False
+            self._draw()
+
     def _draw(self) -> None:
+        _cancel(self._drawing)
+        self._drawing = None
         if self._client is None:
             return
         self._things = self._wanted()
@@ -243,10 +273,10 @@ class TabScene:
         self._known.clear()
         if self._client is not None:
             self._rooms.walls(self._assets.walls if "walls" in self.on else None)
-        self._draw()
+        self._draw_soon()
 
     def _on_poses(self, names: tuple[str, ...]) -> None:
-        if self._client is None:
+        if self._client is None or self._drawing is not None or self._is_put_off():
             return
         if any(self._is_bent_otherwise(name) for name in names):
             self._draw()
@@ -302,13 +332,13 @@ class TabScene:
         self._label_soon()
 
     def _label_soon(self) -> None:
-        if not self._labels_due:
-            self._labels_due = True
-            self._loop.call_later(_LABELS_S, self._label)
+        if self._labelling is None:
+            self._labelling = self._loop.call_later(_LABELS_S, self._label)
 
     def _label(self) -> None:
-        self._labels_due = False
-        if self._client is None:
+        _cancel(self._labelling)
+        self._labelling = None
+        if self._client is None or self._is_stale:
             return
         things = {name: self._named(name) for name in self._things if name in self.page.state.entities}
         selected = {name: things[name] for name in self.page.selected[:_NAMED] if name in things}
@@ -320,8 +350,8 @@ class TabScene:
             rooms = {name: rooms[name] for name in chosen if name in rooms}
         self._labels.show(others)
         self._strong_labels.show({**(rooms if "names" in self.on else {}), **selected})
-        for delay_s in _RENDER_S:
-            self._loop.call_later(delay_s, self._render)
+        _cancel(*self._rendering)
+        self._rendering = [self._loop.call_later(delay_s, self._render) for delay_s in _RENDER_S]
 
     def _render(self) -> None:
         """Let the browser draw once more: it does so when something has changed, and letters come later."""
@@ -362,7 +392,7 @@ class TabScene:
             self.page.select((*self.page.selected, name), by="scene")
 
     def _on_select(self) -> None:
-        if self._client is not None:
+        if self._client is not None and not self._is_put_off():
             self._relations = ()
             self._gizmo.remove()
             self._mark()
@@ -506,10 +536,12 @@ class TabScene:
             f"{number} of {len(lines)}": (each.text, _between(each.a, each.b))
             for number, each in enumerate(lines)
         }
-        chosen = (
-            [] if self._client is None else uncrowded(self._view(self._client), written, written, _MEASURES)
-        )
-        self._measures = {key: written[key] for key in chosen}
+        chosen: list[str] = []
+        if self._client is not None and written:
+            names = {name: self._named(name) for name in self.page.selected if name in self._things}
+            every = {**names, **written}
+            chosen = uncrowded(self._view(self._client), every, every, _MEASURES + len(names))
+        self._measures = {key: written[key] for key in chosen if key in written}
         self._line_labels.show(self._measures)
         self._label_soon()
 
@@ -527,6 +559,12 @@ class TabScene:
         else:
             self._mark()
             self._ask_relations()
+
+
+def _cancel(*handles: asyncio.TimerHandle | None) -> None:
+    for handle in handles:
+        if handle is not None:
+            handle.cancel()
 
 
 def _room_of(thing: Shown) -> Size:

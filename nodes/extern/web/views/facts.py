@@ -16,7 +16,12 @@ from schemas.relations import Relation, RelationName
 
 _MEASURED: Final = frozenset(v.dm(name) for name in get_args(RelationName)) - {v.dm("isLocatedIn")}
 """Properties that poses tell; where a thing is located also follows from where others are."""
-_PARTS: Final = frozenset((v.dm("hasReference"), v.dm("hasPosition"), v.dm("hasSize")))
+_PARTS: Final = frozenset(
+    (
+        *map(v.dm, ("hasReference", "hasPosition", "hasSize")),
+        *(v.HAS_PREFERRED_REFERENCE, v.HAS_ALTERNATIVE_REFERENCE),
+    )
+)
 """Predicates of the parts of a star, which the rest of the detail shows."""
 _VIEWER: Final = frozenset(("isLeftOf", "isRightOf", "isInFrontOf", "isBehind", "isBetween", "isVisibleFrom"))
 """Relations that are no facts of the map: they depend on who looks, or are of three things."""
@@ -69,6 +74,21 @@ def facts(
         inferred(entity, (t for t in rest if t not in untold), words),
         (*computed(entity, relations), *inferred(entity, untold, words)),
     )
+
+
+def followed(entity: Entity, held: Iterable[Triple]) -> tuple[Triple, ...]:
+    """Of all that held of an entity, what had not been said of it."""
+    said = {(v.local_name(v.RDF_TYPE), entity.class_)}
+    for property_, stated in entity.properties.items():
+        for value in stated if isinstance(stated, tuple) else (stated,):
+            said.add((property_, value_in_words(value)))
+
+    def is_said(triple: Triple) -> bool:
+        _, predicate, value = triple
+        text = v.lexical(value) if value.startswith('"') else v.local_name(value)
+        return predicate in _PARTS or value == v.OWL_THING or (v.local_name(predicate), text) in said
+
+    return tuple(triple for triple in held if not is_said(triple))
 
 
 def asserted(entity: Entity, properties: Mapping[str, PropertyInfo]) -> tuple[Fact, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from msgspec import Struct
@@ -13,10 +13,12 @@ from nodes.extern.phrasing import english
 from nodes.extern.web.views.states import State
 from schemas import errors
 from schemas.changes import value_in_words
-from schemas.commands import Add, Set, Unset, Update
-from schemas.entities import NAME_PATTERN, ClassInfo, Entity, Size, Value, Vector
+from schemas.commands import Add, Batch, Set, Unset, Update
+from schemas.entities import NAME_PATTERN, ClassInfo, Entity, Size, Stated, Value, Vector
 
 Numbers = Sequence[float | None]
+Entered = str | float | bool | Sequence[str] | None
+"""What a person enters for a state; None or an empty text is to unset it."""
 _NAME: Final = re.compile(NAME_PATTERN)
 
 
@@ -100,19 +102,29 @@ def edit(entity: Entity, filled: Filled, before: Filled | None = None) -> Update
     )
 
 
-def offset(entities: Iterable[Entity], by: Numbers) -> tuple[Update, ...]:
-    """Each of several moved by the same [m]; those without a position are left where they are."""
+def offset(entities: Iterable[Entity], by: Numbers) -> Batch:
+    """All of them moved by the same [m], with what is on them; those without a position stay as they are."""
     moved = tuple(0.0 if value is None else value for value in by)
     if not any(moved):
         raise errors.BadRequest("say how far: metres along x, y or z")
-    return tuple(
-        Update(name=e.name, at=_sum(e.pose.position_m, moved)) for e in entities if e.pose is not None
+    changes = tuple(
+        Update(name=e.name, at=_sum(e.pose.position_m, moved), carry=not e.place)
+        for e in entities
+        if e.pose is not None
     )
+    if not changes:
+        raise errors.BadRequest("none of them has a position to be moved from")
+    return Batch(changes=changes)
 
 
-def state(
-    name: str, state: State, text: str | float | bool | Sequence[str] | None
-) -> Set | Unset | Update | None:
+def states(state_: State, entered: Entered, now: Mapping[str, Stated | None]) -> Batch | None:
+    """What is entered for a state of several; `now` is by name how it is. None if it is so of all."""
+    changes = (state(name, state_._replace(now=value), entered) for name, value in now.items())
+    wanted = tuple(change for change in changes if change is not None)
+    return Batch(changes=wanted) if wanted else None
+
+
+def state(name: str, state: State, text: Entered) -> Set | Unset | Update | None:
     """What is entered for a state: to be set, or where it is empty to be unset; None if it is so already."""
     values = _values(state, text)
     now = () if state.now is None else state.now if isinstance(state.now, tuple) else (state.now,)
@@ -141,7 +153,7 @@ def class_choices(classes: Iterable[ClassInfo]) -> dict[str, str]:
     return dict(sorted(found.items(), key=lambda item: item[0].casefold()))
 
 
-def _values(state: State, text: str | float | bool | Sequence[str] | None) -> tuple[Value, ...]:
+def _values(state: State, text: Entered) -> tuple[Value, ...]:
     if text is None or text == "":
         return ()
     if isinstance(text, bool) or state.kind == "switch":

@@ -10,7 +10,7 @@ from msgspec import structs
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.changes import value_in_words
-from schemas.commands import Add, Command, Remove, Set, Unset, Update
+from schemas.commands import Add, Batch, Command, Remove, Set, Unset, Update
 from schemas.entities import ClassInfo, Entity, Value, free_name, name_stem
 from schemas.explanations import Explanation
 
@@ -98,8 +98,9 @@ def _by_their_class(
     explanation: Explanation, command: Command[Any], entities: Mapping[str, Entity]
 ) -> Iterator[str]:
     """Other things whose class is a reason: not what the command is about, nor places."""
-    about = {getattr(command, "name", None), *getattr(command, "names", ())}
-    values = {str(value) for value in command.values} if isinstance(command, Set) else set()
+    parts = command.changes if isinstance(command, Batch) else (command,)
+    about = {*(getattr(part, "name", None) for part in parts), *getattr(command, "names", ())}
+    values = {str(value) for part in parts if isinstance(part, Set) for value in part.values}
     for subject, predicate, _ in explanation.support:
         name = v.entity_name(subject)
         if predicate != v.RDF_TYPE or name in about or name in values or name not in entities:

@@ -60,3 +60,8 @@ def megabytes(size: int) -> str:
 def takes_long(size: int) -> bool:
     """Is the file so large that it may take more than moments?"""
     return size > PACKED_FROM // 8
+
+
+def spatial_roots(words: str | None) -> tuple[str, ...]:
+    """The classes that are written with commas or spaces between them, by name or IRI, each once."""
+    return tuple(dict.fromkeys((words or "").replace(",", " ").split()))

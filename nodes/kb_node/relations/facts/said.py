@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Final
 
+from nodes.geometry.polygons import distance
 from nodes.kb_node.entities.alignments import shipped
 from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.geometry.polygons import distance
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring import measures
 from nodes.kb_node.relations.measuring.phrases import SPOKEN, metres, why

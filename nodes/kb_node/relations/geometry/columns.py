@@ -53,12 +53,12 @@ def solids_of(entities: Iterable[Entity | Placed]) -> list[Solid]:
     for entity in entities:
         pose = entity.pose
         if pose is not None:
-            model, size = shape_of(entity)
+            shape = shape_of(entity)
             names.append(entity.name)
             positions.append(pose.position_m)
-            forms.append(form_in(entity, pose, model, size))
+            forms.append(form_in(entity, pose, shape))
             are_places.append(entity.place)
-            are_measured.append(size is not None)
+            are_measured.append(shape[1] is not None)
     each, row = _once(forms)
     reach = Extents(each)
     x, y, z = flat(positions, 3).T

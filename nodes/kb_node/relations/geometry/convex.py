@@ -20,8 +20,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from nodes.geometry.polygons import Point, contains, hull
 from nodes.kb_node.relations.geometry.lazily import lazily
-from nodes.kb_node.relations.geometry.polygons import Point, contains, hull
 from nodes.kb_node.relations.geometry.shadows import Shadow, depth, shadow_of
 from schemas.entities import Vector
 

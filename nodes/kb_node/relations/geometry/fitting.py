@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import lru_cache
+from operator import mul
 
 import numpy as np
+from msgspec import structs
 from numpy.typing import NDArray
 
-from ontology.model_shapes import ConvexPart, Interior, ModelShape, Surface, shapes
+from ontology.model_shapes import ConvexPart, Interior, LeafShape, ModelShape, Surface, shapes
 from schemas.entities import Size, Vector
 
 
@@ -38,12 +41,31 @@ def fitted(model: str, size: Size) -> ModelShape:
             )
             for s in own.surfaces
         ),
-        interiors=tuple(
-            Interior(low=low, high=high, fill=i.fill, open=i.open)
-            for i in own.interiors
-            for low, high in (stretched((i.low, i.high)),)
-        ),
+        interiors=tuple(_stretched(interior, (fx, fy, fz)) for interior in own.interiors),
         parts=tuple(_mapped(part, stretched) for part in own.parts),
+        leaves=tuple(_fitted_leaf(leaf, (fx, fy, fz)) for leaf in own.leaves),
+    )
+
+
+def _stretched(interior: Interior, factors: Vector) -> Interior:
+    low, high = (tuple(map(mul, factors, corner)) for corner in (interior.low, interior.high))
+    return structs.replace(interior, low=low, high=high)
+
+
+def _fitted_leaf(leaf: LeafShape, factors: Vector) -> LeafShape:
+    """A leaf of a stretched model: a hinge turns as far as before, a slide further or less far."""
+    fx, fy, fz = factors
+    (x, y, z), (a, b, c) = leaf.anchor, leaf.axis
+    u, v, w = (fx * a, fy * b, fz * c) if leaf.kind == "slide" else (a, b, c)
+    length = math.sqrt(u * u + v * v + w * w)
+    travel = length if leaf.kind == "slide" else 1.0
+    return structs.replace(
+        leaf,
+        anchor=(fx * x, fy * y, fz * z),
+        axis=(u / length, v / length, w / length),
+        limits=None if leaf.limits is None else (travel * leaf.limits[0], travel * leaf.limits[1]),
+        closed=None if leaf.closed is None else travel * leaf.closed,
+        interiors=tuple(_stretched(interior, factors) for interior in leaf.interiors),
     )
 
 
@@ -90,14 +112,16 @@ def quarter_turned(shape: ModelShape) -> ModelShape:
             Surface(height=s.height, low=(s.low[1], -s.high[0]), high=(s.high[1], -s.low[0]), fill=s.fill)
             for s in shape.surfaces
         ),
-        interiors=tuple(
-            Interior(
-                low=(i.low[1], -i.high[0], i.low[2]),
-                high=(i.high[1], -i.low[0], i.high[2]),
-                fill=i.fill,
-                open=i.open,
-            )
-            for i in shape.interiors
-        ),
+        interiors=tuple(map(_turned, shape.interiors)),
         parts=tuple(_mapped(part, turned) for part in shape.parts),
+        leaves=tuple(
+            structs.replace(leaf, anchor=anchor, axis=axis, interiors=tuple(map(_turned, leaf.interiors)))
+            for leaf in shape.leaves
+            for anchor, axis in (turned((leaf.anchor, leaf.axis)),)
+        ),
     )
+
+
+def _turned(interior: Interior) -> Interior:
+    (x0, y0, z0), (x1, y1, z1) = interior.low, interior.high
+    return structs.replace(interior, low=(y0, -x1, z0), high=(y1, -x0, z1))

@@ -87,6 +87,9 @@ class Extents:
         )
         """(F, 4) least x and y, greatest x and y."""
         self.top: Final[Floats] = np.maximum(0.0, i * z) + (np.abs(g) * x + np.abs(h) * y) / 2
+        for row, form in enumerate(forms):
+            if form.joints:
+                self.bounds[row], self.top[row] = form.bounds, form.top
         base = np.min([g * (sx * x / 2) + h * (sy * y / 2) for sx in (-1, 1) for sy in (-1, 1)], axis=0)
         self.lowest_corner: Final[Floats] = np.minimum(base + i * 0.0, base + i * z)
 
@@ -104,7 +107,9 @@ class Extents:
         """The shapes that forms have, and the rows of those that have each."""
         groups: dict[str, list[int]] = {}
         for row, form in enumerate(self.forms):
-            if form.model is not None:
+            if form.joints:
+                yield form.shape, np.array([row])
+            elif form.model is not None:
                 groups.setdefault(form.model, []).append(row)
         for model, group in groups.items():
             own, rows = own_shape(model) or _UNIT, np.array(group)
@@ -123,9 +128,9 @@ class FormColumns(Extents):
         (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(self.rotation, 0, -1)
         x, y, z = self.size.T
         self.volume: Final[Floats] = x * y * z
-        is_box = np.array([form.region is None for form in forms], dtype=bool)
+        is_box = np.array([form.region is None and not form.joints for form in forms], dtype=bool)
         self.is_plumb: Final[Bools] = (np.abs([c, f, g, h]).max(axis=0) < 1e-9) & (i > 0.0) & is_box
-        """Whether its z axis is that of the map, but for rounding; and it is no polygon."""
+        """Whether its z axis is that of the map, but for rounding; it is no polygon, and nothing is open."""
         self.is_square: Final[Bools] = self.is_plumb & (
             (np.maximum(np.abs(b), np.abs(d)) < 1e-9) | (np.maximum(np.abs(a), np.abs(e)) < 1e-9)
         )

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Final
 
+from nodes.geometry.polygons import Point, area, hull
+from nodes.geometry.regions import Region
 from nodes.kb_node.relations.geometry.convex import Convex, convex
 from nodes.kb_node.relations.geometry.fitting import fitted
 from nodes.kb_node.relations.geometry.lazily import lazily
-from nodes.kb_node.relations.geometry.polygons import Point, area, hull
-from nodes.kb_node.relations.geometry.regions import Region
+from nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, opened
 from ontology.model_shapes import ModelShape
 from schemas.entities import IDENTITY, Quaternion, Size, Vector
 from schemas.polygons import Polygon, read_wkt
@@ -33,17 +34,20 @@ class Form:
     """A shape as it is turned, seen from the middle of its bottom [m]; the axes are those of the map.
 
     Most things of a map stand upright like others of their model: what is worked out here is worked out once
-    for all of them, and not before somebody asks.
+    for all of them, and not before somebody asks. Where a door stands open, `joints` says how far. It is a
+    part that collides, and within the bounds; size, outline, footprint and volume are those of what it is
+    fastened to.
     """
 
     __slots__ = (
-        "__dict__", "is_level", "is_upright", "model", "orientation", "rotation", "size", "users",
+        "__dict__", "is_level", "is_upright", "joints", "model", "orientation", "rotation", "size", "users",
     )  # fmt: skip
 
-    def __init__(self, model: str | None, size: Size, wxyz: Quaternion) -> None:
+    def __init__(self, model: str | None, size: Size, wxyz: Quaternion, joints: Positions = AS_DRAWN) -> None:
         """A `model` of None has no parts, and "" is a box."""
         self.model: Final = model
         self.size: Final = size
+        self.joints: Final = joints
         self.orientation: Final = wxyz
         self.rotation: Final = _rotation(wxyz)
         """Map from body."""
@@ -55,14 +59,16 @@ class Form:
     region: Region | None = None
     """What it covers, of a place whose extent is a polygon."""
 
-    def is_of(self, model: str | None, size: Size, wxyz: Quaternion) -> bool:
-        """Whether it is the form of a model at a size, turned so."""
-        return self.orientation == wxyz and self.size == size and self.model == model
+    def is_of(self, model: str | None, size: Size, wxyz: Quaternion, joints: Positions = AS_DRAWN) -> bool:
+        """Whether it is the form of a model at a size, turned so, whose joints stand so."""
+        return (
+            self.orientation == wxyz and self.size == size and self.model == model and self.joints == joints
+        )
 
     @lazily
     def shape(self) -> ModelShape:
-        """The shape of its model at its size, in its own frame."""
-        return _BOX if self.model is None else fitted(self.model, self.size)
+        """The shape of its model at its size, in its own frame, with its joints where they stand."""
+        return _BOX if self.model is None else opened(fitted(self.model, self.size), self.joints)
 
     def turned(self, vector: Vector) -> Vector:
         """A vector of its own frame along the axes of the map."""
@@ -92,9 +98,10 @@ class Form:
 
     @lazily
     def top(self) -> float:
-        """The height of its box's highest corner."""
+        """The height of its box's highest corner, or of what stands open above that."""
         (_, _, (g, h, i)), (x, y, z) = self.rotation, self.size
-        return max(0.0, i * z) + (abs(g) * x + abs(h) * y) / 2
+        top = max(0.0, i * z) + (abs(g) * x + abs(h) * y) / 2
+        return max([top, *(part.high[2] for part in self.parts)]) if self.joints else top
 
     @lazily
     def lowest_top(self) -> float:
@@ -108,7 +115,19 @@ class Form:
 
     @lazily
     def bounds(self) -> Bounds:
-        """Of its box."""
+        """Of its box, and of what stands open beyond that."""
+        box = self._bounds_of_box()
+        if not self.joints:
+            return box
+        lows, highs = zip(*((part.low, part.high) for part in self.parts), strict=True)
+        return (
+            min([box[0], *(x for x, _, _ in lows)]),
+            min([box[1], *(y for _, y, _ in lows)]),
+            max([box[2], *(x for x, _, _ in highs)]),
+            max([box[3], *(y for _, y, _ in highs)]),
+        )
+
+    def _bounds_of_box(self) -> Bounds:
         (a, b, c), (d, e, f), _ = self.rotation
         x, y, z = self.size
         mid_x, mid_y = c * z / 2, f * z / 2
@@ -120,7 +139,11 @@ class Form:
     def is_square(self) -> bool:
         """Whether its outline is its bounds."""
         (a, b, _), (d, e, _), _ = self.rotation
-        return self.is_level and (max(abs(b), abs(d)) < _EXACTLY or max(abs(a), abs(e)) < _EXACTLY)
+        return (
+            self.is_level
+            and not self.joints
+            and (max(abs(b), abs(d)) < _EXACTLY or max(abs(a), abs(e)) < _EXACTLY)
+        )
 
     @lazily
     def outline(self) -> list[Point]:
@@ -179,7 +202,7 @@ class Expanse(Form):
         x, y = middle
         self.region = Region([[(px - x, py - y) for px, py in ring] for ring in polygon.rings])
 
-    def is_of(self, model: str | None, size: Size, wxyz: Quaternion) -> bool:
+    def is_of(self, model: str | None, size: Size, wxyz: Quaternion, joints: Positions = AS_DRAWN) -> bool:
         """Never: another place has another extent."""
         return False
 
@@ -213,9 +236,9 @@ def expanse(wkt: str, size: Size, middle: Point) -> Expanse:
 
 
 @lru_cache(maxsize=4096)
-def form_of(model: str | None, size: Size, wxyz: Quaternion) -> Form:
+def form_of(model: str | None, size: Size, wxyz: Quaternion, joints: Positions = AS_DRAWN) -> Form:
     """The form of a model at a size; None has no parts, and "" is a box."""
-    return Form(model, size, wxyz)
+    return Form(model, size, wxyz, joints)
 
 
 @lru_cache(maxsize=1024)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from msgspec import Struct
 
+from nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, positions_of
+from ontology.model_shapes import own_size_m
 from schemas.entities import Entity, Pose, Size
 from schemas.grips import holder_of
 from schemas.polygons import EXTENT
@@ -22,6 +24,8 @@ class Placed(Struct, frozen=True, kw_only=True, array_like=True):
     """The WKT of a place whose extent is a polygon."""
     held_by: str = ""
     """What grasps it; "" for nothing."""
+    joints: Positions = AS_DRAWN
+    """Where the joints of its model stand."""
 
     @classmethod
     def of(cls, entity: Entity) -> Placed:
@@ -35,6 +39,7 @@ class Placed(Struct, frozen=True, kw_only=True, array_like=True):
             model=entity.model,
             extent=extent_in(entity),
             held_by=holder_in(entity),
+            joints=joints_in(entity),
         )
 
 
@@ -43,6 +48,15 @@ def holder_in(entity: Entity | Placed) -> str:
     if isinstance(entity, Placed):
         return entity.held_by
     return holder_of(entity) if entity.grip_provenance is not None else ""
+
+
+def joints_in(entity: Entity | Placed) -> Positions:
+    """Where the joints of an entity's model stand, as far as the map states it."""
+    if isinstance(entity, Placed):
+        return entity.joints
+    if not entity.properties:
+        return AS_DRAWN
+    return positions_of(entity.model, entity.size_m or own_size_m(entity.model), entity.properties)
 
 
 def extent_in(entity: Entity | Placed) -> str:

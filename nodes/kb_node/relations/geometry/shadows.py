@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from nodes.kb_node.relations.geometry.polygons import Point
+from nodes.geometry.polygons import Point
 from schemas.entities import Vector
 
 _SQUARE = 1e-9

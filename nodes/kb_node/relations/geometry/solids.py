@@ -6,14 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from nodes.geometry.polygons import Point
 from nodes.kb_node.relations.geometry.convex import Convex, moved
 from nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, expanse, form_of
 from nodes.kb_node.relations.geometry.lazily import lazily
-from nodes.kb_node.relations.geometry.placed import Placed, extent_in
-from nodes.kb_node.relations.geometry.polygons import Point
+from nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions
+from nodes.kb_node.relations.geometry.placed import Placed, extent_in, joints_in
 from ontology.model_shapes import Interior, own_size_m
 from schemas.entities import Entity, Pose, Size, Vector
 
+Shape = tuple[str | None, Size | None, Positions]
 Extent = tuple[Bounds, float, float]
 """Bounds, bottom and top."""
 UNMEASURED: Final[Size] = (0.02, 0.02, 0.02)
@@ -165,6 +167,15 @@ class Solid:
             return ()
         return tuple([moved(part, self.position) for part in self.form.parts])
 
+    @property
+    def open_parts(self) -> list[Convex]:
+        """Those of its parts that a joint has moved from where they are drawn, map frame."""
+        form = self.form
+        moved = [
+            k for leaf, at in zip(form.shape.leaves, form.joints, strict=False) if at for k in leaf.parts
+        ]
+        return [self.parts[k] for k in moved] if self.has_parts else []
+
     def forget(self) -> None:
         """Drop what can be worked out again, but where it is: of many solids that is most of the memory."""
         del self.__dict__
@@ -202,12 +213,12 @@ def solid_of(entity: Entity | Placed, before: Solid | None = None) -> Solid | No
     pose = entity.pose
     if pose is None:
         return None
-    model, size = shape_of(entity)
+    model, size, joints = shape_of(entity)
     if entity.place and (form := _expanse(entity, pose.position_m, size)) is not None:
         return Solid(entity.name, pose.position_m, form, True, True)
     extent, turn = size or UNMEASURED, pose.orientation_wxyz
-    if before is None or not before.form.is_of(model, extent, turn):
-        form = form_of(model, extent, turn)
+    if before is None or not before.form.is_of(model, extent, turn, joints):
+        form = form_of(model, extent, turn, joints)
         return Solid(entity.name, pose.position_m, form, entity.place, size is not None)
     form = before.form
     form.users -= 1
@@ -217,10 +228,11 @@ def solid_of(entity: Entity | Placed, before: Solid | None = None) -> Solid | No
     return Solid(entity.name, pose.position_m, form, entity.place, size is not None, known)
 
 
-def form_in(entity: Entity | Placed, pose: Pose, model: str | None, size: Size | None) -> Form:
-    """The form of an entity that stands at `pose`."""
+def form_in(entity: Entity | Placed, pose: Pose, shape: Shape) -> Form:
+    """The form of an entity that stands at `pose`, given `shape_of` it."""
+    model, size, joints = shape
     found = _expanse(entity, pose.position_m, size) if entity.place else None
-    return found or form_of(model, size or UNMEASURED, pose.orientation_wxyz)
+    return found or form_of(model, size or UNMEASURED, pose.orientation_wxyz, joints)
 
 
 def _expanse(entity: Entity | Placed, position: Vector, size: Size | None) -> Form | None:
@@ -236,11 +248,15 @@ def _bounds(form: Form, position: Vector) -> Bounds:
     return x + low_x, y + low_y, x + high_x, y + high_y
 
 
-def shape_of(entity: Entity | Placed) -> tuple[str | None, Size | None]:
-    """What its form is of: its model, None without parts, and its size, or that of its model [m]."""
+def shape_of(entity: Entity | Placed) -> Shape:
+    """What its form is of: its model, None without parts, its size, or that of its model [m], its joints."""
     size = entity.size_m
     if entity.place:
-        return None, size
+        return None, size, AS_DRAWN
     if size is None and entity.model:
         size = own_size_m(entity.model)
-    return None if size is None else entity.model, size
+    if size is None:
+        return None, None, AS_DRAWN
+    if isinstance(entity, Entity) and not entity.properties:
+        return entity.model, size, AS_DRAWN
+    return entity.model, size, joints_in(entity)

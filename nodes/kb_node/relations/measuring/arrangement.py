@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from nodes.kb_node.relations.geometry.polygons import area, clipped, distance, hull
+from nodes.geometry.polygons import area, clipped, distance, hull
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring import measures
 from nodes.kb_node.relations.measuring.measures import Measure

@@ -6,13 +6,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
+from nodes.geometry.polygons import Point, area, clipped, contains, covers, distance, hull
+from nodes.geometry.regions import Region
 from nodes.kb_node.relations.geometry.convex import Convex, contact, over_flat_top
 from nodes.kb_node.relations.geometry.forms import LOWEST_M, Bounds
-from nodes.kb_node.relations.geometry.polygons import area, clipped, contains, covers, distance, hull
-from nodes.kb_node.relations.geometry.regions import Region
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from ontology.model_shapes import Interior
@@ -23,6 +23,10 @@ _SIDEWAYS = math.sin(math.radians(10.0))
 """A normal nearer to the horizontal than this is that of two who stand side by side."""
 _FLAT = math.cos(math.radians(2.0))
 """A normal this near to the vertical is that of a flat contact."""
+
+
+_Piece = tuple[Sequence[Point], float, float]
+"""An outline, bottom and top [m]."""
 
 
 class Measure(NamedTuple):
@@ -158,8 +162,13 @@ def inside(inner: Solid, outer: Solid, limits: Thresholds) -> Measure | None:
         return None
     if inner.volume >= outer.volume or not overlap(inner.bounds, outer.bounds):
         return None
-    share = max(_share_in(inner, outer, hollow) for hollow in outer.hollows)
+    share = max([_share_in(inner, outer, hollow) for hollow in outer.hollows])
     return Measure(share >= limits.inside_share, share=share, limit=limits.inside_share)
+
+
+def hollow_around(inner: Solid, outer: Solid) -> Interior:
+    """That hollow of the other, which has some, in which most of its volume is."""
+    return max(outer.hollows, key=lambda hollow: _share_in(inner, outer, hollow))
 
 
 def _share_in(inner: Solid, outer: Solid, hollow: Interior) -> float:
@@ -243,11 +252,28 @@ def _share_in_region(solid: Solid, place: Solid, region: Region) -> float:
 
 
 def gap(one: Solid, other: Solid) -> float:
-    """The distance of two boxes [m]; of leaning ones that of the upright prisms around them."""
+    """The distance of two boxes [m]; of leaning ones that of the upright prisms around them.
+
+    What stands open counts as a part of its own.
+    """
+    if one.form.joints or other.form.joints:
+        return min(_gap_of_pieces(a, b) for a in _pieces(one) for b in _pieces(other))
     up = max(0.0, one.bottom - other.top, other.bottom - one.top)
     if one.is_place or other.is_place:
         return math.hypot(_apart_in_plan(one, other), up)
     return math.hypot(distance(one.outline, other.outline), up)
+
+
+def _pieces(solid: Solid) -> Iterator[_Piece]:
+    """Its box, and what of it stands open."""
+    yield solid.outline, solid.bottom, solid.top
+    for part in solid.open_parts:
+        yield part.shadow, part.low[2], part.high[2]
+
+
+def _gap_of_pieces(one: _Piece, other: _Piece) -> float:
+    (outline, bottom, top), (its, low, high) = one, other
+    return math.hypot(distance(outline, its), max(0.0, bottom - high, low - top))
 
 
 def _apart_in_plan(one: Solid, other: Solid) -> float:

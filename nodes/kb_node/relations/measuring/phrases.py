@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
+from nodes.kb_node.relations.geometry.opening import joint_at
 from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring.measures import Measure
+from nodes.kb_node.relations.measuring.measures import Measure, hollow_around
+from schemas.joints import OPEN_FROM, Joint, in_words
 from schemas.relations import RelationName
 
 SPOKEN: Final[dict[RelationName, str]] = {
@@ -64,7 +66,7 @@ def why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> st
                 f" at {metres(made.height_m)}, and {made.share:.0%} of its base is over it"
             )
         case "isInside":
-            return f"{made.share:.0%} of its volume is within a hollow of {other.name}"
+            return f"{made.share:.0%} of its volume is within {_hollow(solid, other)}"
         case "isLocatedIn":
             part = f"{made.share:.0%} of its footprint" if solid.is_measured else "its position"
             is_ = "is" if made.share > 0.0 else "is not"
@@ -82,3 +84,27 @@ def why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> st
     return (
         f"they are {metres(made.gap_m)} apart (near is up to {metres(made.limit)} for things of their sizes)"
     )
+
+
+def _hollow(solid: Solid, other: Solid) -> str:
+    """The hollow that most of a thing is in; where something of it stands open, also how that stands."""
+    positions = other.form.joints
+    if not positions or not other.hollows:
+        return f"a hollow of {other.name}"
+    joints = {
+        leaf.name: joint_at(leaf, position)
+        for leaf, position in zip(other.form.shape.leaves, positions, strict=True)
+    }
+    hollow = hollow_around(solid, other)
+    if (drawer := hollow.carried_by) in joints:
+        return f"{drawer} of {other.name}, which is {_stands(joints[drawer])}"
+    doors = [f"{name}, which is {_stands(joints[name])}" for name in hollow.behind if name in joints]
+    return f"a hollow of {other.name}{', behind ' if doors else ''}{', and '.join(doors)}"
+
+
+def _stands(joint: Joint) -> str:
+    """How a joint stands, as an adjective: "closed", "open to 50%"."""
+    share = joint.openness
+    if share is None:
+        return f"at {in_words(joint).rpartition(' at ')[2]}"
+    return "closed" if share < OPEN_FROM else f"open to {share:.0%}"

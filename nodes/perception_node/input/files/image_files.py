@@ -52,17 +52,17 @@ def read_camera(path: Path) -> PinholeCamera:
 
 def is_depth(path: Path) -> bool:
     """Whether a picture is one of depth: 16 bits or more in a single channel. Raises ValueError, OSError."""
-    with _opened(path) as image:
+    with opened(path) as image:
         return image.mode in _DEPTH_MODES
 
 
 def read_pictures(depth: Path, color: Path | None, camera: PinholeCamera) -> Cloud:
     """The frame of a depth picture and one of colour. Raises ValueError saying what is wrong, and OSError."""
-    with _opened(depth) as image:
+    with opened(depth) as image:
         depth_m = np.asarray(image, dtype=np.float32) * np.float32(camera.depth_scale)
     colors = None
     if color is not None:
-        with _opened(color) as image:
+        with opened(color) as image:
             colors = np.asarray(image.convert("RGB"))
         if colors.shape[:2] != depth_m.shape:
             (h, w), (height, width) = colors.shape[:2], depth_m.shape
@@ -76,12 +76,17 @@ def read_pictures(depth: Path, color: Path | None, camera: PinholeCamera) -> Clo
     return cloud_of(depth_m, colors, intrinsics, pose)
 
 
-def _opened(path: Path) -> Image.Image:
+def opened(path: Path) -> Image.Image:
+    """A picture, read whole. Raises ValueError where it is none or too big, and OSError."""
     try:
         image = Image.open(path)
-        if image.width * image.height > _MOST_PIXELS:
-            raise ValueError(f"a picture of {image.width} x {image.height} pixels is too big")
-        image.load()
+        try:
+            if image.width * image.height > _MOST_PIXELS:
+                raise ValueError(f"a picture of {image.width} x {image.height} pixels is too big")
+            image.load()
+        except BaseException:
+            image.close()
+            raise
     except (SyntaxError, Image.DecompressionBombError) as error:
         raise ValueError(f"not an image: {error}") from None
     except OSError as error:

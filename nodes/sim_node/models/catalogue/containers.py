@@ -17,8 +17,20 @@ from nodes.sim_node.models.forms import (
     shade,
     slab,
 )
-from nodes.sim_node.models.openings import cabinet_box, side_door
-from nodes.sim_node.models.parts import ALONG_Y, Colour, Parts, about, ball, box, pill, rod, seen
+from nodes.sim_node.models.openings import GAP_M, SIDES, cabinet_box, side_door
+from nodes.sim_node.models.parts import (
+    ALONG_Y,
+    Colour,
+    Joint,
+    Parts,
+    about,
+    ball,
+    box,
+    moving,
+    pill,
+    rod,
+    seen,
+)
 
 
 def crate(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -27,6 +39,31 @@ def crate(x: float, y: float, z: float, colour: Colour) -> Parts:
         slab(x, y, 0, z, colour),
         *seen(slab(0.14 * x, y + 0.001, 0.85 * z, z + 0.001, (0.85, 0.78, 0.60))),
         *seen(box((x + 0.001, 0.25 * y, 0.16 * z), (0, 0.2 * y, 0.35 * z), PAPER)),
+    ]
+
+
+def cardboard_box(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A cardboard box with two flaps, taped where they meet."""
+    wall = min(0.02 * max(x, y, 0.3), 0.1 * min(x, y, z))
+    flaps: Parts = []
+    for side, name in SIDES:
+        board = box(
+            (x, y / 2 - GAP_M, wall), (0, side * (y / 4 + GAP_M / 2), z - wall / 2), shade(colour, 1.08)
+        )
+        tape = box((x, 0.06 * y, 0.001), (0, side * (0.03 * y + GAP_M), z - 0.0004), (0.85, 0.78, 0.60))
+        joint = Joint(
+            name=name,
+            kind="hinge",
+            anchor=(0.0, side * y / 2, z - wall / 2),
+            axis=(-float(side), 0.0, 0.0),
+            range=(0.0, math.radians(210.0)),
+            friction=0.02,
+        )
+        flaps += moving(joint, [board, *seen(tape)])
+    return [
+        *hollow_box(x, y, z - wall - GAP_M, wall, colour),
+        *seen(box((0.001, 0.25 * y, 0.16 * z), (x / 2, 0.2 * y, 0.35 * z), PAPER)),
+        *flaps,
     ]
 
 
@@ -67,19 +104,25 @@ def suitcase(x: float, y: float, z: float, colour: Colour) -> Parts:
     middle, tall = (low + high) / 2, high - low
     ribs = {
         side: seen(
-            box((x / 2, 0.06 * y, 0.92 * tall), (side * x / 4, y * k, middle), shade(colour, 1.25))
+            box((0.07 * x, 0.06 * y, 0.92 * tall), (side * 0.465 * x, y * k, middle), shade(colour, 1.25))
             for k in (-0.3, -0.1, 0.1, 0.3)
         )
         for side in (-1, 1)
     }
     shell = cabinet_box((0.65 * x, y, tall), (-0.125 * x, 0, middle), colour)
+    wall = 0.03 * x
+    rims = [
+        *(
+            box((0.22 * x, y, wall), (0.31 * x, 0, height), colour)
+            for height in (low + wall / 2, high - wall / 2)
+        ),
+        *(
+            box((0.22 * x, wall, tall - 2 * wall), (0.31 * x, side * (y - wall) / 2, middle), colour)
+            for side in (-1, 1)
+        ),
+    ]
     lid = side_door(
-        "lid",
-        (0.03 * x, y, tall),
-        (0.435 * x, 0, middle),
-        colour,
-        handle=[*seen(box((0.25 * x, y, tall), (0.325 * x, 0, middle), colour)), *ribs[1]],
-        friction=0.1,
+        "lid", (wall, y, tall), (0.435 * x, 0, middle), colour, handle=[*rims, *ribs[1]], friction=0.1
     )
     return [
         *shell,
@@ -108,12 +151,25 @@ def case(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def bin_(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A round, open waste bin."""
-    radius = min(x, y) / 2
+    """A round waste bin; its lid is hinged behind, and has a grip in front."""
+    radius, rim, lid = min(x, y) / 2, 0.92 * z, 0.96 * z
+    joint = Joint(
+        name="lid",
+        kind="hinge",
+        anchor=(-0.95 * radius, 0.0, rim),
+        axis=(0.0, -1.0, 0.0),
+        range=(0.0, math.radians(105.0)),
+        friction=0.05,
+    )
+    cover = [
+        column(0.97 * radius, rim + GAP_M, lid, shade(colour, 1.2)),
+        box((0.18 * radius, 0.5 * radius, z - lid), (0.7 * radius, 0, (lid + z) / 2), shade(colour, 0.5)),
+    ]
     return [
         column(0.78 * radius, 0, 0.03 * z, colour),
-        *ring((0.8 * radius, 0.98 * radius), 0.01 * z, z, 0.006, colour),
-        *seen(ring((radius, radius), 0.94 * z, z, 0.012, shade(colour, 0.7))),
+        *ring((0.8 * radius, 0.98 * radius), 0.01 * z, rim, 0.006, colour),
+        *seen(ring((radius, radius), 0.88 * z, rim, 0.012, shade(colour, 0.7))),
+        *moving(joint, cover),
     ]
 
 

@@ -16,11 +16,8 @@ from nodes.sim_node.models.forms import (
     shade,
     slab,
 )
-from nodes.sim_node.models.openings import cabinet_box, pull_out, side_door, wall_of
+from nodes.sim_node.models.openings import SIDES, cabinet_box, pull_out, side_door, wall_of
 from nodes.sim_node.models.parts import ALONG_Y, Colour, Parts, about, ball, box, felt, product, rod, seen
-
-_SIDES = ((-1, "left"), (1, "right"))
-"""Of who stands before it."""
 
 
 def counter(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -46,7 +43,7 @@ def counter(x: float, y: float, z: float, colour: Colour) -> Parts:
 def _with_doors(x: float, y: float, z: float, colour: Colour, *, foot: float, panels: bool) -> Parts:
     leaf, tall = 0.47 * y, 0.94 * (z - foot)
     doors: Parts = []
-    for side, name in _SIDES:
+    for side, name in SIDES:
         decor = [
             part
             for half in (0.28, 0.72)
@@ -94,7 +91,7 @@ def cupboard(x: float, y: float, z: float, colour: Colour) -> Parts:
     low = 0.45 * z
     glass = [
         part
-        for side, name in _SIDES
+        for side, name in SIDES
         for part in side_door(
             f"upper_{name}",
             (0.012, 0.48 * y, 0.52 * z),

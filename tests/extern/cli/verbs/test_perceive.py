@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from nodes.extern.cli.app import execute
 from tests.perception_node.files.made import header
@@ -65,6 +66,100 @@ def test_what_cannot_be_done_is_told_in_one_line(tmp_path, capsys, monkeypatch, 
     write_cloud(tmp_path / "boxes.pcd")
     (tmp_path / "empty.pcd").write_bytes(header("binary", width=0, height=0))
     assert execute(["perceive", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def write_frame(folder):
+    points = SEEN.cloud.points_camera
+    height, width = points.shape[:2]
+    folder.mkdir(parents=True)
+    depth = np.nan_to_num(points[..., 2] * 1000).astype(np.uint16)
+    Image.fromarray(depth).save(folder / "depth.png")
+    Image.new("RGB", (width, height), (120, 120, 120)).save(folder / "rgb.png")
+    (fx, _, cx), (_, fy, cy), _ = SEEN.cloud.intrinsics.tolist()
+    (folder / "camera.json").write_text(json.dumps({"fx": fx, "fy": fy, "cx": cx, "cy": cy}))
+
+
+def test_a_dataset_has_a_row_for_each_frame_and_goes_on_after_a_bad_one(tmp_path, capsys):
+    for name in ("first", "third"):
+        write_frame(tmp_path / "frames" / name)
+    (tmp_path / "frames" / "second").mkdir()
+    out, labels = tmp_path / "out.json", tmp_path / "labels"
+    words = ["--frames", str(tmp_path / "frames"), "--json", str(out), "--labels", str(labels)]
+    assert execute(["perceive", *words]) == 0
+    rows = json.loads(out.read_text())
+    assert [row["frame"] for row in rows] == ["first", "second", "third"]
+    assert "lacks" in rows[1]["error"]
+    assert rows[1]["objects"] == []
+    assert rows[0]["objects"] == rows[2]["objects"]
+    seen = np.load(labels / "first.npy")
+    for n, thing in enumerate(rows[0]["objects"], 1):
+        x0, y0, x1, y1 = thing["box_px"]
+        ys, xs = np.nonzero(seen == n)
+        assert (xs.min(), ys.min(), xs.max() + 1, ys.max() + 1) == (x0, y0, x1, y1)
+        assert thing["points"] == len(xs)
+    assert not (labels / "second.npy").exists()
+    said = capsys.readouterr().out
+    assert "3 frames" in said
+    assert "1 frame could not be used" in said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["boxes.pcd", "--frames", "."], "camera.json"),
+        (["boxes.pcd", "--json", "out.json"], "--frames"),
+        (["--frames", "missing"], "cannot be read"),
+        (["--frames", "empty"], "no folders of frames"),
+    ],
+)
+def test_what_a_dataset_is_not_is_told(tmp_path, capsys, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "empty").mkdir()
+    assert execute(["perceive", *arguments]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_masks_cut_a_frame_up_and_a_label_that_nobody_knows_is_told(tmp_path, capsys):
+    write_frame(tmp_path / "frames" / "first")
+    (height, width), box = SEEN.truth.shape, np.isin(SEEN.truth, [1])
+    np.save(tmp_path / "frames" / "first" / "mine.npy", box.astype(np.uint16))
+    out = tmp_path / "out.json"
+    words = ["perceive", "--frames", str(tmp_path / "frames"), "--json", str(out), "--masks-only", "--masks"]
+    assert execute([*words, "mine.npy"]) == 0
+    ((found,),) = [row["objects"] for row in json.loads(out.read_text())]
+    ys, xs = np.nonzero(box)
+    assert found["box_px"] == pytest.approx([xs.min(), ys.min(), xs.max() + 1, ys.max() + 1], abs=6)
+    counts = [0, *np.diff(np.flatnonzero(np.diff(np.r_[-1, box.T.ravel().astype(int), -1]))).tolist()]
+    counts = counts[1:] if not box[0, 0] else counts
+    told = [{"segmentation": {"size": [height, width], "counts": counts}, "category": "spork", "score": 0.9}]
+    (tmp_path / "frames" / "first" / "yolo.json").write_text(json.dumps(told))
+    capsys.readouterr()
+    assert execute([*words, "yolo.json"]) == 0
+    assert "no class here: spork; --label-map FILE" in capsys.readouterr().err
+    (tmp_path / "map.json").write_text('{"spork": "Box"}')
+    assert execute([*words, "yolo.json", "--label-map", str(tmp_path / "map.json")]) == 0
+    ((found,),) = [row["objects"] for row in json.loads(out.read_text())]
+    assert found["class"] == "Box"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["boxes.pcd", "--label-map", "map.json"], "go with --masks"),
+        (["boxes.pcd", "--masks-only"], "go with --masks"),
+        (["boxes.pcd", "--masks", "missing.npy"], "missing.npy cannot be read"),
+        (["boxes.pcd", "--masks", "small.npy"], "this one is of shape 4 x 3"),
+        (["boxes.pcd", "--masks", "small.npy", "--label-map", "small.npy"], "no map of labels"),
+    ],
+)
+def test_what_is_wrong_with_masks_is_told_in_one_line(tmp_path, capsys, monkeypatch, words, said):
+    monkeypatch.chdir(tmp_path)
+    write_cloud(tmp_path / "boxes.pcd")
+    np.save(tmp_path / "small.npy", np.zeros((3, 4), int))
+    assert execute(["perceive", *words]) == 2
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1

@@ -8,12 +8,8 @@ import pytest
 
 from nodes.extern.web.scene.assets import Assets
 from schemas import errors
-from schemas.scenes import Scene, SurfaceQuery, Surfaces
-from tests.extern.web.scene.things import body, surface
-
-
-def scene(*bodies, run="1"):
-    return Scene(run=run, version=1, stamp_ns=1, sim_time_s=0.0, world="flat", bodies=bodies)
+from schemas.scenes import SurfaceQuery, Surfaces
+from tests.extern.web.scene.things import body, scene, surface
 
 
 class Live:

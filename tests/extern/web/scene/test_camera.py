@@ -1,6 +1,7 @@
 """Views: all of it at first, what is left and ahead, and labels side by side."""
 
 import math
+import random
 
 import numpy as np
 import pytest
@@ -76,3 +77,24 @@ def test_what_is_behind_or_beside_the_picture_is_not_labelled_nor_more_than_ther
     many = {str(i): (str(i), (0.5 * (i % 5) - 1.0, 0.6 * (i // 5) - 1.0, 0.0)) for i in range(20)}
     assert len(uncrowded(view, many, most=3)) == 3
     assert uncrowded(view, {}) == []
+
+
+def test_of_many_labels_those_are_written_that_one_by_one_find_room():
+    view, dice = looking((0.0, -8.0, 4.0), (0.0, 0.0, 0.0)), random.Random(7)
+    for _ in range(20):
+        places = [tuple(dice.uniform(-4.0, 4.0) for _ in range(3)) for _ in range(120)]
+        labels = {f"k{i}": ("Name" * dice.randint(1, 4), at) for i, at in enumerate(places)}
+        first = dice.sample(sorted(labels), 5)
+        at = view.project(np.array(places))
+        ahead = dict(zip(labels, at, strict=True))
+        taken: list[tuple[float, float, float]] = []
+        expected = []
+        for key in sorted(labels, key=lambda key: (first.index(key) if key in first else 5, ahead[key][2])):
+            x, y, z = ahead[key]
+            half = sum(10.0 if letter.isupper() else 7.0 for letter in labels[key][0]) / 2.0 + 5.0
+            is_seen = z > 0.05 and half <= x <= view.width - half and 0.0 <= y <= view.height
+            has_room = all(abs(x - u) >= half + w or abs(y - v) >= 17.0 for u, v, w in taken)
+            if is_seen and has_room and len(expected) < 40:
+                taken.append((x, y, half))
+                expected.append(key)
+        assert uncrowded(view, labels, first) == expected

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from types import SimpleNamespace
 
 import pytest
@@ -14,7 +15,8 @@ from tests.extern.web.scene.things import pose
 class Handle:
     """Stands in for viser's: where it is, and who is told of what is done with it."""
 
-    def __init__(self):
+    def __init__(self, name):
+        self.name = name
         self.position, self.wxyz = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)
         self.is_there = True
 
@@ -34,7 +36,7 @@ def made():
     handles, told, frame = [], [], SimpleNamespace(is_open=True)
 
     def add(name, **_):
-        handles.append(Handle())
+        handles.append(Handle(name))
         return handles[-1]
 
     scene = SimpleNamespace(add_transform_controls=add)
@@ -52,6 +54,15 @@ def test_it_is_where_the_thing_is_and_upright(made):
     gizmo.remove()
     assert not any(handle.is_there for handle in handles)
     assert not gizmo.is_shown
+
+
+def test_handles_that_are_shown_again_are_new_ones_to_the_browser(made):
+    gizmo, handles, _, _ = made
+    gizmo.put(pose(yaw_rad=math.pi), (0.5, 0.5, 1.0))
+    gizmo.remove()
+    gizmo.put(pose(), (0.5, 0.5, 1.0))
+    names = [handle.name for handle in handles]
+    assert len(set(names)) == len(names) == 4
 
 
 def test_a_drag_is_told_from_its_start_to_its_end_and_both_parts_go_along(made):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from nodes.extern.web.scene.shown import BOX, batches, shown
+from nodes.extern.web.scene.shown import BOX, batch_of, by_key, shown
 from tests.extern.web.scene.things import body, entity, pose, surface
 
 
@@ -60,7 +60,7 @@ def test_there_is_one_batch_for_each_model_and_look():
         "ghost1": show(entity("ghost1"), body("ghost1", ghost=True)),
         "vase2": show(entity("vase2", "Vase", size_m=(0.2, 0.2, 0.4), model="vase"), None),
     }
-    found = {batch.names: batch for batch in batches(things).values()}
+    found = {batch.names: batch for batch in map(batch_of, by_key(things).values())}
     assert set(found) == {("chair1", "chair2"), ("vase1", "vase2"), ("ghost1",)}
     assert found["chair1", "chair2"].positions[:, 0].tolist() == [1.0, 2.0]
     assert found["vase1", "vase2"].sizes[1] == pytest.approx((0.2, 0.2, 0.4))
@@ -68,7 +68,7 @@ def test_there_is_one_batch_for_each_model_and_look():
 
 def test_a_large_map_is_batched_quickly_and_whole():
     things = {f"chair{i}": show(entity(f"chair{i}"), body(f"chair{i}", pose(i))) for i in range(5000)}
-    (batch,) = batches(things).values()
+    (batch,) = map(batch_of, by_key(things).values())
     assert len(batch.names) == 5000
     assert np.array_equal(batch.positions[:, 0], np.arange(5000, dtype=np.float32))
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from nodes.extern.web.scene.meshes import cube
 from schemas.entities import BodyState, Entity, Pose, Provenance, orientation_from_yaw
-from schemas.scenes import Body, Surface
+from schemas.scenes import Body, Scene, Surface
 
 _SAID = Provenance(commit=1, stamp_ns=1, source="operator")
 
@@ -47,6 +47,10 @@ def body(name, at=None, size_m=(0.5, 0.5, 1.0), *, model="chair", ghost=False, i
         commit=1,
         shape_commit=1,
     )
+
+
+def scene(*bodies: Body, run: str = "1") -> Scene:
+    return Scene(run=run, version=1, stamp_ns=1, sim_time_s=0.0, world="flat", bodies=bodies)
 
 
 def surface(size_m=(1.0, 1.0, 1.0)) -> Surface:

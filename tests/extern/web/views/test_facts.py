@@ -1,4 +1,4 @@
-from nodes.extern.web.views.facts import Question, asserted, facts
+from nodes.extern.web.views.facts import Question, asserted, facts, followed
 from nodes.extern.web.views.steps import words_of
 from ontology import vocabulary as v
 from schemas.entities import PropertyInfo
@@ -80,3 +80,15 @@ def test_what_does_not_hold_or_depends_on_who_looks_is_not_asked_why():
     left = Relation(relation="isLeftOf", subject="milk1", object="cup1", text="milk1 is left of cup1: 3 cm")
     found = facts(MILK, PROPERTIES, [], [nothing, left], WORDS)
     assert [f.why for f in found.computed] == [None, None]
+
+
+def test_what_followed_is_what_held_without_what_was_said():
+    held = [
+        is_a("milk1", "Milk"),
+        is_a("milk1", "Drink"),
+        fact("milk1", "hasColor", "color_red"),
+        (v.entity_iri("milk1"), v.dm("isOpen"), v.literal("false", v.XSD_BOOLEAN)),
+        fact("milk1", "hasPreferredReference", "milk1_preferred_reference"),
+        fact("milk1", "isLocatedIn", "flat1"),
+    ]
+    assert followed(MILK, held) == (is_a("milk1", "Drink"), fact("milk1", "isLocatedIn", "flat1"))

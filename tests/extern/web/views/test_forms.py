@@ -7,7 +7,7 @@ from nodes.extern.web.views import forms
 from nodes.extern.web.views.forms import Filled
 from nodes.extern.web.views.states import State
 from schemas import codec, errors
-from schemas.commands import Add, Set, Unset, Update
+from schemas.commands import Add, Batch, Set, Unset, Update
 from tests.extern.web.views.worlds import class_, thing
 
 CUP = thing(
@@ -96,7 +96,13 @@ def test_what_cannot_be_emptied_is_said(emptied):
 
 def test_several_are_moved_by_the_same():
     bare = thing("idea1", at=None)
-    assert forms.offset([CUP, bare], (0.5, None, -0.25)) == (Update(name="cup1", at=(1.5, 2.0, 0.5)),)
+    room = structs.replace(thing("room1", at=(0.0, 0.0, 0.0)), place=True)
+    assert forms.offset([CUP, bare, room], (0.5, None, -0.25)).changes == (
+        Update(name="cup1", at=(1.5, 2.0, 0.5), carry=True),
+        Update(name="room1", at=(0.5, 0.0, -0.25)),
+    )
+    with pytest.raises(errors.BadRequest, match="none of them has a position"):
+        forms.offset([bare], (1.0, 0.0, 0.0))
     with pytest.raises(errors.BadRequest, match="how far"):
         forms.offset([CUP], (None, 0.0, None))
 
@@ -123,6 +129,17 @@ def test_several_are_moved_by_the_same():
 )
 def test_a_state_is_set_or_unset_by_what_is_entered(state, entered, command):
     assert forms.state("a", state, entered) == command
+
+
+def test_a_state_of_several_is_one_command_about_those_that_are_otherwise():
+    now = {"a": False, "b": True, "c": None}
+    assert forms.states(state("switch"), True, now) == Batch(
+        changes=(
+            Set(name="a", property="p", values=(True,)),
+            Set(name="c", property="p", values=(True,)),
+        )
+    )
+    assert forms.states(state("switch"), True, {"b": True}) is None
 
 
 def test_a_number_that_is_none_is_said():

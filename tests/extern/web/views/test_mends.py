@@ -1,7 +1,7 @@
 from nodes.extern.web.views.mends import mends
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.commands import Add, Remove, Set, Unset, Update
+from schemas.commands import Add, Batch, Remove, Set, Unset, Update
 from schemas.explanations import Explanation
 from tests.extern.web.views.worlds import by_name, class_, fact, place, thing
 
@@ -58,8 +58,9 @@ def test_another_thing_that_is_in_the_way_may_be_removed_but_no_place():
     entities = by_name(thing("cup1"), thing("table1", "Table"), place("kitchen1"))
     command = Set(name="cup1", property="isOn", values=("x",))
     refused = inconsistent(is_a("cup1", "Cup"), is_a("table1", "Table"), is_a("kitchen1", "Kitchen"))
-    (mend,) = mends(command, refused, entities)
-    assert mend.commands == (Remove(names=("table1",)), command)
+    for refusing in (command, Batch(changes=(command,))):
+        (mend,) = mends(refusing, refused, entities)
+        assert mend.commands == (Remove(names=("table1",)), refusing)
 
 
 def test_what_takes_force_may_be_done_nevertheless():

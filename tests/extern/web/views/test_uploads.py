@@ -2,7 +2,7 @@ import gzip
 
 import pytest
 
-from nodes.extern.web.views.uploads import LARGEST, megabytes, refusal
+from nodes.extern.web.views.uploads import LARGEST, megabytes, refusal, spatial_roots
 
 
 @pytest.mark.parametrize(
@@ -40,3 +40,8 @@ def test_sizes():
     assert megabytes(50 << 20) == "50 MB"
     assert megabytes(1_600_000) == "1.5 MB"
     assert megabytes(2048) == "2 KB"
+
+
+def test_spatial_roots_are_written_with_commas_or_spaces():
+    assert spatial_roots("Thing, http://x.org/a#Place  Thing") == ("Thing", "http://x.org/a#Place")
+    assert spatial_roots(None) == ()

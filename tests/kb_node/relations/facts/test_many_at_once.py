@@ -13,6 +13,7 @@ from msgspec import structs
 from nodes.kb_node.relations.facts import place_facts
 from nodes.kb_node.relations.facts.place_facts import Facts
 from nodes.kb_node.relations.geometry.columns import solids_of
+from nodes.kb_node.relations.geometry.fitting import fitted
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.geometry.solids import solid_of
 from nodes.kb_node.relations.measuring import crowds, space
@@ -27,6 +28,7 @@ MODELS = [*sorted(shapes()), "odd"]
 """All that are shipped, and one that nobody knows."""
 TABLEWARE = ["table", "cup", "book", "bowl", "tray", "plate", "rug"]
 FURNITURE = ["fridge", "drawer", "milk", "carton", "can", "cupboard", "bookshelf", "book"]
+OPENING = ["fridge", "drawer", "desk", "oven", "dishwasher", "cabinet", "plate", "can", "apple", "laptop"]
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 LYING = (0.5**0.5, 0.0, 0.5**0.5, 0.0)
 HEAD_DOWN = (0.0, 1.0, 0.0, 0.0)
@@ -109,7 +111,26 @@ class World:
 
     def entity(self, name, model, at, size, turn, place=False):
         pose = Pose(position_m=at, orientation_wxyz=turn)
-        return Placed(name=name, iri=f"urn:{name}", pose=pose, size_m=size, place=place, model=model)
+        return Placed(
+            name=name,
+            iri=f"urn:{name}",
+            pose=pose,
+            size_m=size,
+            place=place,
+            model=model,
+            joints=self.joints(model, size or own_size_m(model)),
+        )
+
+    def joints(self, model, size):
+        """Some stand open, some shut, most of what opens at all."""
+        leaves = fitted(model, size).leaves if size and model in shapes() else ()
+        if not leaves or self.dice.random() < 0.3:
+            return ()
+        stands = tuple(
+            self.dice.choice([0.0, leaf.limits[0], leaf.limits[1], self.dice.uniform(*leaf.limits)])
+            for leaf in leaves
+        )
+        return stands if any(stands) else ()
 
     def turn(self):
         if self.dice.random() < self.odd:
@@ -148,7 +169,7 @@ def test_crowded_worlds_of_all_models(seed, extent, odd):
 
 
 @settings(deadline=None, max_examples=tries(50))
-@given(st.integers(0, 10**9), st.sampled_from([TABLEWARE, FURNITURE]))
+@given(st.integers(0, 10**9), st.sampled_from([TABLEWARE, FURNITURE, OPENING]))
 def test_what_stands_on_and_in_few_models(seed, models):
     require_alike(World(seed, models, extent=1.0, odd=0.0).things(40))
 
@@ -204,7 +225,11 @@ def test_step_by_step(seed, most, step):
             some = world.dice.sample(names, world.dice.randrange(1, 20))
             gone = world.dice.sample(some, len(some) // 4)
             changed = [
-                structs.replace(made[n], pose=made[world.dice.choice(names)].pose)
+                structs.replace(
+                    made[n],
+                    pose=made[world.dice.choice(names)].pose,
+                    joints=world.joints(made[n].model, made[n].size_m or own_size_m(made[n].model)),
+                )
                 for n in some
                 if n not in gone
             ]

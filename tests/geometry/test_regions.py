@@ -3,8 +3,8 @@ import random
 
 import pytest
 
-from nodes.kb_node.relations.geometry.polygons import area
-from nodes.kb_node.relations.geometry.regions import Region
+from nodes.geometry.polygons import area
+from nodes.geometry.regions import Region
 from schemas.polygons import read_wkt
 
 L_SHAPE = read_wkt("POLYGON ((0 0, 4 0, 4 1, 1 1, 1 3, 0 3, 0 0))")

@@ -1,0 +1,62 @@
+"""What `semmap perceive` shows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from rich.table import Table
+
+from nodes.extern.cli.output.show import console
+from nodes.extern.cli.output.tables import table
+from schemas import wording
+from schemas.perception import FrameRow, Observation, SeenInFrame
+
+if TYPE_CHECKING:
+    from nodes.perception_node.views.segmented_view import Sight
+
+_COLUMNS = ("object", "class", "probability", "points", "x", "y", "z", "yaw", "size [m]")
+
+
+def counts(sight: Sight) -> dict[int, int]:
+    """How many points each label has."""
+    return {segment.label: segment.count for segment in sight.segments}
+
+
+def as_records(sight: Sight, told: Mapping[int, Observation | None]) -> list[dict[str, Any]]:
+    """Each object for programs: its label, its points, and the observation; null for clutter."""
+    of = counts(sight)
+    return [
+        {"label": label, "points": of[label], "observation": seen} for label, seen in sorted(told.items())
+    ]
+
+
+def as_table(sight: Sight, told: Mapping[int, Observation | None]) -> Table:
+    """A row for each object: what it is taken for, and where the whole of it stands."""
+    rows = table(*_COLUMNS, fold=("class", "size [m]"))
+    of = counts(sight)
+    for label, seen in sorted(told.items()):
+        rows.add(*_cells(label, of[label], seen))
+    return rows
+
+
+def show_frame(row: FrameRow) -> None:
+    """One frame of a dataset."""
+    console().print(f"{row.frame}: {row.error or wording.counted(len(row.objects), 'object')}", markup=False)
+    if row.objects:
+        rows = table(*_COLUMNS, fold=("class", "size [m]"))
+        for n, seen in enumerate(row.objects, 1):
+            rows.add(*_cells(n, seen.points, seen))
+        console().print(rows)
+
+
+def _cells(label: int, points: int, seen: Observation | SeenInFrame | None) -> list[str]:
+    if seen is None:
+        return [str(label), "?", "", str(points), *[""] * 5]
+    return [
+        *(str(label), seen.class_, f"{seen.probability:.2f}", str(points)),
+        *(f"{value:.3f}" for value in seen.pose.position_m),
+        f"{math.degrees(seen.pose.yaw_rad):.0f}°",
+        " x ".join(f"{side:.3f}" for side in seen.size_m),
+    ]

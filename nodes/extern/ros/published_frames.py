@@ -1,0 +1,65 @@
+"""The frames that others publish, as far as the coordinator takes them: no cycles, none that are stale."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import Future
+from typing import Any, Final
+
+from nodes import bus
+from nodes.runtime.loop import Node
+from nodes.runtime.map_replica import MapReplica
+from schemas import errors, keys
+from schemas.commands import ListFrames
+from schemas.entities import Pose
+from schemas.frames import Frame
+
+_ASK_S: Final = 1.0
+
+Placed = tuple[str, Pose]
+"""The parent of a frame, and where the frame is in that."""
+
+
+class PublishedFrames:
+    """Owned by the node's thread. What counts is asked once a second, and poses are heard in between."""
+
+    def __init__(self, node: Node, replica: MapReplica[Any]) -> None:
+        """The entities of `replica` are told of already, and keep their names."""
+        self._node, self._map = node, replica
+        self._stream = bus.Newest(node.session, keys.FRAME)
+        self._known: dict[str, Placed] = {}
+        self._asking = False
+        node.every(_ASK_S, self._ask)
+
+    def now(self) -> Mapping[str, Placed]:
+        """Each frame in its parent, as heard last."""
+        known = self._known
+        for key, read in self._stream.take():
+            name = keys.of_frame(key)
+            if name not in known:
+                continue
+            try:
+                said = read()
+                if said.parent == known[name][0]:
+                    known = {**known, name: (said.parent, said.require_pose())}
+            except errors.BadRequest:
+                continue  # the coordinator says so
+        self._known = known
+        return known
+
+    def _ask(self) -> None:
+        if self._asking:
+            return
+        self._asking = True
+
+        def on_frames(done: Future[tuple[Frame, ...]]) -> None:
+            self._asking = False
+            told = () if done.exception() is not None else done.result()
+            self._known = {
+                frame.name: (frame.parent, frame.pose)
+                for frame in told
+                if frame.source == "stream" and frame.pose is not None and frame.map_pose is not None
+                if frame.name not in self._map.entities
+            }
+
+        self._node.ask_later(keys.CMD, ListFrames()).add_done_callback(on_frames)

@@ -1,0 +1,156 @@
+"""Shapes whose doors, lids and drawers stand open: what joints move is where they have moved it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+
+from msgspec import structs
+
+from nodes.kb_node.relations.geometry.fitting import fitted, own_shape
+from ontology.model_shapes import ConvexPart, Interior, LeafShape, ModelShape, Surface
+from schemas.entities import Size, Vector
+from schemas.joints import OPENING, Joint, stated
+
+Positions = tuple[float, ...]
+"""Where the leaves of a shape stand, in their order [rad, m]; () where all are as they are drawn."""
+
+AS_DRAWN: Positions = ()
+_NEGLIGIBLE = 0.002
+"""A joint this near to where it is drawn stands there [rad, m]: that is its play."""
+_NOWHERE: Vector = (0.0, 0.0, 0.0)
+_LEVEL = math.cos(math.radians(2.0))
+_LEAST_TOP = 0.02
+"""Of the footprint: what turns level and is smaller carries nothing."""
+
+_Map = Callable[[Vector], Vector]
+
+
+def positions_of(model: str | None, size: Size | None, properties: Mapping[str, object]) -> Positions:
+    """Where the joints of a model at a size stand, as far as a map states it; within their limits."""
+    if not model or size is None or properties.keys().isdisjoint(OPENING):
+        return AS_DRAWN
+    own = own_shape(model)
+    if own is None or not own.leaves:
+        return AS_DRAWN
+    leaves = fitted(model, size).leaves
+    at = stated(map(_joint, leaves), properties) or {}
+    found = tuple(_within(leaf, at.get(leaf.name, 0.0)) for leaf in leaves)
+    return found if any(found) else AS_DRAWN
+
+
+def opened(shape: ModelShape, positions: Positions) -> ModelShape:
+    """A shape whose leaves stand at these positions. Its box, `size_m`, remains that of the shape as drawn.
+
+    The hollows of its frame stay, for a cabinet holds what is in it whether its door is open or not. What a
+    slide carries, surfaces and hollows, is shifted; a hinge carries things on what it turns level.
+    """
+    if not positions:
+        return shape
+    parts = list(shape.parts)
+    surfaces: list[Surface | None] = list(shape.surfaces)
+    come: list[Surface] = []
+    interiors = list(shape.interiors)
+    for leaf, position in zip(shape.leaves, positions, strict=True):
+        if not position:
+            continue
+        turned, there = _motion(leaf, position)
+        for k in leaf.parts:
+            parts[k] = _moved(parts[k], turned, there)
+        for k in leaf.surfaces:
+            surface = surfaces[k]
+            surfaces[k] = _shifted(surface, there) if surface and leaf.kind == "slide" else None
+        if leaf.kind == "slide":
+            interiors += (_carried(interior, leaf.name, there) for interior in leaf.interiors)
+        else:
+            least = _LEAST_TOP * shape.size_m[0] * shape.size_m[1]
+            come += _level_tops((parts[k] for k in leaf.parts), least)
+    kept = (*filter(None, surfaces), *come)
+    return structs.replace(
+        shape,
+        parts=tuple(parts),
+        surfaces=tuple(sorted(kept, key=lambda surface: -surface.height)),
+        interiors=tuple(interiors),
+    )
+
+
+def joint_at(leaf: LeafShape, position: float) -> Joint:
+    """A leaf's joint as it stands."""
+    return structs.replace(_joint(leaf), position=position)
+
+
+def _joint(leaf: LeafShape) -> Joint:
+    lower, upper = leaf.limits or (None, None)
+    return Joint(name=leaf.name, kind=leaf.kind, lower=lower, upper=upper, closed=leaf.closed)
+
+
+def _within(leaf: LeafShape, position: float) -> float:
+    if leaf.limits is not None:
+        position = min(leaf.limits[1], max(leaf.limits[0], position))
+    return position if abs(position) > _NEGLIGIBLE else 0.0
+
+
+def _motion(leaf: LeafShape, position: float) -> tuple[_Map, _Map]:
+    """How a joint at a position turns directions, and where it takes points."""
+    x, y, z = leaf.axis
+    ax, ay, az = leaf.anchor
+    if leaf.kind == "slide":
+        dx, dy, dz = position * x, position * y, position * z
+        return (lambda vector: vector), (lambda point: (point[0] + dx, point[1] + dy, point[2] + dz))
+    cosine, sine = math.cos(position), math.sin(position)
+    rest = 1.0 - cosine
+    (a, b, c), (d, e, f), (g, h, i) = (
+        (cosine + rest * x * x, rest * x * y - sine * z, rest * x * z + sine * y),
+        (rest * x * y + sine * z, cosine + rest * y * y, rest * y * z - sine * x),
+        (rest * x * z - sine * y, rest * y * z + sine * x, cosine + rest * z * z),
+    )
+
+    def turned(vector: Vector) -> Vector:
+        u, v, w = vector
+        return a * u + b * v + c * w, d * u + e * v + f * w, g * u + h * v + i * w
+
+    def there(point: Vector) -> Vector:
+        u, v, w = turned((point[0] - ax, point[1] - ay, point[2] - az))
+        return ax + u, ay + v, az + w
+
+    return turned, there
+
+
+def _moved(part: ConvexPart, turned: _Map, there: _Map) -> ConvexPart:
+    return ConvexPart(
+        centre=there(part.centre),
+        straight=tuple(map(turned, part.straight)),
+        round=tuple(map(turned, part.round)),
+        points=tuple(map(turned, part.points)),
+    )
+
+
+def _shifted(surface: Surface, there: _Map) -> Surface:
+    x0, y0, height = there((*surface.low, surface.height))
+    x1, y1, _ = there((*surface.high, surface.height))
+    return structs.replace(surface, height=height, low=(x0, y0), high=(x1, y1))
+
+
+def _carried(interior: Interior, by: str, there: _Map) -> Interior:
+    return structs.replace(
+        interior, low=there(interior.low), high=there(interior.high), behind=(), carried_by=by
+    )
+
+
+def _level_tops(parts: Iterator[ConvexPart], least_m2: float) -> Iterator[Surface]:
+    """The tops of those boards that lie flat, along the axes of the model."""
+    for part in parts:
+        if len(part.straight) != 3 or part.round or part.points:
+            continue
+        up, *level = sorted(part.straight, key=_length)
+        if abs(up[2]) < _LEVEL * _length(up):
+            continue
+        half = (sum(abs(side[0]) for side in level), sum(abs(side[1]) for side in level))
+        if 4.0 * half[0] * half[1] < least_m2:
+            continue
+        x, y, z = part.centre
+        yield Surface(height=z + abs(up[2]), low=(x - half[0], y - half[1]), high=(x + half[0], y + half[1]))
+
+
+def _length(side: Vector) -> float:
+    return math.dist(_NOWHERE, side)

@@ -1,0 +1,127 @@
+"""Folders of frames: in each a colour picture, a depth picture, and the camera that took them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+from numpy.typing import NDArray
+
+from nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud, Floats, Transform
+from nodes.perception_node.input.files.image_files import opened
+from nodes.perception_node.input.projection import cloud_of, fits, is_pose, thinned, thinning
+from schemas import codec
+from schemas.errors import BadFile
+from schemas.wording import sentence
+
+COLOUR, DEPTH, CAMERA = "rgb.png", "depth.png", "camera.json"
+_FILES = (COLOUR, DEPTH, CAMERA)
+
+_FEWEST_MM = 100
+"""A depth picture whose largest number is less is in metres, or of nothing."""
+
+
+class FrameCamera(Struct, frozen=True, kw_only=True):
+    """What `camera.json` says: a pinhole [pixel], the corner of the picture at 0, and maybe its pose.
+
+    `width` and `height`: the pictures that it is for, where it says so. `map_from_camera`: (4, 4), row by
+    row, of the optical frame (x right, y down, z forward) [m].
+    """
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    width: int | None = None
+    height: int | None = None
+    map_from_camera: tuple[Any, ...] | None = None
+
+
+@dataclass(frozen=True)
+class FileFrame:
+    """A frame as it was read: its cloud, of every `step`-th pixel, and the pictures' own rows and columns."""
+
+    cloud: Cloud
+    step: int
+    shape: tuple[int, int]
+
+
+def frames_in(folder: Path) -> list[Path]:
+    """The folders of a dataset's frames, in the order of their names. Raises BadFile when there are none."""
+    try:
+        found = sorted(path for path in folder.iterdir() if path.is_dir())
+    except OSError as error:
+        raise BadFile(f"{folder} cannot be read: {error.strerror}") from None
+    if not found:
+        raise BadFile(f"{folder} has no folders of frames; each holds {COLOUR}, {DEPTH} and {CAMERA}")
+    return found
+
+
+def read_frame(folder: Path) -> FileFrame:
+    """The frame in a folder. Raises BadFile saying what is wrong with it."""
+    missing = [name for name in _FILES if not (folder / name).exists()]
+    if missing:
+        raise BadFile(f"{folder.name} lacks {' and '.join(missing)}")
+    of = CAMERA
+    try:
+        camera = _camera(folder / CAMERA)
+        of = COLOUR
+        with opened(folder / COLOUR) as image:
+            rgb = np.asarray(image.convert("RGB"))
+        of = DEPTH
+        with opened(folder / DEPTH) as image:
+            numbers = np.asarray(image) if image.mode in ("I;16", "I;16B", "I;16L", "I") else None
+        if numbers is None:
+            raise ValueError("it must have 16 bits in a single channel: millimetres, 0 for nothing seen")
+        if 0 < numbers.max(initial=0) < _FEWEST_MM:
+            raise ValueError(
+                f"its largest number is {numbers.max()}, as if it were in metres; it must be in millimetres"
+            )
+        of = CAMERA
+        return _put_together(rgb, (numbers * np.float32(0.001)).astype(np.float32), camera)
+    except OSError as error:
+        raise BadFile(f"{folder.name}/{of} cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise BadFile(f"{folder.name}/{of}: {error}") from None
+
+
+def _camera(path: Path) -> FrameCamera:
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=codec.prepared(FrameCamera))
+    except msgspec.DecodeError as error:
+        raise ValueError(sentence(error, FrameCamera)) from None
+
+
+def _put_together(rgb: NDArray[np.uint8], depth_m: Floats, camera: FrameCamera) -> FileFrame:
+    height, width = depth_m.shape
+    if rgb.shape[:2] != depth_m.shape:
+        raise ValueError(f"colour is {rgb.shape[1]} x {rgb.shape[0]} pixels, depth {width} x {height}")
+    intrinsics = np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]])
+    said = (camera.width or width, camera.height or height)
+    if said != (width, height) or not fits(intrinsics, width, height):
+        of = f"{said[0]} x {said[1]}" if said != (width, height) else "another size"
+        raise ValueError(
+            f"the intrinsics are those of pictures of {of}; these have {width} x {height} pixels"
+        )
+    step = thinning(width, height)
+    depth_m, colours, intrinsics = thinned(depth_m, rgb, intrinsics, step)
+    cloud = cloud_of(depth_m, colours, intrinsics, _pose(camera.map_from_camera))
+    if cloud.measured < FEWEST_POINTS:
+        raise ValueError(f"{DEPTH} has no depth from {NEAREST_M:g} to {FARTHEST_M:g} m")
+    return FileFrame(cloud, step, (height, width))
+
+
+def _pose(rows: tuple[Any, ...] | None) -> Transform | None:
+    if rows is None:
+        return None
+    try:
+        numbers = np.array(rows, dtype=float)
+    except (TypeError, ValueError):
+        numbers = np.empty(0)
+    if numbers.size != 16 or not is_pose(numbers.reshape(4, 4)):
+        raise ValueError("map_from_camera is not a 4 x 4 pose matrix: rotation, position, last row 0 0 0 1")
+    return numbers.reshape(4, 4)

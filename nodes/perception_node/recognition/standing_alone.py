@@ -1,0 +1,39 @@
+"""Which things stand by themselves: whatever else they are, no scraps of others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.recognition.joining import near
+from nodes.perception_node.views.merged_thing import Thing
+
+_SMALLEST_M, _LARGEST_M = 0.025, 0.5
+"""What such a thing measures at most: less is a scrap, more a piece of furniture or a wall."""
+_LIFTED_M = 0.02
+_FEWEST = 100
+_WORTH = 0.1
+"""A neighbour with a smaller share of its points is a scrap of its own."""
+
+
+def stand_alone(things: Sequence[Thing]) -> NDArray[np.bool_]:
+    """(N,) whether each is compact, seen whole, upon its support, and beside nothing else."""
+    alone = np.array([_is_compact(thing) for thing in things], dtype=bool)
+    for a, b in near(things):
+        for one, other in ((a, b), (b, a)):
+            if things[other].count > _WORTH * things[one].count:
+                alone[one] = False
+    return alone
+
+
+def _is_compact(thing: Thing) -> bool:
+    largest = float(max(thing.box.size_m))
+    return (
+        not thing.carrier
+        and thing.whole
+        and thing.count >= _FEWEST
+        and thing.lifted_m < _LIFTED_M
+        and _SMALLEST_M <= largest <= _LARGEST_M
+    )

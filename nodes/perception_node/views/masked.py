@@ -1,0 +1,90 @@
+"""A cloud cut up by somebody else's masks: in place of our own segments, or before them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from nodes.perception_node.input.masks import Masks, Said
+from nodes.perception_node.views.segmented_view import Sight, labelled
+
+_GAP_M, _GAP_SHARE = 0.015, 0.012
+"""Neighbouring pixels are of one surface if their depths differ by less: metres, and a share of the depth."""
+_FEWEST = 20
+_LEFT = 0.5
+"""What is covered more than this is covered: a segment of our own by masks, a mask by planes of the room."""
+
+
+def with_masks(sight: Sight, masks: Masks) -> Sight:
+    """The same cloud cut up by masks; elsewhere our own segments remain, unless they are to stand `alone`.
+
+    Raises ValueError for masks of another size.
+    """
+    if masks.labels.shape != sight.labels.shape:
+        (h, w), (height, width) = masks.labels.shape, sight.labels.shape
+        raise ValueError(f"the masks are of {w} x {h} pixels, the picture of {width} x {height}")
+    depth_m = sight.cloud.points_camera[..., 2]
+    labels, count = np.zeros_like(sight.labels), 0
+    said: dict[int, Said] = {}
+    for number, told in enumerate(masks.said, 1):
+        mask = masks.labels == number
+        clear = mask & (sight.planes == 0)
+        if np.count_nonzero(clear) < _LEFT * np.count_nonzero(mask):
+            clear = mask  # it lies flat on what it is on, or is a plane itself
+        own = _of_one_surface(clear, depth_m)
+        if np.count_nonzero(own) < _FEWEST:
+            continue
+        count += 1
+        labels[own] = count
+        if told is not None:
+            said[count] = told
+    masked, carriers = count, set[int]()
+    if not masks.alone:
+        for old in range(1, int(sight.labels.max(initial=0)) + 1):
+            where = sight.labels == old
+            free = where & (labels == 0)
+            if np.count_nonzero(free) > max(_FEWEST, (1.0 - _LEFT) * np.count_nonzero(where)):
+                count += 1
+                labels[free] = count
+                if old in sight.carriers:
+                    carriers.add(count)
+    undisputed = np.zeros((0, 0), np.float32)
+    cut = labelled(replace(sight, same=undisputed), labels, frozenset(carriers))
+    named = tuple(
+        replace(segment, masked=segment.label <= masked, said=said.get(segment.label))
+        for segment in cut.segments
+    )
+    return replace(cut, carriers=frozenset(carriers), segments=named)
+
+
+def _of_one_surface(mask: NDArray[np.bool_], depth_m: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """The largest part of a mask without a leap in depth: its rim often lies on what is behind."""
+    seen = mask & np.isfinite(depth_m)
+    rows, columns = (np.flatnonzero(seen.any(axis=axis)) for axis in (1, 0))
+    if not rows.size:
+        return seen
+    window = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    part, depth = seen[window], np.where(seen[window], depth_m[window], 0.0)
+    leap = np.zeros(part.shape, bool)
+    for axis in (0, 1):
+        near = np.minimum(*_neighbours(depth, axis))
+        step = np.abs(np.diff(depth, axis=axis)) > _GAP_M + _GAP_SHARE * near
+        both = _neighbours(part, axis)
+        edge = step & both[0] & both[1]
+        pad = [(0, 0), (0, 0)]
+        pad[axis] = (0, 1)
+        leap |= np.pad(edge, pad)
+    pieces, many = ndimage.label(part & ~leap, np.ones((3, 3)))
+    found = np.zeros_like(seen)
+    if many:
+        sizes = np.bincount(pieces.ravel())
+        sizes[0] = 0
+        found[window] = pieces == sizes.argmax()
+    return found
+
+
+def _neighbours(values: NDArray[np.generic], axis: int) -> tuple[NDArray[np.generic], NDArray[np.generic]]:
+    return (values[:-1], values[1:]) if axis == 0 else (values[:, :-1], values[:, 1:])

@@ -1,0 +1,122 @@
+"""Which things a scene has: our models, other forms and sizes of their classes, foreign and strange ones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from nodes.sim_node.models.model_table import MODELS
+from nodes.sim_node.models.parts import Colour, Parts, Vec3
+from nodes.training.scenes.foreign_things import ForeignThing, parts_of
+from nodes.training.scenes.paint import any_paint
+from nodes.training.scenes.simulated_scenes import STRANGE, Item, foreign_label
+from nodes.training.scenes.strange_things import size_of, strange_parts
+from nodes.training.scenes.varieties import VARIETIES, Form, any_size, is_like_another
+
+_HANGING = (
+    "air_conditioning blinds board boiler curtain door extractor_hood fences handle heating jacket_hook light"
+    " mirror picture poster power_plug shelf shower stairs switch tap thermostat wall window clock"
+    " washing_line rug"
+)
+HANGING = frozenset(_HANGING.split())
+"""Models that are part of a room, or hang on its walls: no objects that stand somewhere."""
+
+SMALL_M = 0.5
+SMALL = tuple(k for k, kind in MODELS.items() if max(kind.size_m) <= SMALL_M and k not in HANGING)
+LARGE = tuple(k for k, kind in MODELS.items() if max(kind.size_m) > SMALL_M and k not in HANGING)
+
+_SHARES = (0.5, 0.25, 0.12, 0.13)
+"""Of the small things: our models, varieties, foreign, strange ones."""
+_FOREIGN_SIZES = (0.88, 1.0, 1.0, 1.14)
+
+Lot = Callable[[], Item]
+"""The next thing, which has no place yet."""
+
+
+def small_things(foreign: Sequence[ForeignThing], rng: np.random.Generator) -> Lot:
+    """Small things of all sorts; those of one sort come about equally often."""
+    shares = np.array(_SHARES)
+    if not foreign:
+        shares[2] = 0.0
+    of_sort = [
+        own_things(SMALL, rng),
+        _varieties(rng),
+        _foreign(foreign, rng),
+        _strange(rng),
+    ]
+    return lambda: next(of_sort[int(rng.choice(len(of_sort), p=shares / shares.sum()))])
+
+
+def own_things(kinds: Sequence[str], rng: np.random.Generator) -> Iterator[Item]:
+    """Our models, a little larger or smaller, slimmer or stouter, painted."""
+    for kind in _deck(kinds, rng):
+        yield of_model(kind, rng)
+
+
+def of_model(kind: str, rng: np.random.Generator) -> Item:
+    """One of our models."""
+    return _thing(kind, varied_size(kind, rng), varied_colour(kind, rng), rng)
+
+
+def varied_size(kind: str, rng: np.random.Generator) -> Vec3:
+    """The model's own size, somewhat larger or smaller, slimmer or stouter."""
+    x, y, z = MODELS[kind].size_m * np.exp(rng.normal(0.0, 0.08) + rng.normal(0.0, 0.05, 3))
+    return (float(x), float(y), float(z))
+
+
+def varied_colour(kind: str, rng: np.random.Generator) -> Colour:
+    """The model's own colour under other light."""
+    red, green, blue = np.clip(np.array(MODELS[kind].colour) + rng.normal(0.0, 0.05, 3), 0.0, 1.0).tolist()
+    return (red, green, blue)
+
+
+def _varieties(rng: np.random.Generator) -> Iterator[Item]:
+    while True:
+        for number in rng.permutation(len(VARIETIES)):
+            variety = VARIETIES[number]
+            size = any_size(variety, rng)
+            while is_like_another(variety, size):
+                size = any_size(variety, rng)
+            thing = _thing(variety.model, size, varied_colour(variety.model, rng), rng)
+            yield replace(thing, form=variety.form)
+
+
+def _foreign(things: Sequence[ForeignThing], rng: np.random.Generator) -> Iterator[Item]:
+    while things:
+        for number in rng.permutation(len(things)):
+            thing = things[number]
+            factor = float(rng.choice(_FOREIGN_SIZES))
+            x, y, z = (factor * extent for extent in thing.size_m)
+            grey = float(rng.uniform(0.1, 0.9))
+            drawn = _thing("foreign", (x, y, z), (grey, grey, grey), rng)
+            yield replace(
+                drawn, form=_form_of(thing), said=foreign_label(thing.name, thing.classes[0], new=thing.new)
+            )
+
+
+def _form_of(thing: ForeignThing) -> Form:
+    return lambda x, y, z, colour: parts_of(thing, (x, y, z), colour)
+
+
+def _strange(rng: np.random.Generator) -> Iterator[Item]:
+    while True:
+        red, green, blue = rng.uniform(0.05, 0.95, 3).tolist()
+        parts = strange_parts(rng, (red, green, blue))
+        thing = _thing(STRANGE, size_of(parts), (red, green, blue), rng)
+        yield replace(thing, form=_ready(parts), said=STRANGE)
+
+
+def _ready(parts: Parts) -> Form:
+    return lambda _x, _y, _z, _colour: parts
+
+
+def _thing(kind: str, size_m: Vec3, colour: Colour, rng: np.random.Generator) -> Item:
+    return Item("", kind, size_m, colour, (0.0, 0.0, 0.0), 0.0, paint=any_paint(rng))
+
+
+def _deck(kinds: Sequence[str], rng: np.random.Generator) -> Iterator[str]:
+    """All of them in random order, again and again."""
+    while True:
+        yield from (str(kind) for kind in rng.permutation(kinds))

@@ -1,0 +1,52 @@
+"""Things that nobody here modelled, from a folder of data: meshes, upright, in metres."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from nodes.sim_node.models.model_files import read_model
+from nodes.sim_node.models.parts import Colour, Parts, Vec3
+
+_LEARN = "train"
+
+
+@dataclass(frozen=True)
+class ForeignThing:
+    """A thing: its mesh, the classes that it may be said to be of, and whether it is of none (`new`).
+
+    `learnable`: what is learnt from it may be shipped.
+    """
+
+    name: str
+    mesh: Path
+    classes: tuple[str, ...]
+    new: bool
+    size_m: Vec3
+    group: str
+    learnable: bool
+
+
+def foreign_things(folder: Path) -> list[ForeignThing]:
+    """The things that a folder's `things.json` tells of; none where there is no such file."""
+    file = folder / "things.json"
+    if not file.exists():
+        return []
+    return [
+        ForeignThing(
+            name=told["name"],
+            mesh=folder / told["file"],
+            classes=tuple(told["classes"]),
+            new=told["new"],
+            size_m=tuple(told["size_m"]),
+            group=told["group"],
+            learnable=_LEARN in told["use"],
+        )
+        for told in json.loads(file.read_text())
+    ]
+
+
+def parts_of(thing: ForeignThing, size_m: Vec3, colour: Colour) -> Parts:
+    """Its parts at a size, all of one colour."""
+    return [replace(part, colour=colour) for part in read_model(thing.mesh, size_m, 0).parts]

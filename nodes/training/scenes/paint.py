@@ -1,0 +1,111 @@
+"""Paint for things in pictures: what is learnt of a form is not to hang on the colour of our own models.
+
+It is put on after a picture was taken, on the pixels of a thing, and keeps their light and shade. Patterns
+lie in the thing's own coordinates, so that all cameras see the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Bytes = NDArray[np.uint8]
+Floats = NDArray[np.float32]
+Pattern = Callable[[Floats], Floats]
+"""From (N, 3) points in a thing's own coordinates, -1 to 1 along each side, to (N, 3) colours in [0, 1]."""
+
+_LEAST_LIGHT, _MOST_LIGHT = 0.35, 1.5
+_SHARES = {
+    "own": 0.3,
+    "plain": 0.25,
+    "dark": 0.1,
+    "light": 0.08,
+    "halves": 0.09,
+    "print": 0.12,
+    "patches": 0.06,
+}
+
+
+@dataclass(frozen=True)
+class Paint:
+    """What one thing is painted with; None leaves its own colours, `glow` times as bright."""
+
+    pattern: Pattern | None
+    glow: float = 1.0
+
+
+def any_paint(rng: np.random.Generator) -> Paint:
+    """Own colours under other light, one colour, black, white, two halves, a print, or patches."""
+    kind = str(rng.choice(list(_SHARES), p=list(_SHARES.values())))
+    if kind == "own":
+        return Paint(None, float(np.exp(rng.normal(0.0, 0.15))))
+    return Paint(_PATTERNS[kind](rng))
+
+
+def painted(colours: Bytes, points: Floats, paint: Paint) -> Bytes:
+    """(N, 3) rgb of a thing's pixels, painted; `points`: (N, 3) where these lie, see `Pattern`."""
+    if paint.pattern is None:
+        return np.asarray(np.clip(colours * np.float32(paint.glow), 0, 255), np.uint8)
+    grey = colours.mean(axis=1, dtype=np.float32) + 1.0
+    light = np.clip(grey / np.median(grey), _LEAST_LIGHT, _MOST_LIGHT)
+    return np.asarray(np.clip(255.0 * paint.pattern(points) * light[:, None], 0, 255), np.uint8)
+
+
+def _colour(rng: np.random.Generator) -> Floats:
+    """Any colour: of any hue, from pale to deep, from dark to bright."""
+    hue, saturation, value = rng.random(), rng.random() ** 0.7, rng.uniform(0.12, 0.95)
+    wheel = np.abs((6.0 * hue + np.array([0.0, 4.0, 2.0])) % 6.0 - 3.0) - 1.0
+    return np.asarray(value * (1.0 - saturation * (1.0 - np.clip(wheel, 0.0, 1.0))), np.float32)
+
+
+def _plain(colour: Floats) -> Pattern:
+    return lambda points: np.broadcast_to(colour, points.shape)
+
+
+def _grey(low: float, high: float) -> Callable[[np.random.Generator], Pattern]:
+    return lambda rng: _plain(
+        np.clip(rng.uniform(low, high) + rng.normal(0.0, 0.015, 3), 0.0, 1.0).astype(np.float32)
+    )
+
+
+def _halves(rng: np.random.Generator) -> Pattern:
+    """Two colours, apart at some height or beside one another; lids and handles are such."""
+    axis, at = int(rng.choice([0, 1, 2, 2, 2])), float(rng.uniform(-0.6, 0.8))
+    one, other = _colour(rng), _colour(rng)
+    return lambda points: np.where((points[:, axis] > at)[:, None], one, other)
+
+
+def _print(rng: np.random.Generator) -> Pattern:
+    """A colour with a band and blots of others: a label with something printed on it."""
+    base, band = _colour(rng), _colour(rng)
+    low, high = np.sort(rng.uniform(-0.9, 0.9, 2))
+    blots, spots = rng.uniform(-1.0, 1.0, (6, 3)), np.array([_colour(rng) for _ in range(6)])
+    size = rng.uniform(0.1, 0.5, 6)
+
+    def pattern(points: Floats) -> Floats:
+        found = np.where(((points[:, 2] > low) & (points[:, 2] < high))[:, None], band, base)
+        for blot, spot, reach in zip(blots, spots, size, strict=True):
+            found = np.where((np.abs(points - blot).max(axis=1) < reach)[:, None], spot, found)
+        return found.astype(np.float32)
+
+    return pattern
+
+
+def _patches(rng: np.random.Generator) -> Pattern:
+    """Each point has the colour of the nearest of some seeds."""
+    count = int(rng.integers(3, 9))
+    seeds, colours = rng.uniform(-1.0, 1.0, (count, 3)), np.array([_colour(rng) for _ in range(count)])
+    return lambda points: colours[((points[:, None] - seeds) ** 2).sum(axis=2).argmin(axis=1)]
+
+
+_PATTERNS: dict[str, Callable[[np.random.Generator], Pattern]] = {
+    "plain": lambda rng: _plain(_colour(rng)),
+    "dark": _grey(0.02, 0.2),
+    "light": _grey(0.8, 1.0),
+    "halves": _halves,
+    "print": _print,
+    "patches": _patches,
+}

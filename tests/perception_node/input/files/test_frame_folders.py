@@ -1,0 +1,93 @@
+"""Folders of frames: what is read, and what is said of one that cannot be."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from nodes.perception_node.input.files.frame_folders import frames_in, read_frame
+from schemas.errors import BadFile
+
+CAMERA = {"fx": 60.0, "fy": 60.0, "cx": 32.0, "cy": 24.0}
+
+
+def write_frame(folder, *, depth=None, size=(64, 48), **camera):
+    folder.mkdir(parents=True)
+    Image.new("RGB", size, (10, 200, 30)).save(folder / "rgb.png")
+    depth = np.full((48, 64), 1500, np.uint16) if depth is None else depth
+    Image.fromarray(depth).save(folder / "depth.png")
+    (folder / "camera.json").write_text(json.dumps({**CAMERA, **camera}))
+    return folder
+
+
+def test_a_frame_is_its_cloud_with_colours(tmp_path):
+    frame = read_frame(write_frame(tmp_path / "a"))
+    assert frame.shape == (48, 64)
+    assert frame.cloud.map_from_camera is None
+    assert frame.cloud.points_camera[23, 31] == pytest.approx((-0.0125, -0.0125, 1.5))
+    assert frame.cloud.colors[0, 0].tolist() == [10, 200, 30]
+
+
+@pytest.mark.parametrize("flat", [True, False])
+def test_a_pose_is_sixteen_numbers_or_four_rows(tmp_path, flat):
+    pose = np.eye(4)
+    pose[:3, 3] = 1.0, 2.0, 3.0
+    said = pose.ravel().tolist() if flat else pose.tolist()
+    frame = read_frame(write_frame(tmp_path / "a", map_from_camera=said))
+    assert frame.cloud.map_from_camera.tolist() == pose.tolist()
+
+
+def test_a_large_picture_is_thinned(tmp_path):
+    large = np.full((1200, 1600), 2000, np.uint16)
+    lens = {"fx": 1500.0, "fy": 1500.0, "cx": 800.0, "cy": 600.0}
+    frame = read_frame(write_frame(tmp_path / "a", depth=large, size=(1600, 1200), **lens))
+    assert (frame.step, frame.shape, frame.cloud.points_camera.shape) == (3, (1200, 1600), (400, 534, 3))
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        ({"depth": np.full((24, 32), 900, np.uint16)}, "colour is 64 x 48 pixels, depth 32 x 24"),
+        ({"depth": np.full((48, 64), 2, np.uint16)}, "millimetres"),
+        ({"depth": np.full((48, 64), 200, np.uint8)}, "16 bits"),
+        ({"depth": np.zeros((48, 64), np.uint16)}, "no depth"),
+        ({"width": 640, "height": 480}, "pictures of 640 x 480; these have 64 x 48 pixels"),
+        ({"cx": 320.0, "cy": 240.0, "fx": 600.0, "fy": 600.0}, "pictures of another size"),
+        ({"map_from_camera": [[1, 2], [3]]}, "4 x 4 pose matrix"),
+        ({"fx": "wide"}, "fx"),
+    ],
+)
+def test_what_is_wrong_is_said_with_the_frame_and_its_file(tmp_path, made, said):
+    with pytest.raises(BadFile, match=said) as error:
+        read_frame(write_frame(tmp_path / "table7", **made))
+    assert error.value.text.startswith("table7/")
+
+
+def test_half_a_frame_is_told_what_it_lacks(tmp_path):
+    (write_frame(tmp_path / "table7") / "depth.png").unlink()
+    with pytest.raises(BadFile, match=r"table7 lacks depth\.png"):
+        read_frame(tmp_path / "table7")
+
+
+def test_a_truncated_picture_is_said_to_be_one(tmp_path):
+    picture = write_frame(tmp_path / "table7") / "rgb.png"
+    picture.write_bytes(picture.read_bytes()[:60])
+    with pytest.raises(BadFile, match=r"table7/rgb\.png: .*truncated"):
+        read_frame(tmp_path / "table7")
+
+
+def test_frames_are_the_folders_in_the_order_of_their_names(tmp_path):
+    for name in ("b", "a10", "a9"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "readme.txt").touch()
+    assert [path.name for path in frames_in(tmp_path)] == ["a10", "a9", "b"]
+
+
+def test_a_folder_without_frames_is_refused(tmp_path):
+    with pytest.raises(BadFile, match="no folders of frames"):
+        frames_in(tmp_path)
+    with pytest.raises(BadFile, match="cannot be read"):
+        frames_in(tmp_path / "missing")

@@ -1,0 +1,64 @@
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from nodes.perception_node.input.files.mask_files import read_masks
+from nodes.perception_node.input.masks import Said
+from schemas.errors import BadFile
+
+LABELS = np.array([[0, 1, 1], [0, 2, 2]])
+FIRST = {"segmentation": {"size": [2, 3], "counts": [2, 1, 1, 1, 1]}, "score": 0.7}
+
+
+def test_results_and_datasets_of_coco(tmp_path):
+    (tmp_path / "a.json").write_text(json.dumps([{**FIRST, "category": "cup"}, {**FIRST, "category_id": 7}]))
+    results = read_masks(tmp_path / "a.json", 2, 3)
+    assert results.said == (Said("cup", 0.7), Said("7", 0.7))
+    dataset = {"categories": [{"id": 7, "name": "coffee mug"}], "annotations": [{**FIRST, "category_id": 7}]}
+    (tmp_path / "b.json").write_text(json.dumps(dataset))
+    found = read_masks(tmp_path / "b.json", 2, 3)
+    assert found.said == (Said("coffee mug", 0.7),)
+    assert found.labels.tolist() == [[0, 1, 1], [0, 0, 0]]
+
+
+def test_label_images(tmp_path):
+    np.save(tmp_path / "a.npy", LABELS)
+    Image.fromarray(LABELS.astype(np.uint8)).save(tmp_path / "a.png")
+    for name in ("a.npy", "a.png"):
+        found = read_masks(tmp_path / name, 2, 3)
+        assert found.labels.tolist() == LABELS.tolist()
+        assert found.said == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("a.json", b"{", "not JSON"),
+        ("a.json", b"{}", "expected a list of masks"),
+        ("a.json", b"[3]", "needs a segmentation"),
+        ("a.json", b'[{"segmentation": [[1, 2, 3]]}]', "polygons are not supported"),
+        ("a.json", b'[{"segmentation": {"size": [2, 2], "counts": [4]}}]', "2 x 2 pixels"),
+        ("a.json", b'[{"segmentation": {"size": "x", "counts": [4]}}]', "a.json"),
+        ("a.npy", b"nothing", "a.npy"),
+        ("a.txt", b"", "masks are"),
+    ],
+)
+def test_what_is_wrong_is_said_with_the_file(tmp_path, name, content, said):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(BadFile, match=said):
+        read_masks(tmp_path / name, 2, 3)
+
+
+def test_images_of_another_size_or_of_no_numbers(tmp_path):
+    np.save(tmp_path / "a.npy", LABELS)
+    with pytest.raises(BadFile, match="3 x 3 whole numbers; this one is of shape 3 x 2"):
+        read_masks(tmp_path / "a.npy", 3, 3)
+    np.save(tmp_path / "b.npy", LABELS / 2)
+    with pytest.raises(BadFile, match="float64"):
+        read_masks(tmp_path / "b.npy", 2, 3)
+    with pytest.raises(BadFile, match="cannot be read"):
+        read_masks(tmp_path / "missing.png", 2, 3)

@@ -1,0 +1,50 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nodes.perception_node.recognition.recognise import recognise
+from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, shipped
+from nodes.perception_node.recognition.standing_alone import stand_alone
+from tests.perception_node.recognition.test_features import block
+
+THING = block(((0.0, 0.0, 0.0), (0.2, 0.1, 0.1)))
+FAR = block(((0.5, 0.0, 0.0), (0.6, 0.1, 0.1)))
+BESIDE = block(((0.22, 0.0, 0.0), (0.32, 0.1, 0.1)))
+SCRAP = block(((0.22, 0.0, 0.0), (0.24, 0.02, 0.05)))
+
+
+def test_things_apart_stand_alone_and_neighbours_do_not():
+    assert stand_alone([THING, FAR]).tolist() == [True, True]
+    assert stand_alone([THING, BESIDE, FAR]).tolist() == [False, False, True]
+
+
+def test_a_scrap_beside_a_thing_does_not_count():
+    assert stand_alone([THING, SCRAP])[0]
+
+
+@pytest.mark.parametrize(
+    "thing",
+    [
+        replace(THING, lifted_m=0.1),
+        replace(THING, segments=(replace(THING.segments[0], cut=True),)),
+        replace(THING, segments=(replace(THING.segments[0], count=20),)),
+        replace(THING, segments=(replace(THING.segments[0], carrier=True),)),
+        block(((0.0, 0.0, 0.0), (0.9, 0.02, 0.2))),
+    ],
+    ids=["in mid-air", "cut by the picture's edge", "of few points", "a table top", "large"],
+)
+def test_what_may_be_a_piece_does_not_stand_alone(thing):
+    assert not stand_alone([thing])[0]
+
+
+def test_what_stands_alone_is_an_object_however_much_it_looks_like_clutter():
+    learnt = shipped()
+    chances = np.zeros((2, len(learnt.classes)))
+    chances[:, learnt.classes.index(CLUTTER)] = 0.95
+    chances[:, learnt.classes.index("Book")] = 0.05
+    kept, dropped = recognise([THING, replace(FAR, lifted_m=0.2)], chances, learnt)
+    assert kept is not None
+    assert kept.class_ == UNKNOWN
+    assert kept.probability >= 0.95
+    assert dropped is None

@@ -1,0 +1,97 @@
+import json
+from collections import Counter
+
+import numpy as np
+import pytest
+import trimesh
+
+from nodes.sim_node.models.model_table import MODELS
+from nodes.sim_node.models.parts import bounds
+from nodes.training.scenes.drawing_lots import SMALL, small_things
+from nodes.training.scenes.foreign_things import foreign_things
+from nodes.training.scenes.simulated_scenes import STRANGE, foreign_class, tinted
+from nodes.training.scenes.strange_things import size_of, strange_parts
+from nodes.training.scenes.varieties import VARIETIES, any_size, carton, is_like_another
+
+
+@pytest.fixture
+def folder(tmp_path):
+    told = [
+        {
+            "name": name,
+            "file": f"{name}/model.obj",
+            "classes": ["Ball"],
+            "new": new,
+            "size_m": [0.1, 0.1, 0.1],
+        }
+        | {"group": "made", "use": use}
+        for name, new, use in [("mine", False, "measure and train"), ("odd", True, "measure only")]
+    ]
+    for thing in told:
+        mesh = trimesh.creation.icosphere(subdivisions=1, radius=0.05)
+        mesh.apply_translation([0.0, 0.0, 0.05])
+        (tmp_path / thing["name"]).mkdir()
+        mesh.export(tmp_path / thing["file"])
+    (tmp_path / "things.json").write_text(json.dumps(told))
+    return tmp_path
+
+
+def test_foreign_things_are_those_of_their_table(folder, tmp_path):
+    mine, odd = foreign_things(folder)
+    assert (mine.name, mine.classes, mine.new, mine.learnable) == ("mine", ("Ball",), False, True)
+    assert (odd.new, odd.learnable) == (True, False)
+    assert foreign_things(tmp_path / "nowhere") == []
+
+
+def test_there_are_things_of_all_sorts_and_each_can_be_built(folder):
+    lot = small_things(foreign_things(folder), np.random.default_rng(0))
+    things = [lot() for _ in range(300)]
+    labels = Counter(thing.label for thing in things)
+    assert labels[STRANGE] > 20
+    assert labels["mine@Ball"] > 5
+    assert labels["odd@"] > 5
+    assert set(labels) - {STRANGE, "mine@Ball", "odd@"} <= set(MODELS)
+    assert sum(thing.form is None for thing in things) > 100
+    for thing in things[:60]:
+        assert tinted(thing).parts
+
+
+def test_without_a_folder_nothing_is_foreign():
+    lot = small_things([], np.random.default_rng(0))
+    assert all(foreign_class(lot().label) is None for _ in range(100))
+
+
+@pytest.mark.parametrize("variety", VARIETIES, ids=lambda v: f"{v.model}-{getattr(v.form, '__name__', '')}")
+def test_a_variety_measures_about_what_it_is_to_measure(variety):
+    rng = np.random.default_rng(0)
+    for _ in range(5):
+        size = any_size(variety, rng)
+        assert (np.array(size) >= np.array(variety.low_m) - 1e-9).all()
+        assert (np.array(size) <= np.array(variety.high_m) + 1e-9).all()
+        low, high = bounds(variety.form(*size, (0.5, 0.5, 0.5)))
+        assert low[2] == pytest.approx(0.0, abs=0.1 * size[2])
+        np.testing.assert_allclose(np.sort(high - low), np.sort(size), rtol=0.35, atol=0.004)
+    assert variety.model in SMALL
+
+
+def test_a_cuboid_as_large_as_cereals_is_not_said_to_be_a_box():
+    box = next(variety for variety in VARIETIES if variety.form is carton)
+    assert is_like_another(box, (0.07, 0.19, 0.29))
+    assert is_like_another(box, (0.19, 0.07, 0.28))
+    assert not is_like_another(box, (0.10, 0.10, 0.10))
+
+
+def test_strange_things_stand_on_the_ground_and_hang_together():
+    rng = np.random.default_rng(0)
+    for _ in range(50):
+        parts = strange_parts(rng, (0.5, 0.5, 0.5))
+        low, high = bounds(parts)
+        assert low[2] == pytest.approx(0.0, abs=1e-9)
+        assert low[:2] + high[:2] == pytest.approx([0.0, 0.0], abs=1e-9)
+        assert max(size_of(parts)) < 1.0
+
+
+def test_a_foreign_label_tells_thing_and_class():
+    assert foreign_class("ycb can@Can") == ("ycb can", "Can")
+    assert foreign_class("ycb drill@") == ("ycb drill", "")
+    assert foreign_class("cup") is None
