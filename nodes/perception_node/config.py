@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -43,3 +44,5 @@ class PerceptionConfig:
 
     tracking: TrackingConfig = field(default_factory=TrackingConfig)
     network: Network = field(default_factory=Network)
+    labels: Mapping[str, str] = field(default_factory=dict)
+    """From the labels of a detector of one's own to classes; class names need no entry."""

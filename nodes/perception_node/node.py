@@ -19,7 +19,9 @@ from nodes import bus
 from nodes.perception_node.config import PerceptionConfig
 from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.input.frame_worker import FrameWorker
+from nodes.perception_node.input.masks import Masks
 from nodes.perception_node.pipeline import Look, look, shipped
+from nodes.perception_node.recognition.told_names import Labels
 from nodes.perception_node.segmented_cloud import segmented_cloud
 from nodes.perception_node.tracking.association import associate, renamed
 from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy, hierarchy_of
@@ -57,10 +59,13 @@ class Perception:
         self,
         node: Node,
         config: PerceptionConfig,
-        look: Callable[[Sequence[Cloud]], Look],
+        look: Callable[[Sequence[Cloud], Sequence[Masks | None]], Look],
         usual_m: Mapping[str, Size],
     ) -> None:
-        """`look(clouds)` tells what clouds of one moment show, `usual_m` what things of a class measure."""
+        """`look(clouds, masks)` tells what clouds of one moment, and a detector's masks in them, show.
+
+        `usual_m`: what things of a class measure.
+        """
         self._node = node
         self._config = config
         self._usual_m = usual_m
@@ -80,6 +85,7 @@ class Perception:
         node.every(0.5, self._tick)
         node.follow_newest(keys.DETECTIONS, self._on_detections)
         self._worker = FrameWorker(look, self._hand_over, self._complain)
+        bus.follow(node.session, keys.MASKS, lambda _, found: self._worker.keep_masks(found))
         for plane in ("rgb", "depth"):
             bus.follow_cameras(node.session, plane, self._worker.keep, self._complain)
 
@@ -108,6 +114,8 @@ class Perception:
     def _on_look(self, clouds: Sequence[Cloud], found: Look, took_s: float) -> None:
         self._looked_at = time.monotonic()
         seen = found.observations
+        if found.unknown_labels:
+            self._on_complaint(wording.unknown_labels(found.unknown_labels))
         self._compare(seen, clouds)
         if time.monotonic() >= self._cloud_due and self._cloud_is_wanted():
             self._cloud_due = time.monotonic() + _CLOUD_S
@@ -208,7 +216,10 @@ def run(config: PerceptionConfig) -> None:
     """Look until stopped. Raises BadFile when what perception learnt cannot be read."""
     learnt = shipped()
     with open_node("perception_node", config.network) as node:
-        perception = Perception(node, config, lambda clouds: look(clouds, learnt), learnt.usual_m)
+        labels = Labels(learnt, config.labels)
+        perception = Perception(
+            node, config, lambda clouds, masks: look(clouds, learnt, masks, labels), learnt.usual_m
+        )
         try:
             node.run()
         finally:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,11 +32,13 @@ __all__ = ["Learnt", "Look", "look", "look_at", "observe", "one_by_one", "parts_
 class Look:
     """What one look gave: the observations, and for each cloud (H, W) whose pixel belongs to which of them.
 
-    In `labels` 0 is background and n stands for `observations.observations[n - 1]`.
+    In `labels` 0 is background and n stands for `observations.observations[n - 1]`. `unknown_labels`: what a
+    detector said that is no class here.
     """
 
     observations: Observations
     labels: tuple[NDArray[np.int32], ...]
+    unknown_labels: tuple[str, ...] = ()
 
 
 def observe(clouds: Sequence[Cloud], learnt: Learnt) -> Observations:
@@ -58,7 +60,8 @@ def look(
     """
     with ThreadPoolExecutor(max(1, len(clouds))) as threads:
         sights = list(threads.map(_seen, clouds, [*masks] or [None] * len(clouds)))
-    return look_at(sights, learnt, labels)
+    labels = labels or Labels(learnt)
+    return replace(look_at(sights, learnt, labels), unknown_labels=labels.unknown(masks))
 
 
 def _seen(cloud: Cloud, masks: Masks | None) -> Sight:
