@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 
 _SAY_S = 5.0
 """After this time it is told again how far a dataset is."""
-_FRAMES = {"map": "map frame", "plane": "frame: the largest plane is z = 0, the camera above its origin"}
+_FRAMES = {
+    "map": "map frame",
+    "plane": "frame: the floor, or else the largest plane, is z = 0, the camera above its origin",
+}
 
 
 @click.command()
