@@ -54,6 +54,11 @@ def few(names: Collection[str], most: int = 10) -> str:
     return f"{', '.join(rest)} and {last}" if rest else last
 
 
+def unknown_labels(labels: Collection[str]) -> str:
+    """That labels of a detector's masks are no class, and what to do about it."""
+    return f"labels of masks that are no class here: {few(labels)}; --label-map FILE tells their classes"
+
+
 def carried(name: str, load: Collection[str], left: Collection[str] = ()) -> str:
     """What a thing carried along; `left` is what was to stay."""
     if not load and left:
