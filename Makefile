@@ -24,7 +24,7 @@ $(UV):
 	@$(BIN)/python -m compileall -q semmap nodes schemas ontology  # each start of a node, too, is quicker
 	@touch $@
 
-demo: setup  ## A tour through every command; leaves demo/flat.owl, demo/session.rrd, demo/scene.png
+demo: setup  ## A tour through the commands and a drive; leaves demo/flat.owl, session.rrd, drive.rrd, scene.png
 	$(BIN)/python -m demo.tour
 
 test: setup  ## The tests, about ten minutes

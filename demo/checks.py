@@ -9,10 +9,13 @@ import numpy as np
 from PIL import Image
 
 from nodes.recorder.recorded_commits import read_commits
+from nodes.recorder.whole_part import chunks
 
 if TYPE_CHECKING:
     from demo.tour import Tour
 
+_ROBOT, _POSITION = "/map/bodies/robot1", "Transform3D:translation"
+_DRIVEN_M, _POSES = 2.0, 40
 _SAID = ("name", "class", "types", "pose", "size_m", "preferred_reference", "alternative_references")
 
 
@@ -34,6 +37,17 @@ def check_recording(path: Path, commits: int, failures: list[str]) -> None:
     print(f"{path.name}: {len(recorded)} commits, of {commits}")
     if recorded != list(range(1, commits + 1)):
         failures.append(f"{path} does not hold every commit: {recorded}")
+
+
+def check_drive(path: Path, failures: list[str]) -> None:
+    """The recording shows the robot on its way, not only where it stopped."""
+    batches = (chunk.to_record_batch() for chunk in chunks(path) if chunk.entity_path == _ROBOT)
+    columns = (batch.column(_POSITION).to_pylist() for batch in batches if _POSITION in batch.schema.names)
+    positions = np.array([at for column in columns for (at,) in filter(None, column)]).reshape(-1, 3)
+    length_m = float(np.linalg.norm(np.diff(positions, axis=0), axis=1).sum())
+    print(f"{path.name}: the robot drives {length_m:.1f} m, in {len(positions)} poses")
+    if length_m < _DRIVEN_M or len(positions) < _POSES:
+        failures.append(f"{path} does not show how the robot drives")
 
 
 def check_picture(path: Path, failures: list[str]) -> None:

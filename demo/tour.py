@@ -1,4 +1,4 @@
-"""`make demo`: a system on loopback, a tour through every command, and a check of what it leaves.
+"""`make demo`: systems on loopback, a tour through the commands, a drive, and a check of what they leave.
 
 Everything goes through the command line, as a user would do it. Ends with 0 when every step did what was
 expected of it and what it leaves is as it should be.
@@ -21,12 +21,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from threading import Thread
 
-from demo.checks import check_export, check_picture, check_recording
+from demo.checks import check_drive, check_export, check_picture, check_recording
+from demo.drive import CAMERA, ROBOT, drive
 
 HERE = Path(__file__).parent
 DATA = HERE / "data"
 EXPORT = HERE / "flat.owl"
 RECORDING = HERE / "session.rrd"
+DRIVE = HERE / "drive.rrd"
 PICTURE = HERE / "scene.png"
 _BIN = Path(sys.executable).parent
 _SHOWN_LINES = 14
@@ -149,7 +151,7 @@ def _in_order(texts: Sequence[str], lines: Sequence[str]) -> bool:
 
 
 def tour(t: Tour) -> None:
-    """Through all commands."""
+    """Through the commands; those about a robot are in `demo.drive`."""
     t.tell("Who is there, and what is in the map")
     t.do("status")
     t.until("map and scene agree", t.agrees)
@@ -295,16 +297,34 @@ def tour(t: Tour) -> None:
 
 
 def main() -> int:
-    """Run the tour."""
+    """Run both parts of the tour, each on a system of its own."""
+    for left in (EXPORT, RECORDING, DRIVE, PICTURE):
+        left.unlink(missing_ok=True)
+    failures: list[str] = []
+    commits = _on_a_system(tour, (), RECORDING, failures)
+    driven = _on_a_system(drive, (*ROBOT, *CAMERA), DRIVE, failures)
+    print("\n# Check what is left")
+    check_recording(RECORDING, commits, failures)
+    check_recording(DRIVE, driven, failures)
+    check_drive(DRIVE, failures)
+    check_picture(PICTURE, failures)
+    for failure in failures:
+        print(f"FAILED  {failure}")
+    print("demo: " + (f"{len(failures)} steps failed" if failures else "all went well"))
+    return 1 if failures else 0
+
+
+def _on_a_system(
+    part: Callable[[Tour], None], words: Sequence[str], recording: Path, failures: list[str]
+) -> int:
+    """Do a part of the tour on `semmap up WORDS` with a new map, and keep its recording; how many commits."""
+    shutil.rmtree(DATA, ignore_errors=True)
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
-    shutil.rmtree(DATA, ignore_errors=True)
-    for left in (EXPORT, RECORDING, PICTURE):
-        left.unlink(missing_ok=True)
-    words = ["up", "--data", str(DATA), "--listen", endpoint]
-    print(f"$ semmap {' '.join(words)}", flush=True)
-    system = subprocess.Popen([_BIN / "semmap", *words], stdout=subprocess.PIPE, text=True)
+    up = ["up", "--data", str(DATA), "--listen", endpoint, *words]
+    print(f"$ semmap {' '.join(up)}", flush=True)
+    system = subprocess.Popen([_BIN / "semmap", *up], stdout=subprocess.PIPE, text=True)
     t = Tour(endpoint)
     try:
         assert system.stdout is not None
@@ -313,22 +333,17 @@ def main() -> int:
             if line.startswith("stop"):
                 break
         else:
-            return system.wait() or 1
-        tour(t)
+            raise SystemExit(system.wait() or 1)
+        part(t)
         commits = int(t.ask("status")["commit"])  # type: ignore[index, call-overload]
     finally:
         t.tell("Stop")
         system.send_signal(signal.SIGINT)
         system.wait()
+        failures += t.failures
     (recorded,) = sorted((DATA / "recordings").glob("*.rrd"))
-    shutil.copy(recorded, RECORDING)
-    t.tell("Check what is left")
-    check_recording(RECORDING, commits, t.failures)
-    check_picture(PICTURE, t.failures)
-    for failure in t.failures:
-        print(f"FAILED  {failure}")
-    print("demo: " + (f"{len(t.failures)} steps failed" if t.failures else "all went well"))
-    return 1 if t.failures else 0
+    shutil.copy(recorded, recording)
+    return commits
 
 
 if __name__ == "__main__":

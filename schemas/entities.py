@@ -87,6 +87,12 @@ class Pose(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=Tr
         w, x, y, z = self.orientation_wxyz
         return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
+    @property
+    def upright(self) -> float:
+        """The cosine of the angle between its own z axis and the map's: 1 upright, 0 on its side."""
+        _, x, y, _ = self.orientation_wxyz
+        return 1.0 - 2.0 * (x * x + y * y)
+
 
 def name_stem(class_name: str) -> str:
     """What the names of a class's entities begin with: the class in lower case, without a prefix."""

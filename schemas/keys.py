@@ -14,7 +14,7 @@ from schemas.commits import Commit, Effects
 from schemas.frames import FramePose
 from schemas.health import Health
 from schemas.live import LivePose, LivePoses
-from schemas.perception import Observations, SegmentedCloud
+from schemas.perception import DetectedMasks, Observations, SegmentedCloud
 from schemas.relations import Described
 from schemas.replies import Ack
 from schemas.scenes import Poses
@@ -75,6 +75,8 @@ OBSERVATIONS = Topic(f"{PERCEPTION}/observations", Observations, "newest")
 CLOUD = Topic(f"{PERCEPTION}/cloud", SegmentedCloud, "newest")
 DETECTIONS = Topic(f"{PERCEPTION}/detections", Observations, "newest")
 """What a detector of one's own has seen: perception compares it with the map as it does with what it sees."""
+MASKS = Topic(f"{PERCEPTION}/masks", DetectedMasks, "newest")
+"""What a 2-D detector of one's own has found in a camera's picture: perception cuts that up by it."""
 HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 
 TOPICS = (
@@ -91,6 +93,7 @@ TOPICS = (
     OBSERVATIONS,
     CLOUD,
     DETECTIONS,
+    MASKS,
     HEALTH,
 )
 

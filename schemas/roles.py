@@ -103,6 +103,7 @@ GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.OBSERVATIONS, publish=frozenset(("perception",))),
     *_topic(keys.CLOUD, publish=frozenset(("perception",))),
     *_topic(keys.DETECTIONS, publish=frozenset(("perception",))),
+    *_topic(keys.MASKS, publish=frozenset(("perception",))),
     *_topic(keys.CAMERA, publish=frozenset(("robot",))),
     *_topic(keys.ACK, follow=_NODES),
     Grant("ask", f"{keys.BRIDGE}/snapshot", ANYBODY),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Final, Literal
 
 from msgspec import Meta, Struct, field
 
@@ -12,6 +12,10 @@ from schemas.joints import Joint
 
 PixelCount = Annotated[int, Meta(ge=1, le=1 << 14)]
 """How wide or high a picture may be."""
+
+
+UPRIGHT: Final = 0.85
+"""A robot stands as long as its own z axis is so much of an upright one; at 32 degrees it falls over."""
 
 
 class BodyOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -65,6 +69,11 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     grip_commit: int = -1
     robot: bool = False
     """It was put there by `semmap up --robot`: it becomes an entity whatever the truth is, and is tracked."""
+
+    @property
+    def has_fallen(self) -> bool:
+        """Whether it is a robot that lies on its side."""
+        return self.robot and not self.part_of and self.pose.upright < UPRIGHT
 
 
 class Spawned(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

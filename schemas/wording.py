@@ -8,7 +8,7 @@ from typing import Any
 
 from msgspec import DecodeError, ValidationError, inspect
 
-from schemas.entities import NAME_PATTERN
+from schemas.entities import NAME_PATTERN, Pose
 from schemas.errors import did_you_mean
 
 _AT = re.compile(r"(.*) - at `(?:key` in `)?\$(.*)`", re.DOTALL)
@@ -32,6 +32,13 @@ def bodies(count: int) -> str:
     return counted(count, "body", "bodies")
 
 
+def fallen(name: str, pose: Pose) -> str:
+    """Of a robot that lies on its side: where, and how it gets up."""
+    x, y, _ = pose.position_m
+    there = f"at ({x:.2f}, {y:.2f})"
+    return f"has fallen over {there}; to put it upright: semmap move {name} --at {x:.2f} {y:.2f} 0 --yaw 0"
+
+
 def duration(seconds: float) -> str:
     """A length of time as a person says it: `12 s`, `5 min`, `3.5 h`, `12 days`."""
     for unit, length_s, most in (("s", 1.0, 120.0), ("min", 60.0, 7200.0), ("h", 3600.0, 172_800.0)):
@@ -45,6 +52,11 @@ def few(names: Collection[str], most: int = 10) -> str:
     shown = list(names) if len(names) <= most else [*list(names)[: most - 1], f"{len(names) - most + 1} more"]
     *rest, last = shown or ["nothing"]
     return f"{', '.join(rest)} and {last}" if rest else last
+
+
+def unknown_labels(labels: Collection[str]) -> str:
+    """That labels of a detector's masks are no class, and what to do about it."""
+    return f"labels of masks that are no class here: {few(labels)}; --label-map FILE tells their classes"
 
 
 def carried(name: str, load: Collection[str], left: Collection[str] = ()) -> str:

@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import stat
+import subprocess
 import time
 
 import psutil
@@ -13,6 +14,7 @@ import pytest
 
 from nodes import bus
 from nodes.extern.client import connect
+from nodes.extern.testing import free_endpoint
 from nodes.identity import Identity, authority
 from schemas import codec, commands, errors, keys
 from schemas.commits import Commit
@@ -286,3 +288,63 @@ def test_what_one_may_not_follow_is_told(system, folder):
         "your certificate (viewer) may not follow 'semmap/**'; it may follow all of: semmap/jena/commit"
         in said
     )
+
+
+def test_what_is_live_comes_from_robots_and_is_heard_by_all(as_):
+    with as_("bob") as bob, as_("spot") as spot, as_("vera") as vera:
+        bob.add("Ball", "ball7", at=(3.0, 3.0, 0.0), track="stream")
+        spot.publish_frame("spot/lidar", "ball7", at=(0.0, 0.0, 0.3), fixed=True)
+
+        def is_live():
+            spot.publish_pose("ball7", at=(2.0, 3.0, 0.0))
+            live = vera.get("ball7").live
+            return live is not None and live.pose.position_m == (2.0, 3.0, 0.0)
+
+        until(is_live, "a viewer sees the robot's live pose")
+        placed = {frame.name: frame.map_pose for frame in vera.frames("spot/lidar")}
+        assert placed["spot/lidar"].position_m == pytest.approx((2.0, 3.0, 0.3))
+        for name in ("vera", "bob", "eye"):
+            with as_(name) as client:
+                with pytest.raises(errors.Refused, match="may not publish on semmap/live"):
+                    client.publish_pose("ball7", at=(0.0, 0.0, 0.0))
+                with pytest.raises(errors.Refused, match="may not publish on semmap/frame"):
+                    client.publish_frame("spot/lidar", "map")
+        bob.track("ball7", off=True)
+        spot.withdraw_frame("spot/lidar")
+
+
+def test_a_viewer_publishes_the_map_to_ros(system, folder):
+    endpoint = free_endpoint()
+    with bus.open_session(bus.Network(connect=(), listen=(endpoint,), mode="router")):
+        words = ("ros", "--router", endpoint, "--identity", str(folder / "vera"))
+        with system.spawned(*words, stderr=subprocess.PIPE) as process:
+            assert any("entities as of commit" in line for line in process.stderr)
+            process.stderr.close()
+
+
+@pytest.mark.parametrize("name", ["vera", "spot", "eye"])
+def test_only_operators_have_things_held_tracked_and_driven(as_, name):
+    with as_(name) as client:
+        for ask in (
+            lambda: client.attach("milk1", to="table1"),
+            lambda: client.detach("milk1"),
+            lambda: client.track("milk1"),
+            lambda: client.drive("table1", to=((0.0, 0.0),), frame="map"),
+            lambda: client.move("milk1", at=(0.0, 0.0, 0.0), frame="kitchen1"),
+        ):
+            with pytest.raises(errors.Refused, match="that takes the role 'operator' or 'admin'"):
+                ask()
+    with as_("bob") as bob:
+        assert "table1 holds milk1" in bob.attach("milk1", to="table1").text
+        assert "table1 let go of milk1" in bob.detach("milk1").text
+
+
+def test_nobody_without_the_role_forges_what_is_live(as_, raw):
+    with as_("bob") as bob, raw("vera") as vera, raw("bob") as forger:
+        bob.add("Ball", "ball8", at=(3.0, 3.0, 0.0), track="stream")
+        for session in (vera, forger):
+            session.put("semmap/live/ball8", json.dumps({"at": [0, 0, 0]}), encoding="application/json")
+            session.put("semmap/frame/dock8", json.dumps({"parent": "map", "fixed": True}))
+        time.sleep(1.0)
+        assert bob.get("ball8").live is None
+        assert "dock8" not in {frame.name for frame in bob.frames()}

@@ -15,6 +15,7 @@ from benchmarks.sim.made import p50_p95_ms
 from benchmarks.sim.system import Watch
 from benchmarks.table import Row
 from nodes import bus
+from nodes.coordinator.config import Thresholds
 from nodes.extern.client import Client
 from nodes.extern.testing import own_system
 from nodes.sim_node.models.library import Model, assemble, build
@@ -36,8 +37,8 @@ _PATIENCE_S = 60.0
 _IN_A_ROW = 5
 _STEP_S = 0.01
 _THERE_RAD = 0.001
-_OFF = 0.01
-"""A joint that stands so far [rad, m] from where the map states it is in disagreement."""
+_OFF = Thresholds().share + 0.002
+"""A joint is at odds with the map if it is off by more of its way than what the keeper lets be."""
 
 
 def measure(folder: Path, *, quick: bool) -> list[Row]:
@@ -246,5 +247,8 @@ def agrees(entity: Entity) -> bool:
         return is_open
     wanted = stated(joints, properties) or {joint.name: joint.initial for joint in joints}
     near_the_limit = share is not None and abs(share - OPEN_FROM) < _OFF
-    stands = all(abs(j.position - wanted.get(j.name, j.position)) < _OFF for j in joints)
+    stands = all(
+        abs((j.openness or 0.0) - (j.openness_at(wanted.get(j.name, j.position)) or 0.0)) < _OFF
+        for j in joints
+    )
     return stands and (is_open or near_the_limit)

@@ -6,6 +6,8 @@ import contextlib
 import os
 from pathlib import Path
 
+import msgspec
+
 from schemas import errors
 from schemas.packing import LARGEST
 
@@ -24,6 +26,16 @@ def read_file(path: Path) -> bytes:
     if len(content) > LARGEST:
         raise errors.BadFile(f"{path} is larger than {LARGEST >> 20} MiB; split it into several files")
     return content
+
+
+def read_label_map(path: Path) -> dict[str, str]:
+    """From a detector's labels to classes, as a JSON file has them. Raises BadFile."""
+    try:
+        return msgspec.json.decode(read_file(path), type=dict[str, str])
+    except msgspec.DecodeError:
+        raise errors.BadFile(
+            f'{path} is no map of labels to classes, such as {{"coffee mug": "Cup"}}'
+        ) from None
 
 
 def write_atomically(file: Path, content: bytes) -> None:

@@ -23,10 +23,14 @@ _AHEAD = 2
 
 
 class Told(NamedTuple):
-    """A frame's row, and (H, W) n where `row.objects[n - 1]` is seen, 0 for none; None on an error."""
+    """A frame's row, and (H, W) n where `row.objects[n - 1]` is seen, 0 for none; None on an error.
+
+    `unknown_labels`: what a detector said that is no class here.
+    """
 
     row: FrameRow
     labels: NDArray[np.int32] | None
+    unknown_labels: tuple[str, ...] = ()
 
 
 def perceived(folders: Sequence[Path], learnt: Learnt, detector: Detector | None = None) -> Iterator[Told]:
@@ -54,7 +58,9 @@ def _told(folder: Path, learnt: Learnt, detector: Detector | None) -> Told:
     labels = _whole(seen.labels[0], frame)
     boxes = _boxes(labels, len(seen.observations.observations))
     rows = zip(seen.observations.observations, boxes, strict=True)
-    return Told(FrameRow(frame=folder.name, objects=tuple(_object(*row) for row in rows)), labels)
+    return Told(
+        FrameRow(frame=folder.name, objects=tuple(_object(*row) for row in rows)), labels, seen.unknown_labels
+    )
 
 
 def _whole(labels: NDArray[np.int32], frame: FileFrame) -> NDArray[np.int32]:

@@ -8,8 +8,6 @@ from pathlib import Path
 from nodes.perception_node.input.files.mask_files import read_masks
 from nodes.perception_node.input.masks import Masks
 from nodes.perception_node.recognition.told_names import Labels
-from nodes.perception_node.views.masked import with_masks
-from nodes.perception_node.views.segmented_view import Sight
 
 
 @dataclass(frozen=True)
@@ -23,11 +21,7 @@ class Detector:
     labels: Labels
     alone: bool = False
 
-    def masks_of(self, file: Path, shape: tuple[int, int]) -> Masks:
+    def masks_of(self, file: Path, shape: tuple[int, ...]) -> Masks:
         """The masks in a file for a picture of this shape (H, W). Raises BadFile."""
-        return replace(read_masks(file, *shape), alone=self.alone)
-
-    def cut(self, sight: Sight) -> Sight:
-        """A picture that was taken apart, with its masks. Raises BadFile."""
-        height, width = sight.labels.shape
-        return with_masks(sight, self.masks_of(self.file, (height, width)))
+        height, width = shape
+        return replace(read_masks(file, height, width), alone=self.alone)

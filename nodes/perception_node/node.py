@@ -19,13 +19,16 @@ from nodes import bus
 from nodes.perception_node.config import PerceptionConfig
 from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.input.frame_worker import FrameWorker
-from nodes.perception_node.pipeline import Look, look, shipped
+from nodes.perception_node.input.masks import Masks
+from nodes.perception_node.pipeline import Look, shipped
+from nodes.perception_node.recognition.told_names import Labels
 from nodes.perception_node.segmented_cloud import segmented_cloud
 from nodes.perception_node.tracking.association import associate, renamed
 from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy, hierarchy_of
 from nodes.perception_node.tracking.map_updates import subject_of
 from nodes.perception_node.tracking.occupancy import occupancy_in
 from nodes.perception_node.tracking.tracks import Tracks
+from nodes.perception_node.watching import Watching
 from nodes.runtime.following import Begun, Follower
 from nodes.runtime.loop import Node, open_node
 from nodes.runtime.map_replica import MapReplica
@@ -57,10 +60,13 @@ class Perception:
         self,
         node: Node,
         config: PerceptionConfig,
-        look: Callable[[Sequence[Cloud]], Look],
+        look: Callable[[Sequence[Cloud], Sequence[Masks | None]], Look],
         usual_m: Mapping[str, Size],
     ) -> None:
-        """`look(clouds)` tells what clouds of one moment show, `usual_m` what things of a class measure."""
+        """`look(clouds, masks)` tells what clouds of one moment, and a detector's masks in them, show.
+
+        `usual_m`: what things of a class measure.
+        """
         self._node = node
         self._config = config
         self._usual_m = usual_m
@@ -80,6 +86,7 @@ class Perception:
         node.every(0.5, self._tick)
         node.follow_newest(keys.DETECTIONS, self._on_detections)
         self._worker = FrameWorker(look, self._hand_over, self._complain)
+        bus.follow(node.session, keys.MASKS, lambda _, found: self._worker.keep_masks(found))
         for plane in ("rgb", "depth"):
             bus.follow_cameras(node.session, plane, self._worker.keep, self._complain)
 
@@ -108,7 +115,9 @@ class Perception:
     def _on_look(self, clouds: Sequence[Cloud], found: Look, took_s: float) -> None:
         self._looked_at = time.monotonic()
         seen = found.observations
-        self._compare(seen, clouds)
+        if found.unknown_labels:
+            self._on_complaint(wording.unknown_labels(found.unknown_labels))
+        self._compare(seen, clouds, on_the_move=found.on_the_move)
         if time.monotonic() >= self._cloud_due and self._cloud_is_wanted():
             self._cloud_due = time.monotonic() + _CLOUD_S
             cloud = segmented_cloud(clouds, found)
@@ -124,8 +133,9 @@ class Perception:
         known = tuple(o for o in seen.observations if o.class_ not in unknown)
         self._compare(structs.replace(seen, observations=known), ())
 
-    def _compare(self, seen: Observations, clouds: Sequence[Cloud]) -> None:
-        """Tell the map what differs, and all others what was seen."""
+    def _compare(self, seen: Observations, clouds: Sequence[Cloud], *, on_the_move: bool = False) -> None:
+        """Tell the map what differs, and all others what was seen; `on_the_move`: a camera of these moves."""
+        tracking = self._config.tracking
         if self._map_is_current():
             result = associate(
                 self._map.entities,
@@ -133,7 +143,7 @@ class Perception:
                 seen.observations,
                 occupancy_in(clouds),
                 self._classes,
-                self._config.tracking,
+                tracking.on_the_move if on_the_move else tracking,
             )
             self._tracks = result.tracks
             named = zip(seen.observations, result.entities, strict=True)
@@ -208,7 +218,8 @@ def run(config: PerceptionConfig) -> None:
     """Look until stopped. Raises BadFile when what perception learnt cannot be read."""
     learnt = shipped()
     with open_node("perception_node", config.network) as node:
-        perception = Perception(node, config, lambda clouds: look(clouds, learnt), learnt.usual_m)
+        watching = Watching(learnt, Labels(learnt, config.labels))
+        perception = Perception(node, config, watching, learnt.usual_m)
         try:
             node.run()
         finally:

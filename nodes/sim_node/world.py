@@ -24,10 +24,12 @@ from nodes.sim_node.physics.walls import walls
 from nodes.sim_node.placement.settling import Settling
 from nodes.sim_node.robots.courses import ACTUATORS, Outcome, actuators
 from nodes.sim_node.vision.view import bulk, camera_names, optical_pose, overview
+from schemas import wording
 from schemas.entities import Pose, relative
 from schemas.errors import Refused
 from schemas.plans import Outline
 from schemas.scenes import (
+    UPRIGHT,
     BodiesMoved,
     Body,
     BodyOrder,
@@ -135,6 +137,7 @@ class World:
             if placement.commit is not None:
                 records[placement.name].ordered = placement.pose
             self._has_begun(placement.name)
+            self._engine.courses.stop(self.model, self.data, placement.name, "stopped")
         moved = {placement.name: placement.pose for placement in accepted}
         self._settling.put(moved)
         return BodiesMoved(bodies=self._bodies(moved), failed=failed)
@@ -205,6 +208,8 @@ class World:
             raise Refused(
                 f"{name} cannot drive: it is held where it is, because another body is in its place"
             )
+        if order.to and self.pose(name).upright < UPRIGHT:
+            raise Refused(f"{name} {wording.fallen(name, self.pose(name))}")
         if not order.to:
             engine.courses.stop(engine.model, engine.data, name, "stopped")
             return

@@ -152,7 +152,7 @@ def _perception_node(settings: Settings) -> None:
     from nodes.perception_node.node import run
 
     tracking = TrackingConfig(when_gone=settings.when_gone)
-    run(PerceptionConfig(tracking, settings.network("perception_node")))
+    run(PerceptionConfig(tracking, settings.network("perception_node"), settings.label_map))
 
 
 def _recorder(settings: Settings) -> None:

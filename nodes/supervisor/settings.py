@@ -92,6 +92,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     perception: bool = False
     when_gone: Literal["remove", "mark"] = "remove"
     """What becomes of an entity that perception brought in and no longer sees."""
+    label_map: dict[str, str] = {}
+    """From the labels of a detector of a person's own to classes."""
     web: bool = False
     """The page runs beside the nodes."""
     web_port: Annotated[int, Meta(ge=0, le=65_535)] = 8080

@@ -293,10 +293,11 @@ class _Foreground:
         folder = Path(self._settings.models)
         with contextlib.suppress(errors.SemmapError, OSError):
             classes = bus.ask(session, keys.CMD, Classes.VERB, Classes(), reply_type(Classes))
-            if strange := passed_over(folder, {c.model for c in classes}):
+            names = {c.model for c in classes}
+            if strange := passed_over(folder, names):
                 said = f"ignored, because no class has a model of that name: {', '.join(strange)}"
                 self._say(f"{'models':<{_COLUMN}} {said}")
-            for note in own_notes(folder):
+            for note in own_notes(folder, names):
                 self._say(f"{'models':<{_COLUMN}} {note}")
 
     def _greet(self) -> None:

@@ -53,6 +53,7 @@ EXPECTED = {
     "semmap undo 17": 1,  # there is no such commit in the map that this is run on
     "semmap set door1 isOpen false --if-is yes": 1,  # it is shut already
     "semmap explain apple1 isOn table1": 1,  # it is in a bowl
+    "semmap explain apple1 isInside drawer1": 1,  # so it is not in a drawer there
 }
 """Exit status of those that are printed because they are refused."""
 

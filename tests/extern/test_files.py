@@ -25,3 +25,12 @@ def test_what_has_no_end_is_refused(monkeypatch):
     monkeypatch.setattr(files, "LARGEST", 1 << 20)
     with pytest.raises(errors.BadFile, match=r"^/dev/zero is larger than 1 MiB; split it into several"):
         files.read_file(Path("/dev/zero"))
+
+
+def test_a_map_of_labels(tmp_path):
+    file = tmp_path / "map.json"
+    file.write_text('{"coffee mug": "Cup"}')
+    assert files.read_label_map(file) == {"coffee mug": "Cup"}
+    file.write_text("[]")
+    with pytest.raises(errors.BadFile, match="no map of labels"):
+        files.read_label_map(file)

@@ -10,9 +10,12 @@ import uuid
 import numpy as np
 import pytest
 
+from nodes import bus
 from nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view
 from nodes.extern.web.scene.dragging import arm_m
 from nodes.extern.web.scene.seen import wxyz_of
+from schemas import keys
+from schemas.scenes import Scene, SceneQuery
 from semmap.commands import Add, Remove
 from tests.page.conftest import START_MS, chromium_path
 
@@ -24,6 +27,8 @@ _GL = (
     "--enable-unsafe-swiftshader",
 )
 _WIDTH, _HEIGHT = 640, 480
+_RING, _ARROW = 0.65, 0.7
+"""Where along an arm the gizmo has its ring, and where it is well held by an arrow."""
 _DRAWN_S = 90.0
 
 
@@ -174,3 +179,78 @@ def test_what_is_dragged_keeps_its_yaw_whatever_was_selected_before(tab, system,
         select(tab, view, client.get(chair))
         drag_along_x(tab, view, client, chair)
         assert math.isclose(client.get(chair).pose.yaw_rad, 0.0, abs_tol=0.05)
+
+
+def dragged(tab, view, *points) -> None:
+    """Press at the first of these points [m], and go on to the others; the button stays pressed."""
+    tab.mouse.move(*pixel(tab, view, points[0]))
+    tab.wait_for_timeout(500)
+    tab.mouse.down()
+    for point in points[1:]:
+        tab.mouse.move(*pixel(tab, view, point))
+        tab.wait_for_timeout(200)
+
+
+def height(client, name) -> float:
+    """How high the body stands just now [m]."""
+    scene = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene)
+    return next(body.pose.position_m[2] for body in scene.bodies if body.name == name)
+
+
+def test_a_thing_is_turned_by_the_ring(tab, system, chair):
+    with system.client() as client:
+        view, entity = looking(tab, client), client.get(chair)
+        select(tab, view, entity)
+        x, y, z = entity.pose.position_m
+        radius = _RING * arm_m(entity.size_m)
+        angles = [math.pi / 4.0 + 0.2 * step for step in range(6)]
+
+        def turn() -> bool:
+            dragged(tab, view, *((x + radius * math.cos(a), y + radius * math.sin(a), z) for a in angles))
+            tab.mouse.up()
+            tab.wait_for_timeout(2000)
+            return abs(client.get(chair).pose.yaw_rad) > 0.5
+
+        until(turn, "the map says that the chair was turned")
+        turned = client.get(chair).pose
+        assert turned.yaw_rad == pytest.approx(1.0, abs=0.35)
+        assert turned.position_m == pytest.approx(entity.pose.position_m, abs=0.06)
+
+
+def test_a_thing_is_lifted_by_the_upright_arrow(tab, system, chair):
+    with system.client() as client:
+        view, entity = looking(tab, client), client.get(chair)
+        select(tab, view, entity)
+        x, y, z = entity.pose.position_m
+        grip = z + _ARROW * arm_m(entity.size_m)
+
+        def lift() -> bool:
+            """It falls at once, and has hardly begun to when it is looked at first."""
+            dragged(tab, view, *((x, y, grip + 0.15 * step) for step in range(6)))
+            tab.mouse.up()
+            end_s = time.monotonic() + 3.0
+            highest = 0.0
+            while time.monotonic() < end_s:
+                highest = max(highest, height(client, chair) - z)
+            return highest > 0.3
+
+        until(lift, "the chair was up in the air")
+        until(lambda: height(client, chair) < 0.05, "it has come down again")
+
+
+def test_a_tab_that_is_closed_in_mid_drag_has_moved_nothing(seeing, tab, web, system, chair):
+    with system.client() as client:
+        view, entity = looking(tab, client), client.get(chair)
+        select(tab, view, entity)
+        x, y, z = entity.pose.position_m
+        grip = _RING * arm_m(entity.size_m)
+        dragged(tab, view, *((x + grip + 0.2 * step, y, z) for step in range(6)))
+        before = client.status().commit
+        tab.close()
+        page = seeing.new_page(viewport={"width": _WIDTH, "height": _HEIGHT})
+        page.goto(web.url, timeout=2 * START_MS)
+        page.wait_for_selector("body.semmap-ready", timeout=2 * START_MS)
+        page.close()
+        assert client.get(chair).pose == entity.pose
+        assert height(client, chair) == pytest.approx(z, abs=0.02)
+        assert client.status().commit == before

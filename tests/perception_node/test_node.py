@@ -20,7 +20,7 @@ from schemas.bridge import SnapshotQuery
 from schemas.commands import Add, Classes, LastSeen
 from schemas.commits import Commit, Snapshot
 from schemas.entities import ClassInfo, Provenance
-from schemas.perception import Observations
+from schemas.perception import DetectedMasks, MaskRun, Observations
 from schemas.replies import Changed, Sighting
 from tests.conftest import free_endpoint, handling, until
 from tests.perception_node.input.test_frames import DEPTH
@@ -44,13 +44,14 @@ CLASSES = tuple(
 )
 
 
-def everything_is_a_cup(clouds):
+def everything_is_a_cup(clouds, masks):
     """A look that sees the same cup in whatever it is shown, and fails at what is near."""
     if (clouds[0].points_camera[..., 2] < 0.5).any():
         raise ZeroDivisionError("too near")
     shape = clouds[0].points_camera.shape[:2]
     observations = Observations(stamp_ns=clouds[0].stamp_ns, views=(), observations=(CUP,))
-    return Look(observations, tuple(np.ones(shape, np.int32) for _ in clouds))
+    said = {one.label for found in masks if found is not None for one in found.said if one}
+    return Look(observations, tuple(np.ones(shape, np.int32) for _ in clouds), tuple(sorted(said)))
 
 
 class World:
@@ -273,3 +274,33 @@ def test_a_class_that_the_map_does_not_have_is_told_and_the_others_count(world):
     until(said, "the map has the other")
     assert {add.class_ for add in world.told} == {"Cup"}
     until(lambda: "that the map does not have were ignored: Gizmo" in world.health.last_error, "it says so")
+
+
+def test_a_frame_is_looked_at_with_the_masks_of_its_moment(world):
+    run = MaskRun(size=(48, 64), counts=(0, 48 * 64), label="spork")
+
+    def told():
+        world.film()
+        stamp_ns = world._stamp_ns
+        masks = DetectedMasks(camera="left", stamp_ns=stamp_ns, width=64, height=48, masks=(run,))
+        time.sleep(0.05)
+        world.session.put(keys.MASKS.key, codec.encode(masks))
+        time.sleep(0.05)
+        return "no class here: spork" in world.health.last_error
+
+    until(told, "the look had the masks")
+    looks = len(world.seen)
+    world.film()
+    time.sleep(0.5)
+    assert len(world.seen) <= looks + 1  # at most one that was under way: this one waits for its masks
+
+
+def test_masks_that_do_not_fit_are_told_and_the_frame_is_looked_at_all_the_same(world):
+    def told():
+        world.film()
+        masks = DetectedMasks(camera="left", stamp_ns=world._stamp_ns, width=32, height=48)
+        time.sleep(0.05)
+        world.session.put(keys.MASKS.key, codec.encode(masks))
+        return world.seen and "of 32 x 48 pixels, the picture of 64 x 48" in world.health.last_error
+
+    until(told, "it says so")

@@ -126,3 +126,13 @@ def test_what_is_no_world_is_told(tmp_path, content):
 def test_a_missing_world_is_told(tmp_path):
     with pytest.raises(BadFile, match="cannot be read"):
         open_world(tmp_path / "none.xml", Models())
+
+
+def test_mjcf_that_refers_to_what_it_does_not_have_is_refused_as_it_is_read(tmp_path):
+    """A copy of such a specification compiles: it has lost the pair."""
+    path = tmp_path / "world.xml"
+    body = '<body name="a"><geom name="a" size="0.1"/></body>'
+    pair = '<contact><pair geom1="a" geom2="b"/></contact>'
+    path.write_text(f"<mujoco><worldbody>{body}</worldbody>{pair}</mujoco>")
+    with pytest.raises(BadFile, match="not an MJCF scene that compiles: Error: geom 'b' not found"):
+        open_world(path, Models())

@@ -26,6 +26,8 @@ from schemas.grips import grip_of, holder_of
 from schemas.joints import IS_OPEN, JOINT_POSITIONS, OPEN_FROM, OPENING, OPENNESS, Joint, openness, stated
 from schemas.scenes import Body, BodyOrder, GripOrder, JointOrder, Placement
 
+_TO_THE_LETTER = Thresholds(distance_m=0.001, angle_rad=0.002, share=0.001)
+
 
 class Actions(NamedTuple):
     """What must be done: to the scene (`delete` before `spawn`), and to the map."""
@@ -123,7 +125,7 @@ def reconcile(
             elif not replayed and _moved(entity, body, thresholds):
                 follow.append(Placement(name=name, pose=body.pose))
             if body.joints and _joints_ordered_since(entity, body, whoever=replayed):
-                joints.append(joint_order(entity, body, thresholds))
+                joints.append(joint_order(entity, body))
             elif body.joints and not replayed and body.resting and _stand_elsewhere(entity, body, thresholds):
                 opened.append(name)
     for name, body in bodies.items():
@@ -175,13 +177,14 @@ def _begins(entity: Entity, body: Body) -> bool:
     return body.robot and body.commit < 0 and entity.pose is not None
 
 
-def joint_order(entity: Entity, body: Body, thresholds: Thresholds) -> JointOrder:
+def joint_order(entity: Entity, body: Body) -> JointOrder:
     """The positions that an entity wants of the joints of its body; none where they rest and suit it.
 
-    What suits it and moves may be on its way to somewhere else, by an earlier order.
+    What suits it and moves may be on its way to somewhere else, by an earlier order. A word is done to the
+    letter: the thresholds are for what a hand leaves.
     """
     said = entity.joint_provenance
-    suits = body.resting and not _stand_elsewhere(entity, body, thresholds)
+    suits = body.resting and not _stand_elsewhere(entity, body, _TO_THE_LETTER)
     return JointOrder(
         name=entity.name,
         positions={} if suits else _wanted(entity, body),

@@ -197,7 +197,7 @@ class Keeping:
         )
         bodies, entities = self.scene.bodies, self._door.map.entities
         jointed = [name for name, body in bodies.items() if body.joints and name in entities]
-        orders = tuple(joint_order(entities[name], bodies[name], self._config.thresholds) for name in jointed)
+        orders = tuple(joint_order(entities[name], bodies[name]) for name in jointed)
         if orders:
             self._ask(MoveJoints(orders=orders))
         return self._ask(MoveBodies(placements=placements))
@@ -245,8 +245,12 @@ class Keeping:
             for name, (commit, reason) in self._ungripped.items()
             if (e := self._door.map.entities.get(name)) is not None and grip_order(e).commit == commit
         )
+        lying = [
+            f"{b.name} {wording.fallen(b.name, b.pose)}" for b in self.scene.bodies.values() if b.has_fallen
+        ]
         return (
             amiss
+            + lying
             + seen
             + [f"{name}: {why}" for name, why in foreign]
             + self._awaited()
@@ -271,8 +275,9 @@ class Keeping:
         names = self.scene.left_out if self._config.truth == "scene" else ()
         if not names:
             return []
+        only_parts = "is only a part of another" if len(names) == 1 else "are only parts of others"
         return [
-            f"{wording.bodies(len(names))} of the world are only parts of others: {', '.join(names)}"
+            f"{wording.bodies(len(names))} of the world {only_parts}: {', '.join(names)}"
             ' (to have one, add <text name="semmap:BODY" data="CLASS"/>)'
         ]
 
@@ -403,7 +408,7 @@ class Keeping:
             self._report(f"the map cannot take over how {name} stands yet: {error}")
         elif (entity := self._door.map.entities.get(name)) is not None:
             self._report(f"{name} was put back as it stood, because the map rejected how it stands: {error}")
-            self._shut_again[name] = joint_order(entity, self.scene.bodies[name], self._config.thresholds)
+            self._shut_again[name] = joint_order(entity, self.scene.bodies[name])
 
     def _follow_grips(self, names: Sequence[str]) -> None:
         """Let the map take over who holds bodies, and where they were taken or put."""

@@ -138,10 +138,7 @@ def _driven(driven: Driven) -> str:
     if driven.outcome == "blocked":
         raise errors.Refused(f"{driven.name} gets no further than {where}: something is in its way")
     if driven.outcome == "fallen":
-        raise errors.Refused(
-            f"{driven.name} has fallen over at {where}; to put it upright: semmap move {driven.name}"
-            f" --at {x:.2f} {y:.2f} 0 --yaw 0"
-        )
+        raise errors.Refused(f"{driven.name} {wording.fallen(driven.name, driven.pose)}")
     said = {"driving": "is on its way from", "there": "is at", "stopped": "stopped at"}[driven.outcome]
     return f"{driven.name} {said} {where}, facing {math.degrees(driven.pose.yaw_rad):.0f}°"
 

@@ -91,7 +91,14 @@ class Bridge:
         self._due_s = dict.fromkeys(("whole", "transforms", "again", "floor"), 0.0)
         self._publishers: dict[RosTopic, RosPublisher] = {made: ros.publish(made) for made in of}
         self._topics = of
-        Follower(node, self._map, keys.EFFECTS, heard=lambda _, __: self._stir(), begun=self._begun)
+        Follower(
+            node,
+            self._map,
+            keys.EFFECTS,
+            heard=lambda _, __: self._stir(),
+            begun=self._begun,
+            classes_at=keys.CMD,  # a viewer may ask for that, too
+        )
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow_newest(keys.LIVE_POSES, self._on_live)
         ros.when_subscribed(of.planning_scene, lambda: node.soon(self._greet))

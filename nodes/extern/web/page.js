@@ -56,6 +56,6 @@
     new MutationObserver(tellLook).observe(document.body, { attributeFilter: ["class"] });
     window.matchMedia("(max-width: 960px)").addEventListener("change", tellLook);
     tellLook();
-    setTimeout(semmapBeginScene, 1500);
+    setTimeout(semmapBeginScene, 5000);
   };
 })();

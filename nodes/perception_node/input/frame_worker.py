@@ -8,10 +8,12 @@ import time
 from collections.abc import Callable, Sequence
 
 from nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
-from nodes.perception_node.input.frames import Frames, Pair, read_cloud
+from nodes.perception_node.input.frames import Frames, Pair, read_cloud, read_masks
+from nodes.perception_node.input.masks import Masks
 from nodes.perception_node.input.projection import thinning
 from nodes.perception_node.pipeline import Look
 from schemas.errors import BadRequest
+from schemas.perception import DetectedMasks
 from schemas.scenes import CameraFrame
 
 log = logging.getLogger(__name__)
@@ -26,9 +28,15 @@ class FrameWorker:
     """Looks at frames as fast as it can; those that come meanwhile are passed over."""
 
     def __init__(
-        self, look: Callable[[Sequence[Cloud]], Look], on_look: Seen, complain: Callable[[str], None]
+        self,
+        look: Callable[[Sequence[Cloud], Sequence[Masks | None]], Look],
+        on_look: Seen,
+        complain: Callable[[str], None],
     ) -> None:
-        """`on_look` and `complain` are called on the worker's thread; `complain(text)` says what is wrong."""
+        """`look(clouds, masks)` tells what they show.
+
+        `on_look` and `complain` are called on the worker's thread; `complain(text)` says what is wrong.
+        """
         self._look = look
         self._on_look = on_look
         self._complain = complain
@@ -49,18 +57,33 @@ class FrameWorker:
         except BadRequest as error:
             self._complain(error.text)
 
+    def keep_masks(self, found: DetectedMasks) -> None:
+        """A detector has looked at a camera's frame. On any thread; at once."""
+        try:
+            self._frames.put_masks(found)
+        except BadRequest as error:
+            self._complain(error.text)
+
     def _run(self) -> None:
         while not self._stopping.is_set():
             pairs = self._frames.take(_TAKE_S)
             try:
-                clouds = [cloud for pair in pairs if (cloud := self._read(pair)) is not None]
-                if clouds:
+                read = [(pair, cloud) for pair in pairs if (cloud := self._read(pair)) is not None]
+                if read:
+                    clouds, masks = [cloud for _, cloud in read], [self._masks(pair) for pair, _ in read]
                     start = time.perf_counter()
-                    found = self._look(clouds)
+                    found = self._look(clouds, masks)
                     self._on_look(clouds, found, time.perf_counter() - start)
             except Exception as error:
                 log.exception("processing a frame failed")
                 self._complain(f"processing a frame failed: {type(error).__name__}: {error}")
+
+    def _masks(self, pair: Pair) -> Masks | None:
+        try:
+            return read_masks(pair)
+        except BadRequest as error:
+            self._complain(error.text)
+            return None
 
     def _read(self, pair: Pair) -> Cloud | None:
         frame = pair.depth.frame

@@ -5,21 +5,27 @@ from __future__ import annotations
 import math
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.input.cloud import Cloud, Transform
+from nodes.perception_node.input.masks import Masks, of_image, of_runs
 from nodes.perception_node.input.projection import cloud_of, fits, is_pose, thinned, thinning
 from schemas.errors import BadRequest
+from schemas.perception import DetectedMasks
 from schemas.scenes import CameraFrame
 
 T = TypeVar("T", np.float32, np.uint8)
 
 _SILENT_S = 2.0
 """A camera that was silent for so long may begin with another clock."""
+_HELD = 8
+"""So many frames of a camera with a detector wait for their masks."""
 _LATE_S = 1.0
 """So long the others of a moment wait for a camera."""
 
@@ -32,10 +38,11 @@ class Plane(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """The two planes of one frame."""
+    """The two planes of one frame, and what a detector of one's own has found in it."""
 
     rgb: Plane
     depth: Plane
+    masks: DetectedMasks | None = None
 
     @property
     def stamp_ns(self) -> int:
@@ -47,7 +54,8 @@ class Frames:
     """The newest frame of each camera. Filled by other threads than the one that takes.
 
     Cameras that were once heard of with the same stamp see together, and are waited for a little. Cameras
-    with clocks of their own take turns.
+    with clocks of their own take turns. Frames of a camera of whose pictures a detector tells masks wait for
+    these, until it falls silent.
     """
 
     def __init__(self) -> None:
@@ -59,6 +67,8 @@ class Frames:
         self._taken: set[str] = set()
         self._turns = 0
         self._last_turn: dict[str, int] = {}
+        self._masked_s: dict[str, float] = {}
+        self._held: dict[str, deque[Pair]] = {}
 
     def put(self, frame: CameraFrame, read: Callable[[], bytes]) -> None:
         """A plane has come. Raises BadRequest for one of the past."""
@@ -73,6 +83,24 @@ class Frames:
                 )
             self._planes[key] = Plane(frame, read), now
             self._pair_up(frame)
+
+    def put_masks(self, found: DetectedMasks) -> None:
+        """A detector has looked at a frame. Raises BadRequest where that frame is not at hand."""
+        camera, now = found.camera, time.monotonic()
+        with self._news:
+            first = camera not in self._masked_s
+            self._masked_s[camera] = now
+            held = self._held.setdefault(camera, deque(maxlen=_HELD))
+            while held and held[0].stamp_ns < found.stamp_ns:
+                held.popleft()
+            if held and held[0].stamp_ns == found.stamp_ns:
+                self._pairs[camera] = held.popleft()._replace(masks=found)
+                self._news.notify_all()
+            elif not first:
+                raise BadRequest(
+                    f"camera {camera}: masks ignored: their frame is not at hand; masks carry the stamp_ns of"
+                    f" their frame, in order, and come within {_HELD} frames"
+                )
 
     def take(self, timeout_s: float) -> tuple[Pair, ...]:
         """What cameras saw at one moment, the newest there is, in the order of their names; maybe nothing."""
@@ -105,6 +133,9 @@ class Frames:
         if frame.stamp_ns == self._taken_ns:  # too late for its look, but the next ones wait for it
             for camera in (*self._taken, frame.camera):
                 self._partners.setdefault(camera, set()).update(self._taken, {frame.camera})
+            return
+        if time.monotonic() - self._masked_s.get(frame.camera, -math.inf) < _SILENT_S:
+            self._held[frame.camera].append(Pair(rgb, depth))
             return
         self._pairs[frame.camera] = Pair(rgb, depth)
         self._news.notify_all()
@@ -176,3 +207,23 @@ def _pose(frame: CameraFrame) -> Transform:
         f"camera {frame.camera}: map_from_camera is not a 4 x 4 pose matrix:"
         " rotation, position, last row 0 0 0 1"
     )
+
+
+def read_masks(pair: Pair) -> Masks | None:
+    """What a detector has found in a frame, as fine as its cloud. Raises BadRequest for nonsense."""
+    found, frame = pair.masks, pair.depth.frame
+    if found is None:
+        return None
+    try:
+        if (found.width, found.height) != (frame.width, frame.height):
+            raise ValueError(
+                f"they are of {found.width} x {found.height} pixels,"
+                f" the picture of {frame.width} x {frame.height}"
+            )
+        if found.image is not None:
+            masks = of_image(found.image, frame.height, frame.width)
+        else:
+            masks = of_runs(found.masks, frame.height, frame.width)
+    except ValueError as error:
+        raise BadRequest(f"camera {frame.camera}: masks ignored: {error}") from None
+    return replace(masks.thinned(thinning(frame.width, frame.height)), alone=found.alone)

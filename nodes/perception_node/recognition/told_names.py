@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
+from nodes.perception_node.input.masks import Masks
 from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
 from nodes.perception_node.views.boxes import Numbers
 from nodes.perception_node.views.merged_thing import Thing
 
 _SUREST = 0.98
 _LEAST = 1e-4
+"""No vote of ours rules a class out, and all count half: of what they never saw they are far too sure."""
 
 
 class Labels:
@@ -26,10 +28,10 @@ class Labels:
         """The class, or None for a label that nobody knows."""
         return self._classes.get(_plain(label)) or self._known.get(_plain(label))
 
-    def unknown_of(self, things: Sequence[Thing]) -> set[str]:
-        """Labels of these things that nobody knows."""
-        said = {segment.said.label for thing in things for segment in thing.segments if segment.said}
-        return {label for label in said if self.class_of(label) is None}
+    def unknown(self, masks: Iterable[Masks | None]) -> tuple[str, ...]:
+        """Labels of these masks that nobody knows, sorted."""
+        labels = {said.label for found in masks if found is not None for said in found.said if said}
+        return tuple(sorted(label for label in labels if self.class_of(label) is None))
 
 
 def with_names(chances: Numbers, things: Sequence[Thing], learnt: Learnt, labels: Labels) -> Numbers:
@@ -50,7 +52,7 @@ def with_names(chances: Numbers, things: Sequence[Thing], learnt: Learnt, labels
             if leaves.any():
                 score = min(said.score, _SUREST)
                 weight = np.where(leaves, score / leaves.sum(), (1.0 - score) / (~leaves).sum())
-                chances[n] = np.maximum(chances[n], _LEAST) * weight
+                chances[n] = np.sqrt(np.maximum(chances[n], _LEAST)) * weight
                 chances[n, clutter] = 0.0
                 chances[n] /= chances[n].sum()
     return chances

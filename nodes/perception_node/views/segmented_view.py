@@ -9,17 +9,21 @@ from numpy.typing import NDArray
 
 from nodes.perception_node.input.cloud import Cloud, Floats
 from nodes.perception_node.segmentation import Plane, Segmentation, segment
+from nodes.perception_node.segmentation.gravity import level_plane, room_pose, standing_on
+from nodes.perception_node.segmentation.working_picture import grid_of
 from nodes.perception_node.views.furniture_planes import EVERY, with_furniture
 from nodes.perception_node.views.segments import Segment, cut_out, in_map
+from nodes.perception_node.views.supports import Support, support_of
 
 
 @dataclass(frozen=True)
 class Sight:
     """A cloud in the map, with its segments.
 
-    `map_from_camera`: (4, 4); where nobody knows it, the largest plane is taken for the map's floor.
+    `map_from_camera`: (4, 4); where nobody knows it, the floor that is seen is z = 0,
+    or the largest plane where there is but one.
     `labels`: (H, W) the segment of each pixel, 0 for none. `carriers`: on which others may stand. `planes`:
-    (H, W) the plane of each pixel, 0 for none. `supports_m`: heights of horizontal planes. `same`: (N, N) how
+    (H, W) the plane of each pixel, 0 for none. `supports`: its level planes. `same`: (N, N) how
     likely segments n + 1 and m + 1 are one all the same, 0 where nobody knows.
     """
 
@@ -28,21 +32,24 @@ class Sight:
     labels: NDArray[np.int32]
     carriers: frozenset[int]
     planes: NDArray[np.int32]
-    supports_m: tuple[float, ...]
+    supports: tuple[Support, ...]
     same: NDArray[np.float32]
     segments: tuple[Segment, ...] = ()
 
 
 def see(cloud: Cloud) -> Sight:
     """Take a cloud apart."""
-    segmentation = segment(cloud)
-    pose = _standing_on(segmentation.planes) if cloud.map_from_camera is None else cloud.map_from_camera
+    placed = _placed(cloud)
+    segmentation = segment(placed)
+    pose = placed.map_from_camera
+    if pose is None:
+        pose = _above_largest(segmentation.planes)
     thin = in_map(cloud.points_camera[::EVERY, ::EVERY], pose)
     labels, carriers = segmentation.labels, frozenset[int]()
-    if cloud.map_from_camera is not None:  # else the largest plane is taken for the floor, whatever it is
+    if placed.map_from_camera is not None:  # else the largest plane is taken for the floor, whatever it is
         labels, carriers = with_furniture(segmentation, thin)
-    heights = _heights(segmentation, thin)
-    bare = Sight(cloud, pose, labels, carriers, segmentation.plane_labels, heights, segmentation.same)
+    supports = _supports(segmentation, thin)
+    bare = Sight(cloud, pose, labels, carriers, segmentation.plane_labels, supports, segmentation.same)
     return labelled(bare, labels, carriers)
 
 
@@ -52,25 +59,22 @@ def labelled(sight: Sight, labels: NDArray[np.int32], carriers: frozenset[int]) 
     return replace(sight, labels=labels, carriers=carriers, segments=tuple(segments))
 
 
-def _standing_on(planes: tuple[Plane, ...]) -> NDArray[np.float64]:
-    """A map frame whose floor is the largest plane, with the camera above its origin."""
-    pose = np.eye(4)
-    if planes:
-        plane = max(planes, key=lambda plane: plane.points)
-        up = plane.normal
-        ahead = np.array([0.0, 0.0, 1.0]) - up * up[2]
-        if np.linalg.norm(ahead) < 0.1:  # the camera looks straight down
-            ahead = np.array([0.0, -1.0, 0.0]) - up * -up[1]
-        ahead /= np.linalg.norm(ahead)
-        pose[:3, :3] = np.stack([ahead, np.cross(up, ahead), up])
-        pose[2, 3] = -plane.offset_m
-    return pose
+def _placed(cloud: Cloud) -> Cloud:
+    """The cloud with the pose that follows from the floor that it shows, where nobody knows a better one."""
+    if cloud.map_from_camera is not None or not cloud.organised:
+        return cloud
+    return replace(cloud, map_from_camera=room_pose(grid_of(cloud).points))
 
 
-def _heights(segmentation: Segmentation, thin: Floats) -> tuple[float, ...]:
+def _above_largest(planes: tuple[Plane, ...]) -> NDArray[np.float64]:
+    """A map frame whose floor is the largest plane that may be level, or the largest."""
+    largest = level_plane(planes) or max(planes, key=lambda plane: plane.points, default=None)
+    return np.eye(4) if largest is None else standing_on(largest)
+
+
+def _supports(segmentation: Segmentation, thin: Floats) -> tuple[Support, ...]:
     level = [
         n for n, plane in enumerate(segmentation.planes, 1) if plane.kind in ("floor", "support", "plane")
     ]
     planes = segmentation.plane_labels[::EVERY, ::EVERY]
-    heights = [thin[planes == n, 2] for n in level]
-    return tuple(float(np.median(height)) for height in heights if len(height))
+    return tuple(support_of(thin, planes == n) for n in level if (planes == n).any())

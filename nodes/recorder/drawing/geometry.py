@@ -7,6 +7,7 @@ import rerun as rr
 
 from nodes.drawing.figures import Figure
 from nodes.drawing.palette import GREY, colour_of
+from nodes.drawing.sheets import triangles_of
 from schemas.polygons import Polygon
 from schemas.scenes import Surface
 
@@ -21,7 +22,7 @@ _THIN_M = 0.001
 def shape_of(figure: Figure) -> tuple[rr.AsComponents, ...]:
     """A box of the figure's size with its name, and what it looks like if that is known.
 
-    A place is a translucent sheet on the floor.
+    A place is a translucent sheet on the floor, of its polygon where it has one.
     """
     if figure.look == "place":
         return _sheet(figure)
@@ -76,20 +77,11 @@ def _borders(figure: Figure, extent: Polygon, z_m: float) -> rr.LineStrips3D:
     )
 
 
-def _sheet(figure: Figure) -> tuple[rr.AsComponents, rr.AsComponents]:
-    """Places lie in one another, so the larger a sheet, the lower it lies. A polygon is its borders."""
+def _sheet(figure: Figure) -> tuple[rr.AsComponents, ...]:
+    """Places lie in one another, so the larger a sheet, the lower it lies."""
     x, y, _ = figure.size_m
     below = -_SHEET_M * (x + y)
-    sheet: rr.AsComponents = (
-        _borders(figure, figure.extent, below)
-        if figure.extent
-        else rr.Boxes3D(
-            half_sizes=[(x / 2.0, y / 2.0, _SHEET_M / 2.0)],
-            centers=[(0.0, 0.0, below)],
-            colors=[(*colour_of(figure.class_), _SHEET_ALPHA)],
-            fill_mode=rr.components.FillMode.Solid,
-        )
-    )
+    colour = (*colour_of(figure.class_), _SHEET_ALPHA)
     name = rr.Points3D(
         [(0.0, 0.0, below)],
         radii=[_LABEL_M],
@@ -97,4 +89,22 @@ def _sheet(figure: Figure) -> tuple[rr.AsComponents, rr.AsComponents]:
         labels=[figure.label],
         show_labels=True,
     )
+    if figure.extent is not None:
+        return _covered(figure.extent, below, colour), _borders(figure, figure.extent, below), name
+    sheet = rr.Boxes3D(
+        half_sizes=[(x / 2.0, y / 2.0, _SHEET_M / 2.0)],
+        centers=[(0.0, 0.0, below)],
+        colors=[colour],
+        fill_mode=rr.components.FillMode.Solid,
+    )
     return sheet, name
+
+
+def _covered(extent: Polygon, z_m: float, colour: tuple[int, int, int, int]) -> rr.Mesh3D:
+    """What a polygon covers, around the middle of its bounds."""
+    points, triangles = triangles_of(extent)
+    return rr.Mesh3D(
+        vertex_positions=np.column_stack([points, np.full(len(points), z_m, np.float32)]),
+        triangle_indices=triangles,
+        albedo_factor=colour,
+    )

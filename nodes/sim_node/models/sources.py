@@ -59,9 +59,10 @@ def passed_over(folder: Path, models: Collection[str]) -> list[str]:
     return [
         path.name + (f" ({hint.removeprefix('; ')})" if (hint := did_you_mean(path.stem, models)) else "")
         for path in sorted(folder.iterdir())
-        if path.suffix.lower() in SUFFIXES and not _is_one_of(path, models)
+        if path.suffix.lower() in SUFFIXES and not is_one_of(path, models)
     ]
 
 
-def _is_one_of(path: Path, models: Collection[str]) -> bool:
+def is_one_of(path: Path, models: Collection[str]) -> bool:
+    """Whether a file is that of one of these models."""
     return path.suffix in SUFFIXES and any(name in models for name in (path.stem, path.name, str(path)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
 from contextlib import suppress
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from msgspec import structs
 from nodes.sim_node.models.library import ModelError, build
 from nodes.sim_node.models.model_files import SUFFIXES
 from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.sources import Models
+from nodes.sim_node.models.sources import Models, is_one_of
 from nodes.sim_node.models.spaces import shape_of
 from ontology import MODEL_SHAPES_JSON
 from ontology.model_shapes import ModelShape
@@ -44,14 +45,18 @@ def own_shapes(folder: Path) -> dict[str, ModelShape]:
     return found
 
 
-def own_notes(folder: Path) -> list[str]:
-    """What of the model files in a folder is not in the models, or is stiff in them: a clause each."""
+def own_notes(folder: Path, names: Collection[str]) -> list[str]:
+    """What of the model files in a folder is not in the models, or is stiff in them: a line for each file.
+
+    `names` are those of the classes' models; files that are none of these are passed over.
+    """
     models = Models(folder)
     told: list[str] = []
     for path in sorted(folder.iterdir()):
-        if path.suffix in SUFFIXES:
+        if is_one_of(path, names):
             with suppress(ModelError):
-                told += (f"{path.name}: {note}" for note in models(path.name, None).notes)
+                if notes := models(path.name, None).notes:
+                    told.append(f"{path.name}: {'; '.join(notes)}")
     return told
 
 

@@ -78,8 +78,8 @@ def read_mjcf(path: Path, *, compiles: bool = True) -> mujoco.MjSpec:
     """A scene from a file. Raises BadFile if it is missing or, where that is asked for, does not compile."""
     try:
         spec = mujoco.MjSpec.from_file(str(path))
-        if compiles:
-            spec.copy().compile()
+        if compiles:  # not a copy of it, which has lost what refers to a name that there is not
+            mujoco.MjSpec.from_file(str(path)).compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
         raise BadFile(
             f"the world file {path} is not an MJCF scene that compiles: {_one_line(error)}"

@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 
 from nodes.sim_node.bodies import BodyIndex
+from schemas.scenes import UPRIGHT
 
 Outcome = Literal["there", "blocked", "fallen", "stopped"]
 ACTUATORS: Final = ("drive_x", "drive_y", "drive_yaw")
@@ -21,8 +22,6 @@ _TURNED_RAD, _AHEAD_RAD = 0.02, 0.3
 """It turns to where it goes before it goes there, if that is far, so that its cameras see what is ahead."""
 _TURN_GAIN, _TURN_RAD_S, _GAIN = 2.5, 1.2, 1.6
 _STUCK_S, _PROGRESS = 4.0, 0.01
-_UPRIGHT = 0.85
-"""The cosine of how far it may lean, 32 degrees: beyond that it has fallen."""
 
 
 @dataclass
@@ -88,7 +87,7 @@ class Courses:
     ) -> Outcome | None:
         address = int(index.qpos[row])
         x, y, _, qw, qx, qy, qz = data.qpos[address : address + 7].tolist()
-        if 1.0 - 2.0 * (qx * qx + qy * qy) < _UPRIGHT:
+        if 1.0 - 2.0 * (qx * qx + qy * qy) < UPRIGHT:
             return "fallen"
         yaw = math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
         ox, oy = float(index.origin_m[row][0]), float(index.origin_m[row][1])

@@ -59,6 +59,12 @@ def test_what_moves_is_ordered_even_where_it_passes_just_now():
     assert (wanted.positions, wanted.commit) == ({"door": 1.6}, 3)
 
 
+def test_a_word_is_done_to_the_letter_and_a_hand_that_is_near_is_let_be():
+    (wanted,) = look([fridge(2, isOpen=False, openness=0.0)], [standing(0.015)]).joints
+    assert (wanted.positions, wanted.commit) == ({"door": 0.0}, 2)
+    assert look([fridge(2, isOpen=False, openness=0.0)], [standing(0.015, joint_commit=2)]) == Actions()
+
+
 def test_once_ordered_whatever_stopped_it_counts():
     assert look([fridge(2, isOpen=True)], [standing(0.0, joint_commit=2)]).opened == ("chair1",)
 
@@ -118,7 +124,6 @@ def _value(text: str) -> bool | float | str:
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_a_reset_puts_joints_where_the_map_says(share):
     from nodes.coordinator.scene.reconcile import joint_order
-    from tests.coordinator.scene.test_reconcile import THRESHOLDS
 
-    wanted = joint_order(fridge(2, openness=share), standing(0.25), THRESHOLDS)
+    wanted = joint_order(fridge(2, openness=share), standing(0.25))
     assert wanted.positions == {"door": pytest.approx(1.6 * share)}

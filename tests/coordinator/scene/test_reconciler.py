@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import math
 from concurrent.futures import Future
 from itertools import count
 
@@ -100,6 +101,17 @@ def test_a_foreign_body_is_a_problem_only_as_long_as_it_is_there(door):
     assert problem.startswith("gizmo: a scene body without a map entity: unknown class 'Gizmo'")
     del keeping.scene.bodies["gizmo"]
     assert keeping.problems() == []
+
+
+def test_a_robot_that_lies_on_its_side_is_a_problem(door):
+    keeping = Keeping(CoordinatorConfig("map"), door, at_once(door), lambda *_: Future(), print)
+    over = Pose(position_m=(1.0, 2.0, 0.1), orientation_wxyz=(math.sqrt(0.5), 0.0, math.sqrt(0.5), 0.0))
+    robot = standing(BodyOrder(name="robot1", class_="Robot", pose=over, commit=0))
+    keeping.scene.bodies["robot1"] = structs.replace(robot, robot=True)
+    assert keeping.problems() == [
+        "robot1 has fallen over at (1.00, 2.00);"
+        " to put it upright: semmap move robot1 --at 1.00 2.00 0 --yaw 0"
+    ]
 
 
 def test_what_changes_while_orders_are_under_way_is_done_right_after_them(door):

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from nodes.perception_node.input.frames import Frames, Pair, Plane, read_cloud
+from nodes.perception_node.input import frames as module
+from nodes.perception_node.input.frames import Frames, Pair, Plane, read_cloud, read_masks
 from nodes.perception_node.input.projection import thinning
 from schemas.errors import BadRequest
+from schemas.perception import DetectedMasks, MaskImage, MaskRun
 from schemas.scenes import CameraFrame
 
 DEPTH = CameraFrame(
@@ -166,3 +168,73 @@ def test_too_few_bytes_are_no_picture():
 @pytest.mark.parametrize("depth_m", [0.0, NAN, np.inf])
 def test_a_frame_that_shows_nothing_is_an_empty_cloud(depth_m):
     assert np.isnan(read_cloud(pair(depth_m)).points_camera[..., 2]).all()
+
+
+def masks(camera, stamp_ns, **changes):
+    found = DetectedMasks(camera=camera, stamp_ns=stamp_ns, width=64, height=48)
+    return structs.replace(found, **changes)
+
+
+def test_frames_of_a_camera_with_a_detector_wait_for_their_masks():
+    frames = Frames()
+    frames.put_masks(masks("left", 1))  # the first tells that there is a detector
+    for stamp_ns in (2, 3, 4):
+        put(frames, "left", stamp_ns)
+    assert taken(frames) == []
+    frames.put_masks(masks("left", 3))
+    (pair,) = frames.take(0.0)
+    assert (pair.stamp_ns, pair.masks.stamp_ns) == (3, 3)
+    assert taken(frames) == []
+    frames.put_masks(masks("left", 4))
+    assert taken(frames) == [("left", 4)]
+
+
+def test_other_cameras_do_not_wait():
+    frames = Frames()
+    frames.put_masks(masks("left", 1))
+    put(frames, "right", 2)
+    assert taken(frames) == [("right", 2)]
+
+
+def test_masks_without_their_frame_are_refused():
+    frames = Frames()
+    frames.put_masks(masks("left", 1))
+    put(frames, "left", 2)
+    for stamp_ns in (1, 3):
+        with pytest.raises(BadRequest, match="camera left: masks ignored: their frame is not at hand"):
+            frames.put_masks(masks("left", stamp_ns))
+
+
+def test_a_detector_that_falls_silent_is_not_waited_for(monkeypatch):
+    frames = Frames()
+    frames.put_masks(masks("left", 1))
+    monkeypatch.setattr(module, "_SILENT_S", 0.0)
+    put(frames, "left", 2)
+    assert taken(frames) == [("left", 2)]
+
+
+def test_masks_are_as_fine_as_the_cloud():
+    labels = np.zeros((3000, 4000), "<u2")
+    labels[600:1200, 600:1200] = 1
+    intrinsics = (3000.0, 0.0, 2000.0, 0.0, 3000.0, 1500.0, 0.0, 0.0, 1.0)
+    image = MaskImage(labels=labels.tobytes(), names=("cup",))
+    found = masks("left", 1_000, width=4000, height=3000, image=image, alone=True)
+    read = read_masks(pair(2.0, width=4000, height=3000, intrinsics=intrinsics)._replace(masks=found))
+    assert read.labels.shape == (500, 667)
+    assert read.labels[100:200, 100:200].all()
+    assert read.labels.sum() == 100 * 100
+    assert read.alone
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"width": 32}, "of 32 x 48 pixels, the picture of 64 x 48"),
+        ({"masks": (MaskRun(size=(4, 4), counts=(16,)),)}, "a mask is of 4 x 4 pixels"),
+        ({"image": MaskImage(labels=b"abc")}, "no label image of 64 x 48 pixels"),
+    ],
+)
+def test_masks_that_do_not_fit_their_picture_are_told(wrong, said):
+    with pytest.raises(BadRequest, match=f"camera left: masks ignored: .*{said}"):
+        read_masks(pair()._replace(masks=masks("left", 1_000, **wrong)))
+    assert read_masks(pair()) is None

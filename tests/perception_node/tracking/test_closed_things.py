@@ -14,6 +14,7 @@ from schemas.commands import Remove
 from schemas.entities import Pose
 from schemas.scenes import BodyOrder, JointOrder
 from tests.perception_node.things import CONFIG, Table, entity
+from tests.sim_node.orders import bodies
 
 ORIGIN = Pose(position_m=(0.0, 0.0, 0.0))
 MILK_M = (0.08, 0.08, 0.2)
@@ -74,3 +75,63 @@ def test_perception_removes_what_is_gone_only_where_it_can_look(door, removed):
     commands = table.looks(3 * CONFIG.gone_looks)
     assert [type(command) for command in commands] == ([Remove] if removed else [])
     assert ("milk1" in table.entities) is not removed
+
+
+TOY_M = (0.08, 0.08, 0.08)
+
+
+def chest():
+    """A chest at the origin whose top drawer is pulled out, and a toy in that."""
+    world = World()
+    world.spawn(
+        [BodyOrder(name="chest1", class_="Drawer", model="drawer", pose=ORIGIN, fixed=True, commit=1)]
+    )
+    pull(world, 1.0)
+    toy = Pose(position_m=(0.32, 0.0, 0.72))
+    world.spawn([BodyOrder(name="toy1", class_="Object", model="box", pose=toy, size_m=TOY_M, commit=1)])
+    world.step(2.0)
+    return world
+
+
+def pull(world, to):
+    world.move_joints([JointOrder(name="chest1", joint="drawer_1", openness=to)])
+    world.step(3.0)
+
+
+def seen_from_above(world):
+    """What a camera above the front of the chest sees of places."""
+    view = look_at(np.array([1.0, 0.1, 1.8]), np.array([0.3, 0.0, 0.75]), 320, 240, 1.0)
+    _, depth, _ = raycast(world.model, world.data, view)
+    return occupancy_in([cloud_of(depth, None, np.asarray(view.intrinsics), view.map_from_camera)])
+
+
+def test_a_place_in_a_drawer_is_out_of_sight_while_it_is_shut():
+    world = chest()
+    out = world.pose("toy1")
+    assert seen_from_above(world)(out, TOY_M) == "occupied"
+    pull(world, 0.0)
+    shut_in = world.pose("toy1")
+    assert shut_in.position_m[0] < out.position_m[0] - 0.15
+    assert seen_from_above(world)(shut_in, TOY_M) == "unknown"
+    world.delete(["toy1"])
+    assert seen_from_above(world)(shut_in, TOY_M) == "unknown"
+    pull(world, 1.0)
+    assert seen_from_above(world)(out, TOY_M) == "free"
+
+
+@pytest.mark.parametrize("drawer", [0.0, 1.0])
+def test_perception_keeps_what_is_in_a_drawer_that_is_shut(drawer):
+    world = chest()
+    pull(world, 0.0)
+    shut_in = world.pose("toy1")
+    world.delete(["toy1"])
+    table = LooksAt().told([entity("toy1", "Bottle", shut_in, TOY_M, source="perception")])
+    table.occupancy = seen_from_above(world)
+    assert table.looks(3 * CONFIG.gone_looks) == []
+    if drawer:  # it goes once it can be seen to be gone from where the open drawer has taken it
+        pull(world, drawer)
+        x, y, z = shut_in.position_m
+        out = Pose(position_m=(x + bodies(world)["chest1"].joints[-1].position, y, z))
+        table = LooksAt().told([entity("toy1", "Bottle", out, TOY_M, source="perception")])
+        table.occupancy = seen_from_above(world)
+        assert [type(command) for command in table.looks(3 * CONFIG.gone_looks)] == [Remove]

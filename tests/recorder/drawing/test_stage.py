@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 import rerun as rr
 from msgspec import structs
@@ -88,13 +89,17 @@ def test_a_graph_is_drawn_when_it_changes(stage, told):
     assert [verb for verb, _ in told.take()] == ["graph"]
 
 
-def test_a_place_with_a_polygon_is_drawn_by_its_borders_and_a_box_as_a_sheet():
+def test_a_place_with_a_polygon_is_a_sheet_of_its_shape_with_borders_and_another_a_box():
     wkt = "POLYGON ((20 0, 26 0, 26 2, 22 2, 22 5, 20 5, 20 0))"
     at, size = box_around(read_wkt(wkt), 0.0, 2.5)
     room = structs.replace(
         entity("room1", "Room", place=True), pose=Pose(position_m=at), size_m=size, properties={EXTENT: wkt}
     )
-    border, _ = shape_of(figure_of(room, None, simulated=True))
+    covered, border, _ = shape_of(figure_of(room, None, simulated=True))
+    assert isinstance(covered, rr.Mesh3D)
+    corners = np.array(covered.vertex_positions.as_arrow_array().to_pylist())
+    assert np.allclose(corners[:, :2].min(axis=0), (-3.0, -2.5))
+    assert len(set(corners[:, 2].tolist())) == 1
     assert isinstance(border, rr.LineStrips3D)
     (strip,) = border.strips.as_arrow_array().to_pylist()
     assert strip[0] == pytest.approx(strip[-1])

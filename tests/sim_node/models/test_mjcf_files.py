@@ -5,7 +5,7 @@ import math
 import pytest
 
 from nodes.sim_node.models.sources import Models
-from nodes.sim_node.models.write_shapes import own_shapes
+from nodes.sim_node.models.write_shapes import own_notes, own_shapes
 from nodes.sim_node.world import World
 from schemas.scenes import JointOrder
 from tests.sim_node.orders import bodies, order, pose
@@ -150,3 +150,15 @@ def test_the_knowledge_base_is_told_of_them(folder):
     (tray,) = shape.leaves[1].interiors
     assert tray.high[0] - tray.low[0] == pytest.approx(0.34, abs=0.03)
     assert shape.leaves[1].limits == pytest.approx((0.0, 0.2))
+
+
+def test_notes_are_told_of_those_files_that_are_a_class_s_model(folder):
+    (folder / "broken.xml").write_text("<mujoco")
+    assert own_notes(folder, {"chest", "hung", "broken"}) == [
+        "chest.xml: turn stays as it is drawn, because lid_hinge moves that body already"
+    ]
+    (told,) = own_notes(folder, {"odd.xml"})
+    assert told.endswith(
+        "because along moves that body already; 1 tendon (string) left out;"
+        " 2 actuators (motor) left out; 1 equality constraint left out"
+    )

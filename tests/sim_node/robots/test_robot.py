@@ -91,7 +91,20 @@ def test_what_has_fallen_over_does_not_drive(world):
     lying = Pose(position_m=(7.5, 2.0, 0.3), orientation_wxyz=(math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0))
     world.move([Placement(name="robot1", pose=lying)])
     world.step(2.0)
+    assert world.scene().bodies[0].has_fallen
+    said = r"robot1 has fallen over at .*; to put it upright: semmap move robot1 --at .* 0 --yaw 0$"
+    with pytest.raises(Refused, match=said):
+        world.drive(DriveBase(name="robot1", to=((9.0, 2.0),)))
+    world.move([Placement(name="robot1", pose=Pose(position_m=AT))])
+    assert not world.scene().bodies[0].has_fallen
     world.drive(DriveBase(name="robot1", to=((9.0, 2.0),)))
+    assert until_it_ends(world) == "there"
+
+
+def test_who_is_knocked_over_on_its_way_is_said_to_have_fallen(world):
+    world.drive(DriveBase(name="robot1", to=((9.0, 2.0),)))
+    world.step(0.5)
+    world.data.qpos[3:7] = (math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)
     assert until_it_ends(world) == "fallen"
 
 
@@ -232,3 +245,13 @@ def test_who_moves_or_drives_it_has_placed_it_too(world, by):
     else:
         world.drive(DriveBase(name="robot1", to=((8.5, 2.0),)))
     assert commits(world) == (0, 0)
+
+
+def test_who_lifts_it_ends_its_course(world):
+    world.drive(DriveBase(name="robot1", to=((9.3, 2.0),)))
+    world.step(1.0)
+    there = Pose(position_m=(8.5, 1.2, 0.0))
+    world.move([Placement(name="robot1", pose=there)])
+    assert world.ended() == {"robot1": "stopped"}
+    world.step(3.0)
+    assert world.pose("robot1").position_m == pytest.approx(there.position_m, abs=0.02)

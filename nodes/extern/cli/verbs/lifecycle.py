@@ -17,6 +17,7 @@ from nodes import bus
 from nodes.extern.cli.calling import complain
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
 from nodes.extern.cli.output.printable import say
+from nodes.extern.files import read_label_map
 from nodes.identity import SUPERVISOR
 from nodes.identity.register import Register
 from nodes.runtime import extras
@@ -170,6 +171,13 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         show_default=True,
         help="What to do with entities that perception added and no longer sees.",
     )
+    @click.option(
+        "--label-map",
+        type=click.Path(path_type=Path),
+        default=None,
+        metavar="FILE.json",
+        help='With a detector of your own: what its labels are called here, {"coffee mug": "Cup"}.',
+    )
     @click.option("--no-sim", is_flag=True, help="Do not start the simulator.")
     @click.option("--no-record", is_flag=True, help="Do not start the recorder.")
     @click.option(
@@ -272,8 +280,9 @@ def _settings(
     threshold: float, angle_threshold: float, robot: str | None, robot_name: str,
     robot_at: tuple[float, float, float] | None, robot_yaw: float, stale: float, journal_every: float,
     listen: str, connect: tuple[str, ...], window: bool, models: Path | None, camera_hz: float | None,
-    camera_size: tuple[int, int], camera_noise: bool, perception: bool, when_gone: str, no_sim: bool,
-    no_record: bool, record_keep: str | None, only: str | None, single: bool, secure: Path | None,
+    camera_size: tuple[int, int], camera_noise: bool, perception: bool, when_gone: str,
+    label_map: Path | None, no_sim: bool, no_record: bool, record_keep: str | None, only: str | None,
+    single: bool, secure: Path | None,
     zenoh_config: Path | None, insecure: bool, namespace: str,
     web: bool, web_port: int | None, web_as: str | None,
 ) -> Settings:  # fmt: skip
@@ -333,6 +342,7 @@ def _settings(
         "camera_noise": camera_noise,
         "perception": perception,
         "when_gone": when_gone,
+        "label_map": {} if label_map is None else read_label_map(label_map),
         "sim": not no_sim,
         "record": not no_record,
         "record_keep": record_keep,

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from nodes.extern.cli.calling import print_json
+from nodes.extern.cli.calling import complain, print_json
 from nodes.extern.cli.output.printable import say
 from nodes.extern.cli.output.show import console
 from nodes.extern.cli.output.show_perceived import as_records, as_table, show_frame
-from nodes.extern.files import write_atomically
+from nodes.extern.files import read_label_map, write_atomically
 from nodes.runtime import extras
 from schemas import errors, wording
 from schemas.perception import FrameRow
@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 
 _SAY_S = 5.0
 """After this time it is told again how far a dataset is."""
-_FRAMES = {"map": "map frame", "plane": "frame: the largest plane is z = 0, the camera above its origin"}
+_FRAMES = {
+    "map": "map frame",
+    "plane": "frame: the floor, or else the largest plane, is z = 0, the camera above its origin",
+}
 
 
 @click.command()
@@ -107,6 +110,7 @@ def perceive(
 
     from nodes.perception_node.input.files.cloud_files import read_frames
     from nodes.perception_node.pipeline import one_by_one, shipped
+    from nodes.perception_node.views.masked import with_masks
     from nodes.perception_node.views.segmented_view import see
 
     clouds = list(read_frames(files, intrinsics))
@@ -117,7 +121,10 @@ def perceive(
     for file, cloud in clouds:
         sight = see(cloud)
         if detector is not None:
-            sight = detector.cut(sight)
+            masks_found = detector.masks_of(detector.file, sight.labels.shape)
+            if unknown_here := detector.labels.unknown([masks_found]):
+                complain(wording.unknown_labels(unknown_here))
+            sight = with_masks(sight, masks_found)
         told = one_by_one(sight, shipped(), None if detector is None else detector.labels)
         frame = "plane" if cloud.map_from_camera is None else "map"
         if format == "json":
@@ -143,7 +150,6 @@ def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -
             raise errors.BadRequest("--label-map and --masks-only go with --masks")
         return None
     from nodes.perception_node.detector import Detector
-    from nodes.perception_node.input.files.mask_files import read_label_map
     from nodes.perception_node.recognition.shipped_votes import shipped
     from nodes.perception_node.recognition.told_names import Labels
 
@@ -168,9 +174,10 @@ def _dataset(
             labels.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise errors.BadFile(f"{labels} cannot be made a folder of labels: {error.strerror}") from None
-    rows, said, began_s = [], 0.0, time.monotonic()
+    rows, unknown, said, began_s = [], set[str](), 0.0, time.monotonic()
     for told in perceived(folders, shipped(), detector):
         rows.append(told.row)
+        unknown.update(told.unknown_labels)
         if labels is not None and told.labels is not None:
             buffer = io.BytesIO()
             np.save(buffer, told.labels)
@@ -183,6 +190,8 @@ def _dataset(
     if out is not None:
         lines = b",\n".join(msgspec.json.encode(row) for row in rows)
         write_atomically(out, b"[\n" + lines + b"\n]\n")
+    if unknown:
+        complain(wording.unknown_labels(sorted(unknown)))
     if out is None and format == "json":
         print_json(rows)
         return

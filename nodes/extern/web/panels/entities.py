@@ -150,6 +150,8 @@ class _Entities:
         """The table is there, and empty."""
         self._is_ready, self._shown = True, {}
         self._look()
+        if not self._shown and self._page.state.commit >= 0:
+            ui.run_javascript("semmapBeginScene()")  # which waits for the first rows
 
     def _touch(self, names: Touched) -> None:
         if names is None or not self._is_ready or len(names) > len(self._shown) // 2:

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 import numpy as np
-from viser import BatchedGlbHandle, SceneApi
+from numpy.typing import NDArray
+from viser import BatchedGlbHandle, MeshHandle, SceneApi
 
 from nodes.drawing.palette import colour_of
+from nodes.drawing.sheets import triangles_of
 from nodes.extern.web.scene.marks import Written
 from nodes.extern.web.scene.meshes import cube, glb, linear, srgb
 from schemas.entities import Entity
+from schemas.polygons import Polygon, extent_of
 from schemas.scenes import Surface
 
 _SHEET_M = 0.01
@@ -31,6 +34,7 @@ class Rooms:
         self._places: list[Entity] = []
         self.names: dict[str, Written] = {}
         """What the places are called, and where that may be written."""
+        self._outlines: list[MeshHandle] = []
         self._walls: BatchedGlbHandle | None = None
 
     def show(self, entities: Mapping[str, Entity]) -> None:
@@ -39,7 +43,7 @@ class Rooms:
             (entity for entity in entities.values() if entity.place and entity.pose is not None),
             key=lambda place: (-_area(place), place.name),
         )
-        drawn = tuple((p.name, p.class_, p.pose, p.size_m, _called(p)) for p in places)
+        drawn = tuple((p.name, p.class_, p.pose, p.size_m, extent_of(p), _called(p)) for p in places)
         if drawn == self._drawn:
             return
         self._drawn, self._places = drawn, places
@@ -54,6 +58,9 @@ class Rooms:
             self._sheets([place for place in self._places if place.size_m is not None])
 
     def _sheets(self, places: list[Entity]) -> None:
+        for outline in self._outlines:
+            outline.remove()
+        self._outlines.clear()
         if not places:
             self._scene.remove_by_name("/rooms/floors")
             return
@@ -63,16 +70,39 @@ class Rooms:
         positions[:, 2] += heights - _SHEET_M
         sizes = np.array([place.size_m for place in places])
         sizes[:, 2] = _SHEET_M
-        colours = linear(np.array([colour_of(place.class_) for place in places], dtype=np.uint8))
+        light = linear(np.array([colour_of(place.class_) for place in places], dtype=np.uint8))
+        colours = srgb(light * (1.0 - _PALE) + self._paper * _PALE)
+        outlines = {k: extent for k, place in enumerate(places) if (extent := extent_of(place)) is not None}
+        for k, extent in outlines.items():
+            self._outlines.append(self._outline(places[k].name, extent, positions[k], colours[k]))
+        boxes = [k for k in range(len(places)) if k not in outlines]
+        if not boxes:
+            self._scene.remove_by_name("/rooms/floors")
+            return
         self._scene.add_batched_meshes_simple(
             "/rooms/floors",
             points,
             triangles,
-            batched_positions=positions,
-            batched_wxyzs=np.array([p.pose.orientation_wxyz for p in places if p.pose is not None]),
-            batched_scales=sizes,
-            batched_colors=srgb(colours * (1.0 - _PALE) + self._paper * _PALE),
+            batched_positions=positions[boxes],
+            batched_wxyzs=np.array([p.pose.orientation_wxyz for p in places if p.pose is not None])[boxes],
+            batched_scales=sizes[boxes],
+            batched_colors=colours[boxes],
             lod="off",
+            cast_shadow=False,
+        )
+
+    def _outline(
+        self, name: str, extent: Polygon, position: NDArray[np.float64], colour: NDArray[np.uint8]
+    ) -> MeshHandle:
+        """A sheet in the shape of a polygon, as high as the upper side of a box's."""
+        corners, triangles = triangles_of(extent)
+        red, green, blue = (int(part) for part in colour)
+        return self._scene.add_mesh_simple(
+            f"/rooms/outlines/{name}",
+            np.column_stack([corners, np.full(len(corners), _SHEET_M, np.float32)]),
+            triangles,
+            color=(red, green, blue),
+            position=position,
             cast_shadow=False,
         )
 

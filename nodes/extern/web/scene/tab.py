@@ -68,6 +68,8 @@ _MEASURES: Final = 8
 """Of so many relations, the nearest things first, it is written what they are."""
 _HANDLES: Final = "handles"
 """About as wide as what a thing is held by, which no measure is to cover."""
+_MARKED: Final = "otherwise "
+"""Before the name of a thing, in the key of what is written at it because it is otherwise."""
 _NAMED: Final = 50
 """Of so many selected things the names are written, whether or not there is room."""
 
@@ -87,6 +89,8 @@ class TabScene:
         self._known: dict[str, tuple[tuple[object, ...], Shown | None]] = {}
         self._bodies_of: tuple[object, dict[str, Body]] = (None, {})
         self._relations: tuple[Relation, ...] = ()
+        self._marked: dict[str, Written] = {}
+        """What is written at things that are otherwise than in the moment compared with, by their names."""
         self._measures: dict[str, Written] = {}
         """What is written at the lines of relations."""
         self._asked = 0
@@ -320,7 +324,8 @@ class TabScene:
                 pieces.append((dashed(_middle(found.then, size_m), _middle(found.now, size_m)), rgb))
             labels[found.name] = (found.text, _top(found.now or at, size_m))
         self._differences.show(pieces)
-        self._difference_labels.show(dict(list(labels.items())[:40]))
+        self._marked = labels
+        self._label_soon()
 
     def _known_size_of(self, name: str) -> Size | None:
         return self._things[name].size_m if name in self._things else None
@@ -343,15 +348,19 @@ class TabScene:
         if self._client is None or self._is_stale:
             return
         things = {name: self._named(name) for name in self._things if name in self.page.state.entities}
-        selected = {name: things[name] for name in self.page.selected[:_NAMED] if name in things}
-        rooms, others = self._rooms.names, dict[str, Written]()
+        named = {**things, **self._marked}
+        selected = {name: named[name] for name in self.page.selected[:_NAMED] if name in named}
+        marked = {f"{_MARKED}{name}": text for name, text in self._marked.items() if name not in selected}
+        first = {**selected, **marked, **self._measures}
+        rooms, others = {}, {}
         if "names" in self.on:
-            every = {**selected, **rooms, **self._measures, **things}
-            chosen = uncrowded(self._view(self._client), every, (*selected, *self._measures, *rooms))
-            others = {name: every[name] for name in chosen if name in things and name not in selected}
-            rooms = {name: rooms[name] for name in chosen if name in rooms}
-        self._labels.show(others)
-        self._strong_labels.show({**(rooms if "names" in self.on else {}), **selected})
+            rooms = self._rooms.names
+            others = {name: things[name] for name in things if name not in self._marked}
+        every = {**first, **rooms, **others}
+        chosen = uncrowded(self._view(self._client), every, (*first, *rooms))
+        self._difference_labels.show({key: marked[key] for key in chosen if key in marked})
+        self._labels.show({key: others[key] for key in chosen if key in others and key not in selected})
+        self._strong_labels.show({**{key: rooms[key] for key in chosen if key in rooms}, **selected})
         _cancel(*self._rendering)
         self._rendering = [self._loop.call_later(delay_s, self._render) for delay_s in _RENDER_S]
 

@@ -206,6 +206,12 @@ class Expanse(Form):
         """Never: another place has another extent."""
         return False
 
+    def forget(self) -> None:
+        """Drop what can be worked out again, which the region cannot."""
+        region = self.region
+        super().forget()
+        self.region = region
+
     @lazily
     def is_square(self) -> bool:
         """Whether its outline is its bounds: that is for boxes to say."""

@@ -40,12 +40,23 @@ def cloud_of(columns: Mapping[str, Column], height: int, width: int) -> Cloud:
     """The cloud of columns of (height * width,) each: `x`, `y`, `z` [m], and colours where there are any.
 
     Colours are packed as 0xRRGGBB in `rgb` or `rgba`, an integer or the same bits called a float, or stand in
-    `red`, `green` and `blue`. Points nearer or farther than any camera measures become NaN.
-    Raises ValueError for missing columns.
+    `red`, `green` and `blue`. Points nearer or farther than any camera measures become NaN. Where all lie
+    behind the camera, y is taken to be up and z to point backwards, as OpenGL has it, and both are turned.
+    Raises ValueError for missing columns, and for millimetres.
     """
     if missing := [name for name in "xyz" if name not in columns]:
         raise ValueError(f"it has no field {', '.join(missing)}, only {', '.join(columns) or 'none'}")
     points = np.stack([columns[name].astype(np.float32) for name in "xyz"], axis=-1)
+    depth = points[np.isfinite(points).all(axis=-1), 2]
+    depth = depth[depth != 0.0]
+    if len(depth) and (depth < 0.0).all():
+        points[:, 1:] *= -1.0
+        depth = -depth
+    if len(depth) and np.median(depth) > FARTHEST_M:
+        raise ValueError(
+            f"half of its points are more than {np.median(depth):.0f} m away, as if they were in millimetres;"
+            " multiply them by 0.001"
+        )
     measured = (np.abs(points) < FARTHEST_M).all(axis=-1) & (points[:, 2] > NEAREST_M)  # NaN is not
     points[~measured] = np.nan
     colors = _colors(columns)

@@ -78,13 +78,3 @@ def _run(told: Any, names: dict[Any, str]) -> MaskRun:
         },
         MaskRun,
     )
-
-
-def read_label_map(path: Path) -> dict[str, str]:
-    """From labels to classes, as a JSON file has them. Raises BadFile."""
-    try:
-        return msgspec.json.decode(path.read_bytes(), type=dict[str, str])
-    except OSError as error:
-        raise BadFile(f"{path} cannot be read: {error.strerror}") from None
-    except msgspec.DecodeError:
-        raise BadFile(f'{path} is no map of labels to classes, such as {{"coffee mug": "Cup"}}') from None

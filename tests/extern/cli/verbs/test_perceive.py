@@ -120,3 +120,46 @@ def test_what_a_dataset_is_not_is_told(tmp_path, capsys, monkeypatch, arguments,
     (tmp_path / "empty").mkdir()
     assert execute(["perceive", *arguments]) == 2
     assert said in capsys.readouterr().err
+
+
+def test_masks_cut_a_frame_up_and_a_label_that_nobody_knows_is_told(tmp_path, capsys):
+    write_frame(tmp_path / "frames" / "first")
+    (height, width), box = SEEN.truth.shape, np.isin(SEEN.truth, [1])
+    np.save(tmp_path / "frames" / "first" / "mine.npy", box.astype(np.uint16))
+    out = tmp_path / "out.json"
+    words = ["perceive", "--frames", str(tmp_path / "frames"), "--json", str(out), "--masks-only", "--masks"]
+    assert execute([*words, "mine.npy"]) == 0
+    ((found,),) = [row["objects"] for row in json.loads(out.read_text())]
+    ys, xs = np.nonzero(box)
+    assert found["box_px"] == pytest.approx([xs.min(), ys.min(), xs.max() + 1, ys.max() + 1], abs=6)
+    counts = [0, *np.diff(np.flatnonzero(np.diff(np.r_[-1, box.T.ravel().astype(int), -1]))).tolist()]
+    counts = counts[1:] if not box[0, 0] else counts
+    told = [{"segmentation": {"size": [height, width], "counts": counts}, "category": "spork", "score": 0.9}]
+    (tmp_path / "frames" / "first" / "yolo.json").write_text(json.dumps(told))
+    capsys.readouterr()
+    assert execute([*words, "yolo.json"]) == 0
+    assert "no class here: spork; --label-map FILE" in capsys.readouterr().err
+    (tmp_path / "map.json").write_text('{"spork": "Box"}')
+    assert execute([*words, "yolo.json", "--label-map", str(tmp_path / "map.json")]) == 0
+    ((found,),) = [row["objects"] for row in json.loads(out.read_text())]
+    assert found["class"] == "Box"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["boxes.pcd", "--label-map", "map.json"], "go with --masks"),
+        (["boxes.pcd", "--masks-only"], "go with --masks"),
+        (["boxes.pcd", "--masks", "missing.npy"], "missing.npy cannot be read"),
+        (["boxes.pcd", "--masks", "small.npy"], "this one is of shape 4 x 3"),
+        (["boxes.pcd", "--masks", "small.npy", "--label-map", "small.npy"], "no map of labels"),
+    ],
+)
+def test_what_is_wrong_with_masks_is_told_in_one_line(tmp_path, capsys, monkeypatch, words, said):
+    monkeypatch.chdir(tmp_path)
+    write_cloud(tmp_path / "boxes.pcd")
+    np.save(tmp_path / "small.npy", np.zeros((3, 4), int))
+    assert execute(["perceive", *words]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1

@@ -113,3 +113,14 @@ def test_another_extent_moves_who_is_in_it():
     assert wider.pose == Pose(position_m=(3.0, 2.5, 0.0))
     facts.update([wider])
     assert facts.holds(("cup1", "isLocatedIn", "room1"))
+
+
+def test_what_it_covers_is_not_forgotten_with_what_can_be_worked_out_again():
+    room = place("room1", L_SHAPE)
+    space = Space([room])
+    solid = space.solids["room1"]
+    outline, area = solid.outline, solid.footprint
+    solid.forget()
+    space.put(thing("cup1", (4.0, 1.0, 0.0)))
+    assert place_of(space, "cup1") == "room1"
+    assert (solid.outline, solid.footprint) == (outline, area)

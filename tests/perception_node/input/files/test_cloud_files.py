@@ -150,3 +150,29 @@ def test_odd_numbers_in_text_are_no_trouble(tmp_path):
     head += b"".join(b"property float %s\n" % name for name in (b"x", b"y", b"z", b"red", b"green", b"blue"))
     (tmp_path / "colours.ply").write_bytes(head + b"end_header\n" + b"0 0 1 nan 300 -1\n" * 10)
     assert read_cloud(tmp_path / "colours.ply").colors[0, 0].tolist() == [0, 255, 0]
+
+
+def written(tmp_path, points):
+    file = tmp_path / "cloud.pcd"
+    head = header("binary", fields="x y z", height=1, width=len(points))
+    file.write_bytes(head + points.astype("<f4").tobytes())
+    return file
+
+
+def test_a_cloud_whose_z_points_backwards_is_turned(tmp_path):
+    turned = read_cloud(written(tmp_path, POINTS * [1, -1, -1]))
+    np.testing.assert_array_equal(turned.points_camera, POINTS[None])
+
+
+def test_a_point_behind_the_camera_turns_nothing(tmp_path):
+    points = POINTS.copy()
+    points[0, 2] = -1.0
+    seen = read_cloud(written(tmp_path, points)).points_camera[0]
+    assert np.isnan(seen[0]).all()
+    np.testing.assert_array_equal(seen[1:], POINTS[1:])
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_cloud_in_millimetres_is_told_with_the_factor(tmp_path, sign):
+    with pytest.raises(BadFile, match=r"more than 1000 m away, as if .* multiply them by 0\.001"):
+        read_cloud(written(tmp_path, sign * 1000 * POINTS))

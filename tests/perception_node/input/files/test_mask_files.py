@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.perception_node.input.files.mask_files import read_label_map, read_masks
+from nodes.perception_node.input.files.mask_files import read_masks
 from nodes.perception_node.input.masks import Said
 from schemas.errors import BadFile
 
@@ -62,11 +62,3 @@ def test_images_of_another_size_or_of_no_numbers(tmp_path):
         read_masks(tmp_path / "b.npy", 2, 3)
     with pytest.raises(BadFile, match="cannot be read"):
         read_masks(tmp_path / "missing.png", 2, 3)
-
-
-def test_a_map_of_labels(tmp_path):
-    (tmp_path / "map.json").write_text('{"coffee mug": "Cup"}')
-    assert read_label_map(tmp_path / "map.json") == {"coffee mug": "Cup"}
-    (tmp_path / "map.json").write_text("[]")
-    with pytest.raises(BadFile, match="no map of labels"):
-        read_label_map(tmp_path / "map.json")

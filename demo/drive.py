@@ -1,0 +1,43 @@
+"""The tour's second part: a robot in the flat, what is put into the fridge, and where that is later."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from demo.tour import Tour
+
+ROBOT = ("--robot", "porter", "--robot-at", "7.6", "1.2", "0", "--robot-yaw", "3.14")
+CAMERA = ("--camera-hz", "2", "--camera-size", "320", "240")
+
+
+def drive(t: Tour) -> None:
+    """Open the fridge, put the milk in, close it, drive past, and ask where the milk is."""
+    t.tell("A robot is an entity whose pose comes live; its cameras and parts are frames")
+    t.until("map and scene agree", t.agrees)
+    t.do("get", "robot1", holds="from the simulator")
+    t.do("frames", "robot1_head", holds="a camera")
+
+    t.tell("Open the fridge, put the milk in, close it: what a hand does, the map follows")
+    t.do("open", "fridge1", "--joint", "door", "--wait", holds="door open to 100%")
+    t.do("move", "milk1", "--at", "6.55", "0.3", "0.64")
+    t.until("the milk is in the fridge", lambda: t.ask("list", "--in", "fridge1"))
+    t.do("close", "fridge1", "--wait", holds="door closed")
+    t.do("explain", "milk1", "type", "Chilled_Food", holds="100% of its volume is within a hollow of fridge1")
+
+    t.tell("The robot takes the apple along; what is held is where its holder is")
+    t.do("attach", "apple1", "--to", "robot1_gripper", "--at", "0.06", "0", "0", holds="holds apple1")
+    t.do("drive", "robot1", "--to", "6.75", "1.2", "--yaw", "-90deg", "--wait", holds="robot1 is at")
+    t.do("list", "--nearest", "3", "--to", "robot1", holds="fridge1")
+    t.do("get", "apple1", holds="from where robot1_gripper holds it")
+
+    t.tell("On it drives, past the counter where the milk was, and lets the apple go")
+    t.do("drive", "robot1", "--to", "8.4", "1.15", "--yaw", "0", "--wait", holds="robot1 is at")
+    t.do("detach", "apple1", holds="let go of apple1")
+
+    t.tell("Where is the milk? Nobody sees it, and the map knows")
+    t.do("find", "the milk in the fridge", holds="milk1")
+    t.do("relations", "milk1", "fridge1", holds="milk1 is inside fridge1")
+    t.do("last-seen", "milk1", holds="it cannot be seen there: fridge1 has been closed since")
+    t.do("when", "milk1", "isOn", "counter1", holds="milk1 is no longer on counter1")
+    t.do("route", "robot1", "bed1", holds="through door7")

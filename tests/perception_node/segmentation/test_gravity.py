@@ -1,0 +1,57 @@
+"""Up and floor in pictures of rooms, from cameras whose pose nobody knows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nodes.perception_node.pipeline import look
+from nodes.perception_node.recognition.shipped_votes import shipped
+from nodes.perception_node.segmentation.gravity import level_plane, room_pose
+from nodes.perception_node.segmentation.planes import Plane
+from nodes.perception_node.segmentation.working_picture import grid_of
+from nodes.perception_node.views.segmented_view import see
+from tests.perception_node.scenes import KINDS, shot
+from tests.perception_node.segmentation.scenes import boxes_on_table
+from tests.perception_node.segmentation.test_patches import SCENES
+
+
+@pytest.mark.parametrize("view", [0, 1])
+def test_the_floor_tells_how_a_camera_stands(view):
+    cloud = shot().clouds[view]
+    pose = room_pose(grid_of(cloud).points)
+    assert pose[2, :3] == pytest.approx(cloud.map_from_camera[2, :3], abs=0.01)
+    assert pose[2, 3] == pytest.approx(cloud.map_from_camera[2, 3], abs=0.02)
+    assert np.linalg.det(pose[:3, :3]) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("view", [0, 1])
+def test_without_a_pose_the_same_things_are_found_at_the_same_height(view):
+    cloud = shot().clouds[view]
+    known = look([cloud], shipped()).observations.observations
+    found = look([replace(cloud, map_from_camera=None)], shipped()).observations.observations
+    assert sorted(o.class_ for o in found) == sorted(o.class_ for o in known)
+    heights = [sorted(o.pose.position_m[2] for o in seen) for seen in (found, known)]
+    assert heights[0] == pytest.approx(heights[1], abs=0.02)
+    assert len(found) > len(KINDS)  # and the table
+
+
+def test_a_table_top_alone_tells_no_height():
+    seen = boxes_on_table(*SCENES["apart"])
+    assert room_pose(grid_of(seen.cloud).points) is None
+    assert see(seen.cloud).supports_m == pytest.approx([0.0], abs=0.01)
+
+
+def plane(normal, points):
+    return Plane(np.array(normal), -1.0, "plane", points, (1.0, 1.0))
+
+
+def test_a_wall_is_not_the_floor_however_large():
+    wall, floor = plane((0.0, 0.5, -0.87), 5000), plane((0.0, -0.87, -0.5), 1000)
+    assert level_plane((wall, floor)) is floor
+    assert level_plane((wall,)) is None
+    assert level_plane(()) is None
+    straight_down = plane((0.0, 0.0, -1.0), 10)
+    assert level_plane((straight_down,)) is straight_down
