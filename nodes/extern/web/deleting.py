@@ -11,7 +11,7 @@ from schemas.commands import Remove, Undo
 from schemas.errors import shortened
 
 _NAMED = 5
-_FACTS = 30
+_FACTS = 8
 
 
 async def delete_selected(page: Page) -> None:
@@ -52,7 +52,11 @@ async def _confirms(names: tuple[str, ...], also: tuple[str, ...], facts: tuple[
         for sentence in also:
             ui.label(shortened(sentence, 1000)).classes("semmap-sentence")
         if facts:
-            with ui.expansion(f"With it {'goes' if len(facts) == 1 else 'go'} {_counted(facts)}"):
+            with (
+                ui.expansion(f"With it {'goes' if len(facts) == 1 else 'go'} {_counted(facts)}")
+                .props("dense")
+                .classes("w-full")
+            ):
                 for fact in facts[:_FACTS]:
                     ui.label(shortened(fact, 200))
                 if len(facts) > _FACTS:
