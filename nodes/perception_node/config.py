@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from nodes.bus import Network
@@ -19,6 +19,10 @@ class TrackingConfig:
     clear_looks: int = 2
     """The same for one that no picture's edge cuts, and whose class is as sure as `clear`."""
     clear: float = 0.8
+    part_looks: int = 3
+    """The same for one that a picture's edge cuts."""
+    vanished_looks: int = 1
+    """Looks in a row in which its place must be seen empty before a thing is looked for elsewhere."""
     rest_looks: int = 2
     """Looks in which a known entity must be seen elsewhere, at rest, before it has moved."""
     nudge_looks: int = 8
@@ -36,6 +40,11 @@ class TrackingConfig:
     """An extent that is off by more than this share of it is another size."""
     when_gone: Literal["remove", "mark"] = "remove"
     """What becomes of an entity of perception's own that is gone; an operator's is always marked."""
+
+    @property
+    def on_the_move(self) -> TrackingConfig:
+        """For looks of which a camera moves: it sees more soon, and other things of the same kind."""
+        return replace(self, part_looks=2 * self.part_looks, vanished_looks=self.vanished_looks + 2)
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from nodes.perception_node.config import PerceptionConfig
 from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.input.frame_worker import FrameWorker
 from nodes.perception_node.input.masks import Masks
-from nodes.perception_node.pipeline import Look, look, shipped
+from nodes.perception_node.pipeline import Look, shipped
 from nodes.perception_node.recognition.told_names import Labels
 from nodes.perception_node.segmented_cloud import segmented_cloud
 from nodes.perception_node.tracking.association import associate, renamed
@@ -28,6 +28,7 @@ from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierar
 from nodes.perception_node.tracking.map_updates import subject_of
 from nodes.perception_node.tracking.occupancy import occupancy_in
 from nodes.perception_node.tracking.tracks import Tracks
+from nodes.perception_node.watching import Watching
 from nodes.runtime.following import Begun, Follower
 from nodes.runtime.loop import Node, open_node
 from nodes.runtime.map_replica import MapReplica
@@ -116,7 +117,7 @@ class Perception:
         seen = found.observations
         if found.unknown_labels:
             self._on_complaint(wording.unknown_labels(found.unknown_labels))
-        self._compare(seen, clouds)
+        self._compare(seen, clouds, on_the_move=found.on_the_move)
         if time.monotonic() >= self._cloud_due and self._cloud_is_wanted():
             self._cloud_due = time.monotonic() + _CLOUD_S
             cloud = segmented_cloud(clouds, found)
@@ -132,8 +133,9 @@ class Perception:
         known = tuple(o for o in seen.observations if o.class_ not in unknown)
         self._compare(structs.replace(seen, observations=known), ())
 
-    def _compare(self, seen: Observations, clouds: Sequence[Cloud]) -> None:
-        """Tell the map what differs, and all others what was seen."""
+    def _compare(self, seen: Observations, clouds: Sequence[Cloud], *, on_the_move: bool = False) -> None:
+        """Tell the map what differs, and all others what was seen; `on_the_move`: a camera of these moves."""
+        tracking = self._config.tracking
         if self._map_is_current():
             result = associate(
                 self._map.entities,
@@ -141,7 +143,7 @@ class Perception:
                 seen.observations,
                 occupancy_in(clouds),
                 self._classes,
-                self._config.tracking,
+                tracking.on_the_move if on_the_move else tracking,
             )
             self._tracks = result.tracks
             named = zip(seen.observations, result.entities, strict=True)
@@ -216,10 +218,8 @@ def run(config: PerceptionConfig) -> None:
     """Look until stopped. Raises BadFile when what perception learnt cannot be read."""
     learnt = shipped()
     with open_node("perception_node", config.network) as node:
-        labels = Labels(learnt, config.labels)
-        perception = Perception(
-            node, config, lambda clouds, masks: look(clouds, learnt, masks, labels), learnt.usual_m
-        )
+        watching = Watching(learnt, Labels(learnt, config.labels))
+        perception = Perception(node, config, watching, learnt.usual_m)
         try:
             node.run()
         finally:

@@ -22,10 +22,15 @@ from nodes.perception_node.views.furniture_planes import with_what_hangs_below
 from nodes.perception_node.views.fusion import Member, fuse, held_for_one
 from nodes.perception_node.views.masked import with_masks
 from nodes.perception_node.views.merged_thing import Thing, thing_of
+from nodes.perception_node.views.remembered import Recalled, Remembered, completed
 from nodes.perception_node.views.segmented_view import Sight, see
+from nodes.perception_node.views.segments import Segment
+from nodes.perception_node.views.supports import Support
 from schemas.perception import CameraView, Observation, Observations
 
 __all__ = ["Learnt", "Look", "look", "look_at", "observe", "one_by_one", "parts_in", "shipped"]
+
+_NOTHING = Remembered()
 
 
 @dataclass(frozen=True)
@@ -33,12 +38,19 @@ class Look:
     """What one look gave: the observations, and for each cloud (H, W) whose pixel belongs to which of them.
 
     In `labels` 0 is background and n stands for `observations.observations[n - 1]`. `unknown_labels`: what a
-    detector said that is no class here.
+    detector said that is no class here. `remembered` is what the next look is to know of this one and those
+    before it.
     """
 
     observations: Observations
     labels: tuple[NDArray[np.int32], ...]
     unknown_labels: tuple[str, ...] = ()
+    remembered: Remembered = _NOTHING
+
+    @property
+    def on_the_move(self) -> bool:
+        """Whether a camera of this look is one that moves."""
+        return any(view.camera in self.remembered.moving for view in self.observations.views)
 
 
 def observe(clouds: Sequence[Cloud], learnt: Learnt) -> Observations:
@@ -51,17 +63,19 @@ def look(
     learnt: Learnt,
     masks: Sequence[Masks | None] = (),
     labels: Labels | None = None,
+    before: Remembered = _NOTHING,
 ) -> Look:
     """Find the things that clouds, taken at the same time, show; what several of them see is one thing.
 
     `masks`: of each cloud what somebody else's detector found in it; `labels`: what its labels mean here.
-    Each cloud is taken apart by a thread of its own: NumPy and SciPy let others work meanwhile. Raises
-    ValueError for masks of another size than the picture.
+    What a moving camera's picture cuts off is completed by what was remembered `before`. Each cloud is taken
+    apart by a thread of its own: NumPy and SciPy let others work meanwhile. Raises ValueError for masks of
+    another size than the picture.
     """
     with ThreadPoolExecutor(max(1, len(clouds))) as threads:
         sights = list(threads.map(_seen, clouds, [*masks] or [None] * len(clouds)))
     labels = labels or Labels(learnt)
-    return replace(look_at(sights, learnt, labels), unknown_labels=labels.unknown(masks))
+    return replace(look_at(sights, learnt, labels, before), unknown_labels=labels.unknown(masks))
 
 
 def _seen(cloud: Cloud, masks: Masks | None) -> Sight:
@@ -69,9 +83,13 @@ def _seen(cloud: Cloud, masks: Masks | None) -> Sight:
     return sight if masks is None else with_masks(sight, masks)
 
 
-def look_at(sights: Sequence[Sight], learnt: Learnt, labels: Labels | None = None) -> Look:
+def look_at(
+    sights: Sequence[Sight], learnt: Learnt, labels: Labels | None = None, before: Remembered = _NOTHING
+) -> Look:
     """The same for clouds that were taken apart already."""
     parts = parts_in(sights)
+    recalled = before.recalled(sights, parts.labels)
+    parts = parts.completed(recalled)
     things, chances, members = put_together(parts.things, parts.held_for_one, learnt, parts.join)
     found = recognise(things, chances, learnt, labels)
     kept = [n for n, observation in enumerate(found) if observation is not None]
@@ -83,7 +101,12 @@ def look_at(sights: Sequence[Sight], learnt: Learnt, labels: Labels | None = Non
     numbers = np.zeros(len(parts.things) + 1, np.int32)
     for number, n in enumerate(kept, 1):
         numbers[np.array(members[n]) + 1] = number
-    return Look(observations, tuple(numbers[label] for label in parts.labels))
+    elsewhere = [rest for rest, thing in recalled if not thing]
+    return Look(
+        observations,
+        tuple(numbers[label] for label in parts.labels),
+        remembered=before.after(sights, [thing.segments for thing in things], elsewhere),
+    )
 
 
 def one_by_one(sight: Sight, learnt: Learnt, labels: Labels | None = None) -> dict[int, Observation | None]:
@@ -91,7 +114,7 @@ def one_by_one(sight: Sight, learnt: Learnt, labels: Labels | None = None) -> di
     segments = [segment for segment in sight.segments if not segment.carrier]
     if not segments:
         return {}
-    things = [thing_of([segment], sight.supports_m) for segment in segments]
+    things = [thing_of([segment], sight.supports) for segment in segments]
     found = recognise(things, leaves(learnt, features_of(things)), learnt, labels)
     return {segment.label: observation for segment, observation in zip(segments, found, strict=True)}
 
@@ -101,24 +124,35 @@ class Parts:
     """What sights together show, before anything is recognised.
 
     `labels`: of each sight (H, W) whose a pixel is, counted from 1, 0 for none. `held_for_one`: (2, N, N),
-    see `fusion`. `supports_m`: heights of what things may stand on.
+    see `fusion`. `supports`: what things may stand on.
     """
 
     things: list[Thing]
     labels: tuple[NDArray[np.int32], ...]
     held_for_one: NDArray[np.float64]
-    supports_m: Sequence[float]
+    supports: Sequence[Support]
 
     def join(self, a: Thing, b: Thing) -> Thing:
         """Two of them as one."""
-        return thing_of((*a.segments, *b.segments), self.supports_m)
+        return thing_of((*a.segments, *b.segments), self.supports)
+
+    def completed(self, recalled: Sequence[Recalled]) -> Parts:
+        """With what is remembered of those that a picture's edge cuts."""
+        rests: dict[int, list[Segment]] = {}
+        for rest, number in recalled:
+            if number and not self.things[number - 1].whole:
+                rests.setdefault(number - 1, []).append(rest)
+        things = list(self.things)
+        for n, own in rests.items():
+            things[n] = thing_of(completed(things[n].segments, own), self.supports)
+        return replace(self, things=things)
 
 
 def parts_in(sights: Sequence[Sight]) -> Parts:
     """What several cameras see of one thing is one part."""
     sights = settled(sights)
     groups = groups_in(sights)
-    supports = [height for sight in sights for height in sight.supports_m]
+    supports = [support for sight in sights for support in sight.supports]
     things = [thing_of([sights[view].segments[n] for view, n in group], supports) for group in groups]
     return Parts(things, _labels(sights, groups), held_for_one(sights, groups), supports)
 

@@ -10,7 +10,13 @@ from scipy.optimize import linear_sum_assignment
 
 from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
-from nodes.perception_node.tracking.costs import Target, cost_anywhere, cost_in_place, size_difference
+from nodes.perception_node.tracking.costs import (
+    FORBIDDEN,
+    Target,
+    cost_anywhere,
+    cost_in_place,
+    size_difference,
+)
 from nodes.perception_node.tracking.occupancy import Occupancy, OccupancyOf
 from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, share
 from nodes.perception_node.tracking.tracks import Track
@@ -19,7 +25,6 @@ from schemas.perception import Observation
 A = TypeVar("A")
 B = TypeVar("B")
 K = TypeVar("K", str, int)
-Cost = Callable[[Target, Observation, ClassHierarchy], float]
 
 _PROHIBITIVE = 1e6
 _COVERED = 0.6
@@ -60,17 +65,26 @@ def match(
 ) -> Matching:
     """Things in their places first; then what vanished, found elsewhere; then what is no entity yet."""
 
-    def pairs(of: Mapping[K, Candidate], to: Collection[int], cost: Cost) -> dict[K, int]:
-        free = sorted(to)
-        targets, seen = [c.target for c in of.values()], [observations[j] for j in free]
-        found = assign(targets, seen, lambda target, o: cost(target, o, classes))
-        return {list(of)[a]: free[b] for a, b in found}
+    def pairs(
+        of: Mapping[K, Candidate], to: Collection[int], cost: Callable[[K, int], float]
+    ) -> dict[K, int]:
+        keys, free = list(of), sorted(to)
+        return {keys[a]: free[b] for a, b in assign(keys, free, cost)}
 
-    there = {name: c for name, c in known.items() if not c.track.unseen}
+    def in_place(of: Mapping[K, Candidate]) -> Callable[[K, int], float]:
+        return lambda key, j: cost_in_place(of[key].target, observations[j], classes)
+
+    there = {name: c for name, c in known.items() if c.track.unseen < config.vanished_looks}
     single = {j for j, o in enumerate(observations) if not _is_of_several(o, there.values())}
-    seen = pairs(there, single, cost_in_place)
-    occupancy = {name: _occupancy(c.target, occupancy_of) for name, c in known.items() if name not in seen}
+    seen = pairs(there, single, in_place(there))
     rest = single.difference(seen.values())
+    occupancy = {
+        name: "occupied"
+        if any(_shows_a_part(c.target, observations[j], classes) for j in rest)
+        else _occupancy(c.target, occupancy_of)
+        for name, c in known.items()
+        if name not in seen
+    }
     parts = {
         name: {j for j in rest if _may_be_of(c.target, observations[j])}
         for name, c in known.items()
@@ -88,14 +102,23 @@ def match(
     vanished = {
         name: known[name]
         for name, seen_there in occupancy.items()
-        if seen_there == "free" or name in gone or name not in there
+        if name in gone or known[name].track.unseen + (seen_there == "free") >= config.vanished_looks
     }
-    found = pairs(vanished, rest - relatives, cost_anywhere)
-    again = pairs(dict(enumerate(tentative)), left.difference(found.values()), cost_in_place)
+    others = dict(enumerate(tentative))
+    looks = {j: others[i].track.looks for i, j in pairs(others, rest, in_place(others)).items()}
+
+    def elsewhere(name: str, j: int) -> float:
+        was_there_before = looks.get(j, 0) > known[name].track.absent
+        if was_there_before or not known[name].target.whole:
+            return FORBIDDEN
+        return cost_anywhere(known[name].target, observations[j], classes)
+
+    found = pairs(vanished, rest - relatives, elsewhere)
+    again = pairs(others, left.difference(found.values()), in_place(others))
     unseen = occupancy.keys() - found.keys()
     for name in unseen:
-        others = {*found.values(), *(seen.values() if name not in there else ())}
-        if any(_may_be_of(known[name].target, observations[j]) for j in others):
+        taken = {*found.values(), *(seen.values() if name not in there else ())}
+        if any(_may_be_of(known[name].target, observations[j]) for j in taken):
             occupancy[name] = "free"  # to itself: another has come to stand there
     return Matching(
         known=seen | found,
@@ -133,6 +156,14 @@ def _is_of_several(seen: Observation, known: Iterable[Candidate]) -> bool:
         and volume_m3 > _FILLED * whole.volume_m3
         and all(size_difference(target, seen) > _LIKE for target, _ in covered)
     )
+
+
+def _shows_a_part(target: Target, seen: Observation, classes: ClassHierarchy) -> bool:
+    """Whether what is seen there is probably of the thing, so that its place is not empty.
+
+    Through what has thin legs a camera sees much of what is behind it.
+    """
+    return (not seen.whole or classes.related(target.class_, seen.class_)) and _may_be_of(target, seen)
 
 
 def _may_be_of(target: Target, seen: Observation) -> bool:

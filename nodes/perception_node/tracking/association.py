@@ -80,9 +80,10 @@ def associate(
     proposed = _apart_from_one_another(track for track in tentative if is_sure(track, classes, config))
     added = additions(proposed, {*tracks.names, *entities}, classes)
     names = {j: name for name, j in matching.known.items()}
+    new = (replace(track, part=not track.whole) for track in proposed)
     return Association(
         Tracks(
-            known | dict(zip(added, proposed, strict=True)),
+            known | dict(zip(added, new, strict=True)),
             tuple(track for track in tentative if track not in proposed),
             tracks.names.union(added),
         ),
@@ -117,6 +118,8 @@ def _candidate(
     elsewhere = distance_m(track.pose, entity.pose) > slack_m(track.size_m, config.still_m)
     if track.told != entity.pose and elsewhere:
         track = replace(track, pose=entity.pose, looks=0, unseen=0, odd=0)
+    if track.part and track.whole and track.told != entity.pose:
+        track = replace(track, part=False)  # the map has been told of the whole
     track = replace(track, told=entity.pose, left=track.left and track.told == entity.pose)
     target = _target(track, classes)
     return Candidate(

@@ -38,7 +38,9 @@ def subject_of(command: Command) -> str:
 
 def is_sure(track: Track, classes: ClassHierarchy, config: TrackingConfig) -> bool:
     """Whether a thing was seen at rest often enough to become an entity."""
-    clear = track.whole and track.votes.share(track.votes.belief(classes), classes) >= config.clear
+    if not track.whole:
+        return track.looks >= config.part_looks and not track.unseen
+    clear = track.votes.share(track.votes.belief(classes), classes) >= config.clear
     enough = config.clear_looks if clear else config.confirm_looks
     return track.looks >= enough and not track.unseen
 
@@ -76,7 +78,8 @@ def update_of(
         return None
     changes: dict[str, Any] = {}
     if has_moved(entity, track, config):
-        if not track.left and track.looks < config.nudge_looks:
+        corrected = track.part and track.whole
+        if not track.left and not corrected and track.looks < config.nudge_looks:
             return None
         pose = rounded(track.pose)
         changes |= {"at": pose.position_m, "orientation": pose.orientation_wxyz}
@@ -165,7 +168,11 @@ def _described(
         changes["class_"] = class_name
         if entity.preferred_reference == classes.label(entity.class_):
             changes["ref"] = classes.label(class_name)
-    if track.whole and track.looks >= config.nudge_looks and _is_resized(entity, track, config):
+    if (
+        track.whole
+        and (track.part or track.looks >= config.nudge_looks)
+        and _is_resized(entity, track, config)
+    ):
         changes["size"] = _to_millimetres(track.size_m)
     return changes
 

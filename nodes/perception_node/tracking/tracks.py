@@ -8,12 +8,14 @@ from dataclasses import dataclass, field, replace
 
 from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.tracking.occupancy import Occupancy
+from nodes.perception_node.tracking.overlap import OrientedBox, share
 from nodes.perception_node.tracking.votes import Votes
 from schemas.entities import Pose, Size, Vector, distance_m, orientation_from_yaw
 from schemas.perception import Observation
 
 _RELATIVE = 0.05
 """The box of a big thing is known to this share of its size."""
+_A_PART = 0.5
 _MEMORY = 20
 """How many looks a mean goes back."""
 
@@ -25,7 +27,8 @@ class Track:
     `looks` is how often it was seen since it rests, `occupied` how often its place was so since then although
     the thing was not told apart, `unseen` how often in a row it should have been seen since and was not,
     `odd` how often in a row something of another size was in its place. `whole`: it was seen unhidden, uncut.
-    `told` is the map's pose at the last look; `left`: that place is seen empty.
+    `absent`: looks since it or its place was last seen filled. `told` is the map's pose at the last look;
+    `left`: that place is seen empty; `part`: the map was told of what a picture's edge cuts.
     """
 
     pose: Pose
@@ -39,6 +42,8 @@ class Track:
     whole: bool = False
     told: Pose | None = None
     left: bool = False
+    absent: int = 0
+    part: bool = False
 
     def is_gone(self, config: TrackingConfig) -> bool:
         """Whether it is sure that it is no longer where it was."""
@@ -47,8 +52,10 @@ class Track:
     def see(self, seen: Observation, config: TrackingConfig) -> Track:
         """One more observation of it."""
         votes = self.votes.cast(seen.class_, seen.probability)
-        if self.whole and not seen.whole and _within(seen, self, config.still_m):
-            return replace(self, votes=votes, looks=self.looks + 1, unseen=0, odd=0)  # a part, where it was
+        if self.whole and not seen.whole and _is_part(seen, self, config.still_m):
+            return replace(
+                self, votes=votes, looks=self.looks + 1, unseen=0, odd=0, absent=0
+            )  # a part, where it was
         pose, size_m = turned_like(seen.pose, seen.size_m, self)
         near = self.looks > 0 and distance_m(pose, self.pose) <= slack_m(self.size_m, config.still_m)
         still = near and turn_between(self, pose) <= config.turned_rad
@@ -60,15 +67,17 @@ class Track:
             occupied=self.occupied if still else self.occupied + 1 if near else 0,
             unseen=0,
             odd=0,
+            absent=0,
         )
 
     def miss(self, occupancy: Occupancy, *, odd: bool) -> Track:
         """It was not seen, and this is what is seen where it should be; `odd`: a thing of another size."""
         if occupancy == "unknown":
-            return self
+            return replace(self, absent=self.absent + 1)
         if occupancy == "free":
-            return replace(self, unseen=self.unseen + 1, odd=0)
-        return replace(self, occupied=self.occupied + 1, unseen=0, odd=self.odd + 1 if odd else 0)
+            return replace(self, unseen=self.unseen + 1, odd=0, absent=self.absent + 1)
+        odd_looks = self.odd + 1 if odd else 0
+        return replace(self, occupied=self.occupied + 1, unseen=0, odd=odd_looks, absent=0)
 
     def rests(self, looks: int) -> bool:
         """Whether it was seen where it is, and is there since so many looks."""
@@ -129,6 +138,12 @@ def turn_between(track: Track, pose: Pose) -> float:
         return 0.0
     turn = abs(_wrapped(track.pose.yaw_rad - pose.yaw_rad))
     return min(turn, math.pi - turn)
+
+
+def _is_part(seen: Observation, track: Track, margin_m: float) -> bool:
+    """Whether what a picture's edge cuts is of a thing that stays where it is: most of it is within."""
+    box = OrientedBox(seen.pose, seen.size_m)
+    return _within(seen, track, margin_m) or share(box, OrientedBox(track.pose, track.size_m)) > _A_PART
 
 
 def _within(seen: Observation, track: Track, margin_m: float) -> bool:

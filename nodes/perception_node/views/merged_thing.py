@@ -12,6 +12,7 @@ from scipy import ndimage
 from nodes.perception_node.input.cloud import Floats
 from nodes.perception_node.views.boxes import Box, Numbers, best_yaw, box_around
 from nodes.perception_node.views.segments import Segment
+from nodes.perception_node.views.supports import Support, height_below
 
 _CELLS_ALONG, _MOST_CELLS = 40, 150
 _CELL_M = (0.004, 0.02)
@@ -61,7 +62,7 @@ class Thing:
         return sum(segment.count for segment in self.segments)
 
 
-def thing_of(segments: Sequence[Segment], supports_m: Sequence[float]) -> Thing:
+def thing_of(segments: Sequence[Segment], supports: Sequence[Support]) -> Thing:
     """Put the segments of one thing together; it stands on the highest support that is not above it.
 
     Of a table often the top alone is seen, which is no support of its own.
@@ -70,11 +71,12 @@ def thing_of(segments: Sequence[Segment], supports_m: Sequence[float]) -> Thing:
     shades = [segment.colors for segment in segments if segment.colors is not None]
     colors = np.concatenate(shades) if len(shades) == len(segments) else None
     cells, shade = _cells(points, colors)
-    lowest, highest = float(cells[:, 2].min()), float(cells[:, 2].max())
+    low, high = cells.min(axis=0), cells.max(axis=0)
+    lowest, highest = float(low[2]), float(high[2])
     carrier = any(segment.carrier for segment in segments)
     below = min(lowest, highest - _BODY_M) if carrier else lowest
     floor = min(0.0, lowest) if carrier else lowest
-    support = max((height for height in supports_m if height < below + _BELOW_M), default=floor)
+    support = height_below(supports, low, high, most_m=below + _BELOW_M, floor_m=floor)
     return Thing(
         segments=tuple(segments),
         cells=cells,

@@ -13,6 +13,7 @@ from nodes.perception_node.segmentation.gravity import level_plane, room_pose, s
 from nodes.perception_node.segmentation.working_picture import grid_of
 from nodes.perception_node.views.furniture_planes import EVERY, with_furniture
 from nodes.perception_node.views.segments import Segment, cut_out, in_map
+from nodes.perception_node.views.supports import Support, support_of
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class Sight:
     `map_from_camera`: (4, 4); where nobody knows it, the floor that is seen is z = 0,
     or the largest plane where there is but one.
     `labels`: (H, W) the segment of each pixel, 0 for none. `carriers`: on which others may stand. `planes`:
-    (H, W) the plane of each pixel, 0 for none. `supports_m`: heights of horizontal planes. `same`: (N, N) how
+    (H, W) the plane of each pixel, 0 for none. `supports`: its level planes. `same`: (N, N) how
     likely segments n + 1 and m + 1 are one all the same, 0 where nobody knows.
     """
 
@@ -31,7 +32,7 @@ class Sight:
     labels: NDArray[np.int32]
     carriers: frozenset[int]
     planes: NDArray[np.int32]
-    supports_m: tuple[float, ...]
+    supports: tuple[Support, ...]
     same: NDArray[np.float32]
     segments: tuple[Segment, ...] = ()
 
@@ -47,8 +48,8 @@ def see(cloud: Cloud) -> Sight:
     labels, carriers = segmentation.labels, frozenset[int]()
     if placed.map_from_camera is not None:  # else the largest plane is taken for the floor, whatever it is
         labels, carriers = with_furniture(segmentation, thin)
-    heights = _heights(segmentation, thin)
-    bare = Sight(cloud, pose, labels, carriers, segmentation.plane_labels, heights, segmentation.same)
+    supports = _supports(segmentation, thin)
+    bare = Sight(cloud, pose, labels, carriers, segmentation.plane_labels, supports, segmentation.same)
     return labelled(bare, labels, carriers)
 
 
@@ -71,10 +72,9 @@ def _above_largest(planes: tuple[Plane, ...]) -> NDArray[np.float64]:
     return np.eye(4) if largest is None else standing_on(largest)
 
 
-def _heights(segmentation: Segmentation, thin: Floats) -> tuple[float, ...]:
+def _supports(segmentation: Segmentation, thin: Floats) -> tuple[Support, ...]:
     level = [
         n for n, plane in enumerate(segmentation.planes, 1) if plane.kind in ("floor", "support", "plane")
     ]
     planes = segmentation.plane_labels[::EVERY, ::EVERY]
-    heights = [thin[planes == n, 2] for n in level]
-    return tuple(float(np.median(height)) for height in heights if len(height))
+    return tuple(support_of(thin, planes == n) for n in level if (planes == n).any())

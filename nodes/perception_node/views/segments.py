@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,9 @@ from nodes.perception_node.input.masks import Said
 
 MOST_POINTS = 3000
 """A segment of more points is thinned: what is learnt from it does not get better with more."""
+
+ENDS_EVERY = 8
+"""One in so many of the points at a picture's edge tells where a thing is cut."""
 
 _LEAST_M = 0.005
 """What measures less is no thing, but one point seen again and again."""
@@ -24,7 +28,8 @@ class Segment:
     `points`: (N, 3), map frame [m]. `colors`: (N, 3) rgb, or None. `label`: its number in the view.
     `eye`: (3,), where the camera was [m]. `cut`: the picture's edge runs through it. `count`: how many points
     it had before it was thinned. `carrier`: it is a plane on which things may stand, or a side of one.
-    `masked`: somebody else's detector cut it out; `said`: what that takes it for.
+    `masked`: somebody else's detector cut it out; `said`: what that takes it for. `ends`: (E, 3), some of its
+    points at the picture's edge, map frame [m].
     """
 
     points: Floats
@@ -36,6 +41,7 @@ class Segment:
     carrier: bool = False
     masked: bool = False
     said: Said | None = None
+    ends: Floats = field(default_factory=lambda: np.empty((0, 3), np.float32))
 
 
 def map_points(cloud: Cloud, map_from_camera: Transform) -> Floats:
@@ -62,12 +68,14 @@ def cut_out(
     """The segments of one labelled view: `labels` (H, W), 0 for background and where nothing was seen."""
     flat = labels.ravel().astype(np.uint16)  # of which more are compared at once
     points_camera = cloud.points_camera.reshape(-1, 3)
-    at_edge = _labels_at_edge(labels) if cloud.organised else frozenset()
+    edge = _at_edge(labels.shape) if cloud.organised else np.empty(0, np.intp)
+    at_edge = flat[edge]
     found = []
     for label in range(1, int(labels.max(initial=0)) + 1):
         own = np.flatnonzero(flat == label)
         if not own.size:
             continue
+        ends = edge[at_edge == label]
         thin = own[:: -(-len(own) // MOST_POINTS)]
         points = in_map(points_camera.take(thin, axis=0), map_from_camera)
         if max(np.ptp(points[:, axis]) for axis in range(3)) < _LEAST_M:
@@ -78,14 +86,18 @@ def cut_out(
                 colors=None if cloud.colors is None else cloud.colors.reshape(-1, 3).take(thin, axis=0),
                 label=label,
                 eye=map_from_camera[:3, 3],
-                cut=label in at_edge,
+                cut=len(ends) > 0,
                 count=len(own),
                 carrier=label in carriers,
+                ends=in_map(points_camera.take(ends[::ENDS_EVERY], axis=0), map_from_camera),
             )
         )
     return found
 
 
-def _labels_at_edge(labels: NDArray[np.int32], margin: int = 2) -> frozenset[int]:
-    borders = (labels[:margin], labels[-margin:], labels[:, :margin], labels[:, -margin:])
-    return frozenset(int(label) for border in borders for label in np.unique(border))
+@cache
+def _at_edge(shape: tuple[int, int], margin: int = 2) -> NDArray[np.intp]:
+    """The flat indices of the pixels at the edge of a picture (H, W)."""
+    inner = np.zeros(shape, bool)
+    inner[margin:-margin, margin:-margin] = True
+    return np.flatnonzero(~inner)

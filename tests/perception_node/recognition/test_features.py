@@ -4,6 +4,7 @@ import pytest
 from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.views.merged_thing import thing_of
 from nodes.perception_node.views.segments import Segment
+from nodes.perception_node.views.supports import Support
 
 TRIMMED = slice(22, None)
 """The columns of `geometry` that leave 3 % of the cells and more out at each end."""
@@ -16,7 +17,7 @@ def block(*corners_m):
     segment = Segment(
         points, np.full(points.shape, 90, np.uint8), 1, np.array([1.0, 0.0, 1.0]), False, len(points)
     )
-    return thing_of([segment], [0.0])
+    return thing_of([segment], [Support(0.0)])
 
 
 ALONE = block(((0.0, 0.0, 0.0), (0.2, 0.1, 0.1)))

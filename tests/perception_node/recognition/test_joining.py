@@ -7,13 +7,16 @@ from nodes.perception_node.recognition.joining import between, near, signs, wort
 from nodes.perception_node.recognition.shipped_votes import CLUTTER, shipped
 from nodes.perception_node.views.merged_thing import thing_of
 from nodes.perception_node.views.segments import Segment
+from nodes.perception_node.views.supports import Support
 
 CLASSES = shipped().classes
 
 
 def thing(low, high, *, carrier=False):
     points = np.random.default_rng(0).uniform(low, high, (2000, 3)).astype(np.float32)
-    return thing_of([Segment(points, None, 1, np.array([0.0, -1.0, 1.5]), False, 2000, carrier)], [0.7])
+    return thing_of(
+        [Segment(points, None, 1, np.array([0.0, -1.0, 1.5]), False, 2000, carrier)], [Support(0.7)]
+    )
 
 
 FOOT = thing([0.0, 0.0, 0.7], [0.1, 0.1, 0.72])

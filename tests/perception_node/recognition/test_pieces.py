@@ -5,15 +5,16 @@ import numpy as np
 from nodes.perception_node.recognition.pieces import put_together
 from nodes.perception_node.recognition.shipped_votes import shipped
 from nodes.perception_node.views.merged_thing import thing_of
+from nodes.perception_node.views.supports import Support
 from tests.perception_node.scenes import shot
 from tests.perception_node.views.test_fusion import truly_cut
 
-SUPPORTS_M = [0.0, 0.7]
+SUPPORTS = [Support(0.0), Support(0.7)]
 UNASKED = np.zeros((2, 2, 2))
 
 
 def join(a, b):
-    return thing_of((*a.segments, *b.segments), SUPPORTS_M)
+    return thing_of((*a.segments, *b.segments), SUPPORTS)
 
 
 def body(name):
@@ -23,7 +24,7 @@ def body(name):
 
 
 def test_what_is_recognised_stays_apart():
-    things = [thing_of(body("bottle"), SUPPORTS_M), thing_of(body("cereals"), SUPPORTS_M)]
+    things = [thing_of(body("bottle"), SUPPORTS), thing_of(body("cereals"), SUPPORTS)]
     parts, chances, members = put_together(things, UNASKED, shipped(), join)
     assert (len(parts), members) == (2, [[0], [1]])
     assert [shipped().classes[k] for k in chances.argmax(axis=1)] == ["Bottle", "Cereals"]
@@ -32,7 +33,7 @@ def test_what_is_recognised_stays_apart():
 def test_a_neck_finds_its_bottle():
     height = 0.7 + 0.17
     halves = [
-        thing_of([_part(s, (s.points[:, 2] > height) == upper) for s in body("bottle")], SUPPORTS_M)
+        thing_of([_part(s, (s.points[:, 2] > height) == upper) for s in body("bottle")], SUPPORTS)
         for upper in (False, True)
     ]
     parts, chances, members = put_together(halves, UNASKED, shipped(), join)

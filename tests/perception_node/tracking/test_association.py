@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.perception_node.tracking.association import renamed
+from nodes.perception_node.tracking.association import associate, renamed
 from nodes.perception_node.tracking.tracks import Tracks
 from schemas.commands import Add, Remove, Update
 from schemas.perception import DISPLACED, MISSING
-from tests.perception_node.things import CONFIG, SIZES, Table, at, entity, seen
+from tests.perception_node.things import CLASSES, CONFIG, SIZES, Table, at, entity, seen
 
 
 def moved(thing, pose):
@@ -432,3 +432,50 @@ def test_what_others_moved_is_looked_for_anew():
     table.told([entity("my_cup", "Cup", at(3, 2))])
     table.hidden = True
     assert table.looks(20) == []
+
+
+def test_what_stood_elsewhere_already_is_not_the_one_that_has_gone():
+    table = Table([seen("Cup", at(1, 1))])
+    table.looks(5)
+    table.things.append(seen("Cup", at(3, 1)))
+    table.look()
+    del table.things[0]
+    commands = table.looks(20)
+    assert [type(command) for command in commands] == [Add, Remove]
+    assert list(table.entities) == ["cup2"]
+
+
+@pytest.mark.parametrize(("config", "looks"), [(CONFIG, 1), (CONFIG.on_the_move, 3)])
+def test_a_moving_camera_looks_longer_before_it_takes_one_thing_for_another(config, looks):
+    table = Table([seen("Cup", at(1, 1))], config=config)
+    table.looks(8)
+    table.things = [seen("Cup", at(3, 1))]
+    table.looks(looks - 1)
+    assert table.taken_for == (("",) if looks > 1 else ("cup1",))
+    table.look()
+    assert table.taken_for == ("cup1",)
+
+
+def test_a_part_becomes_an_entity_later_and_is_put_right_when_the_whole_is_seen():
+    table = Table([seen("Book", at(1, 1), (0.16, 0.2, 0.03), whole=False)], config=CONFIG.on_the_move)
+    assert table.looks(CONFIG.on_the_move.part_looks - 1) == []
+    assert len(table.look()) == 1
+    table.things = [seen("Book", at(1, 1.06), (0.16, 0.32, 0.03))]
+    (update,) = table.looks(2)
+    assert (update.at, update.size) == ((1.0, 1.06, 0.7), (0.16, 0.32, 0.03))
+    assert table.looks(20) == []
+
+
+@pytest.mark.parametrize(
+    ("shown", "unseen"),
+    [
+        (seen("Object", at(1.03, 1), (0.2, 0.1, 0.3), whole=False), 0),
+        (seen("Cup", at(1.03, 1), (0.2, 0.1, 0.3)), 1),
+    ],
+    ids=["cut by the picture's edge", "another thing"],
+)
+def test_a_place_in_which_a_part_is_seen_is_not_empty_though_a_camera_looks_through_it(shown, unseen):
+    table = Table([seen("Bottle", at(1, 1), (0.3, 0.3, 0.9))])
+    table.looks(5)
+    told = associate(table.entities, table.tracks, [shown], lambda *_: "free", CLASSES, CONFIG)
+    assert told.tracks.known["bottle1"].unseen == unseen

@@ -3,6 +3,7 @@ import pytest
 
 from nodes.perception_node.views.merged_thing import thing_of
 from nodes.perception_node.views.segments import Segment
+from nodes.perception_node.views.supports import Support
 
 RNG = np.random.default_rng(0)
 
@@ -24,7 +25,9 @@ def block(low, high, count=2000):
 
 
 def test_it_stands_on_the_highest_support_below():
-    thing = thing_of([segment(block([0, 0, 0.71], [0.1, 0.1, 0.9]))], [0.0, 0.7, 1.2])
+    thing = thing_of(
+        [segment(block([0, 0, 0.71], [0.1, 0.1, 0.9]))], [Support(0.0), Support(0.7), Support(1.2)]
+    )
     assert thing.box.low[2] == pytest.approx(0.7)
     assert thing.box.size_m == pytest.approx([0.1, 0.1, 0.2], abs=0.01)
     assert thing.lifted_m == pytest.approx(0.01, abs=0.005)
@@ -32,18 +35,18 @@ def test_it_stands_on_the_highest_support_below():
 
 def test_a_table_top_is_no_support_of_its_own():
     top = segment(block([0, 0, 0.69], [1.0, 0.6, 0.7], 4000), carrier=True)
-    assert thing_of([top], [0.0, 0.7]).box.low[2] == pytest.approx(0.0)
+    assert thing_of([top], [Support(0.0), Support(0.7)]).box.low[2] == pytest.approx(0.0)
 
 
 def test_what_is_far_behind_the_outline_is_no_part():
     stray = block([0.5, 0.5, 0.3], [0.52, 0.52, 0.32], 20)
-    thing = thing_of([segment([*block([0, 0, 0], [0.1, 0.1, 0.1]), *stray])], [0.0])
+    thing = thing_of([segment([*block([0, 0, 0], [0.1, 0.1, 0.1]), *stray])], [Support(0.0)])
     assert thing.box.size_m == pytest.approx([0.1, 0.1, 0.1], abs=0.01)
 
 
 def test_near_and_far_views_weigh_the_same():
     left, right = block([0, 0, 0], [0.1, 0.1, 0.004], 20000), block([0.1, 0, 0], [0.2, 0.1, 0.004], 6000)
-    thing = thing_of([segment(left), segment(right, eye=np.array([-1.0, 0.0, 1.0]))], [0.0])
+    thing = thing_of([segment(left), segment(right, eye=np.array([-1.0, 0.0, 1.0]))], [Support(0.0)])
     assert thing.cells[:, 0].mean() == pytest.approx(0.1, abs=0.01)
     assert len(thing.eyes) == 2
     assert thing.count == 26000
@@ -51,10 +54,10 @@ def test_near_and_far_views_weigh_the_same():
 
 @pytest.mark.parametrize("points", [[[1, 2, 3]], [[1, 2, 3]] * 50, block([-40, -40, -40], [40, 40, 40], 60)])
 def test_strange_points_make_a_thing_too(points):
-    assert (thing_of([segment(points)], [0.0]).box.size_m > 0).all()
+    assert (thing_of([segment(points)], [Support(0.0)]).box.size_m > 0).all()
 
 
 def test_colours_are_shares_of_full_light():
     colors = np.full((2000, 3), 255, np.uint8)
-    thing = thing_of([segment(block([0, 0, 0], [0.1, 0.1, 0.1]), colors=colors)], [0.0])
+    thing = thing_of([segment(block([0, 0, 0], [0.1, 0.1, 0.1]), colors=colors)], [Support(0.0)])
     assert thing.colors == pytest.approx(1.0)

@@ -1,0 +1,28 @@
+"""Looks one after the other, each of which knows what the ones before it have seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from nodes.perception_node.input.cloud import Cloud
+from nodes.perception_node.input.masks import Masks
+from nodes.perception_node.pipeline import Look, look
+from nodes.perception_node.recognition.shipped_votes import Learnt
+from nodes.perception_node.recognition.told_names import Labels
+from nodes.perception_node.views.remembered import Remembered
+
+
+class Watching:
+    """Looks at clouds, and remembers what moving cameras see. Bound to one thread."""
+
+    def __init__(self, learnt: Learnt, labels: Labels | None = None) -> None:
+        """Nothing was seen yet. `labels`: what those of somebody else's detector mean here."""
+        self._learnt = learnt
+        self._labels = labels
+        self._remembered = Remembered()
+
+    def __call__(self, clouds: Sequence[Cloud], masks: Sequence[Masks | None] = ()) -> Look:
+        """What clouds of one moment show; see `pipeline.look`."""
+        found = look(clouds, self._learnt, masks, self._labels, self._remembered)
+        self._remembered = found.remembered
+        return found
