@@ -65,7 +65,8 @@ async def _confirms(names: tuple[str, ...], also: tuple[str, ...], facts: tuple[
             ui.button("Cancel", on_click=lambda: dialog.submit(False)).props("flat")
             ui.button("Delete", on_click=lambda: dialog.submit(True)).props("color=negative autofocus")
     chosen = await dialog
-    dialog.delete()
+    if not dialog.is_deleted:  # as it is when the tab is closed
+        dialog.delete()
     return bool(chosen)
 
 

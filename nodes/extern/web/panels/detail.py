@@ -177,7 +177,7 @@ class _Detail:
 
     def _show(self, name: str, number: int, found: asking.Asked, pending: str) -> None:
         """Draw what was answered; `pending` says why what is inferred is not among it."""
-        if number != self._asked_for or self._of != (name,):
+        if number != self._asked_for or self._of != (name,) or self._facts.is_deleted:
             return
         before, self._drawn = self._drawn, (found, pending)
         self._words.text = shortened(found.told, _LONGEST)
