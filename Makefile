@@ -1,6 +1,6 @@
 # Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-long test-faults lint format docs diagrams pictures schema shapes models relations-picture train-perception wheel clean
+.PHONY: help setup demo test test-long test-faults lint format docs diagrams pictures schema shapes models relations-picture drive-picture train-perception wheel clean
 
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
@@ -70,6 +70,9 @@ models: setup  ## Draw the contact sheet of all models
 
 pictures: setup  ## Draw the manual's pictures of the page, the plan and the movie; needs Debian's chromium
 	$(BIN)/python docs/_ext/pictures.py
+
+drive-picture: setup  ## Draw what cameras saw in the drive that `make demo` has recorded
+	$(BIN)/python -m demo.strip docs/drive.png
 
 relations-picture: setup  ## Draw the sixty situations of docs/relations.md
 	$(BIN)/python -m benchmarks.relations.picture docs/relations.png

@@ -5,6 +5,7 @@ import pytest
 
 from nodes.runtime.class_names import ClassNames
 from nodes.sim_node.models.sources import Models
+from nodes.sim_node.physics import base_scene
 from nodes.sim_node.vision.view import camera_names, camera_view
 from nodes.sim_node.world_file import open_world
 from schemas.entities import ClassInfo
@@ -136,3 +137,18 @@ def test_mjcf_that_refers_to_what_it_does_not_have_is_refused_as_it_is_read(tmp_
     path.write_text(f"<mujoco><worldbody>{body}</worldbody>{pair}</mujoco>")
     with pytest.raises(BadFile, match="not an MJCF scene that compiles: Error: geom 'b' not found"):
         open_world(path, Models())
+
+
+def test_a_world_that_is_too_large_for_mujocos_estimate_is_refused_with_what_helps(tmp_path, monkeypatch):
+    """Of 5 000 bodies, which take seconds to fail."""
+
+    class Large:
+        @staticmethod
+        def from_file(path):
+            raise ValueError("Error: engine error: Could not allocate memory")
+
+    monkeypatch.setattr(base_scene.mujoco, "MjSpec", Large)
+    with pytest.raises(
+        BadFile, match=r'Could not allocate memory; say in the file .* <size memory="200M"/>$'
+    ):
+        base_scene.read_mjcf(tmp_path / "world.xml")

@@ -12,6 +12,8 @@ from nodes.perception_node.views.merged_thing import Thing
 
 _SMALLEST_M, _LARGEST_M = 0.025, 0.5
 """What such a thing measures at most: less is a scrap, more a piece of furniture or a wall."""
+_SLENDER = 5.0
+"""What is so many times as high as it is wide may be the leg of a table whose top is not seen with it."""
 _LIFTED_M = 0.02
 _FEWEST = 100
 _WORTH = 0.1
@@ -29,11 +31,12 @@ def stand_alone(things: Sequence[Thing]) -> NDArray[np.bool_]:
 
 
 def _is_compact(thing: Thing) -> bool:
-    largest = float(max(thing.box.size_m))
+    x, y, z = thing.box.size_m.tolist()
     return (
         not thing.carrier
         and thing.whole
         and thing.count >= _FEWEST
         and thing.lifted_m < _LIFTED_M
-        and _SMALLEST_M <= largest <= _LARGEST_M
+        and _SMALLEST_M <= max(x, y, z) <= _LARGEST_M
+        and z < _SLENDER * max(x, y)
     )

@@ -81,9 +81,10 @@ def read_mjcf(path: Path, *, compiles: bool = True) -> mujoco.MjSpec:
         if compiles:  # not a copy of it, which has lost what refers to a name that there is not
             mujoco.MjSpec.from_file(str(path)).compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
-        raise BadFile(
-            f"the world file {path} is not an MJCF scene that compiles: {_one_line(error)}"
-        ) from None
+        reason = _one_line(error)
+        if "allocate memory" in reason:  # of very many bodies MuJoCo estimates far more than they take
+            reason += '; say in the file how much it may take: <size memory="200M"/>'
+        raise BadFile(f"the world file {path} is not an MJCF scene that compiles: {reason}") from None
     return spec
 
 

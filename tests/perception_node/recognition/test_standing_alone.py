@@ -31,8 +31,9 @@ def test_a_scrap_beside_a_thing_does_not_count():
         replace(THING, segments=(replace(THING.segments[0], count=20),)),
         replace(THING, segments=(replace(THING.segments[0], carrier=True),)),
         block(((0.0, 0.0, 0.0), (0.9, 0.02, 0.2))),
+        block(((0.0, 0.0, 0.0), (0.06, 0.08, 0.46))),
     ],
-    ids=["in mid-air", "cut by the picture's edge", "of few points", "a table top", "large"],
+    ids=["in mid-air", "cut by the picture's edge", "of few points", "a table top", "large", "a leg"],
 )
 def test_what_may_be_a_piece_does_not_stand_alone(thing):
     assert not stand_alone([thing])[0]
