@@ -258,7 +258,7 @@ class Batch(Command[Changed], frozen=True, tag="batch"):
 
     LARGEST: ClassVar[int] = MANY
 
-    changes: Annotated[tuple[Update | Set | Unset, ...], Meta(min_length=1, max_length=10_000)]
+    changes: Annotated[tuple[Update | Set | Unset, ...], Meta(max_length=10_000)]
     confidence: Probability | None = None
     unchanged: tuple[Word, ...] = ()
     since: Since = 0

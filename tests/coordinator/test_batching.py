@@ -77,6 +77,7 @@ def test_where_one_is_refused_none_is_made(home, semantic_map, last, error):
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
+        ((), "a batch without changes"),
         ((c.Update(name="chair1", ref="a"), c.Update(name="chair1", ref="b")), "changes chair1 twice"),
         ((c.Unset(name="chair1", property="is open"), *opened("chair1")), "changes isOpen of chair1 twice"),
         ((c.Update(name="chair1", set=("isOpen=no",)), *opened("chair1")), "changes isOpen of chair1 twice"),

@@ -52,7 +52,7 @@ def row(tab, name):
 def select(tab, name):
     look_for(tab, name)
     row(tab, name).click()
-    tab.get_by_role("heading", level=2).wait_for()
+    tab.get_by_role("heading", level=3).wait_for()
     tab.get_by_text(f"{name} ·", exact=False).first.wait_for()
 
 
@@ -115,6 +115,26 @@ def test_something_is_added_by_typing_what_it_is_called(tab, client):
     assert client.get(name).pose.position_m[:2] == pytest.approx((2.5, 3.1), abs=0.5)  # it falls
     tab.get_by_role("tab", name="Details").click()
     tab.get_by_text(f"{name} ·").wait_for()
+
+
+def test_enter_takes_the_class_that_is_called_what_was_typed(tab):
+    open_add(tab)
+    choose_class(tab, "tazz")
+    tab.get_by_role("option", name="Cup ·").first.wait_for()
+    tab.keyboard.press("Enter")
+    field = tab.get_by_role("combobox", name="Class").last
+    until(lambda: field.input_value().startswith("Cup ·"), "the class that was meant is chosen")
+
+
+def test_the_table_is_one_stop_of_the_keyboard(tab):
+    row(tab, "apple1").locator('[col-id="name"]').click()
+    tab.keyboard.press("ArrowDown")
+    focused = "document.activeElement.closest('.entity-table') !== null"
+    assert tab.evaluate(focused)
+    tab.keyboard.press("Tab")
+    assert not tab.evaluate(focused)
+    assert tab.evaluate("document.documentElement.lang") == "en-US"
+    assert tab.get_by_role("heading", level=1).all_inner_texts() == ["semmap"]
 
 
 def test_a_refused_add_says_why_and_is_mended_by_a_button(tab, client, added):

@@ -39,6 +39,8 @@ class _Wanted(NamedTuple):
 @once
 def batch(view: KnownMap, command: Batch) -> Talk[Changed]:
     """Make all of the changes, or none. Raises the error that the first would get which is refused."""
+    if not command.changes:
+        raise errors.BadRequest("a batch without changes: give an update, a set or an unset")
     _require_each_once(command)
     wanted = [_wanted(view, command, change) for change in command.changes]
     made = yield from commit(view, transactions.together(command, [one.transaction for one in wanted]))

@@ -5,28 +5,29 @@ from __future__ import annotations
 from nicegui import ui
 
 from nodes.extern.web.page import Page
-from nodes.extern.web.views.consequences import consequences
+from nodes.extern.web.views.consequences import consequences, facts_of
 from schemas import wording
 from schemas.commands import Remove, Undo
 from schemas.errors import shortened
 
 _NAMED = 5
+_FACTS = 8
 
 
 async def delete_selected(page: Page) -> None:
     """Ask whether what is selected is to be deleted, and do so if it is."""
     names = page.selected
-    if not names:
-        page.tell("Nothing is selected; select what is to be deleted first.")
-        return
     if not page.may("remove"):
         page.tell("Your certificate may not delete.", "warning")
+        return
+    if not names:
+        page.tell("Nothing is selected; select what is to be deleted first.")
         return
     tried = await page.change(Remove(names=names, dry_run=True))
     if tried is None:
         return
     if (
-        await _confirms(names, consequences(tried))
+        await _confirms(names, consequences(tried), facts_of(tried))
         and (done := await page.change(Remove(names=names))) is not None
     ):
         page.tell(done.text, "positive")
@@ -41,7 +42,7 @@ async def undo(page: Page) -> None:
         page.tell(done.text, "positive")
 
 
-async def _confirms(names: tuple[str, ...], also: tuple[str, ...]) -> bool:
+async def _confirms(names: tuple[str, ...], also: tuple[str, ...], facts: tuple[str, ...]) -> bool:
     what = names[0] if len(names) == 1 else wording.entities(len(names))
     with ui.dialog().props('aria-label="Delete"') as dialog, ui.card().classes("semmap-refused"):
         ui.label(f"Delete {shortened(what, 80)}?").classes("text-h6")
@@ -50,9 +51,24 @@ async def _confirms(names: tuple[str, ...], also: tuple[str, ...]) -> bool:
             ui.label(", ".join(names[:_NAMED]) + more).classes("semmap-quiet")
         for sentence in also:
             ui.label(shortened(sentence, 1000)).classes("semmap-sentence")
+        if facts:
+            with (
+                ui.expansion(f"With it {'goes' if len(facts) == 1 else 'go'} {_counted(facts)}")
+                .props("dense")
+                .classes("w-full")
+            ):
+                for fact in facts[:_FACTS]:
+                    ui.label(shortened(fact, 200))
+                if len(facts) > _FACTS:
+                    ui.label(f"and {len(facts) - _FACTS} more")
         with ui.row().classes("w-full justify-end"):
             ui.button("Cancel", on_click=lambda: dialog.submit(False)).props("flat")
             ui.button("Delete", on_click=lambda: dialog.submit(True)).props("color=negative autofocus")
     chosen = await dialog
-    dialog.delete()
+    if not dialog.is_deleted:  # as it is when the tab is closed
+        dialog.delete()
     return bool(chosen)
+
+
+def _counted(facts: tuple[str, ...]) -> str:
+    return wording.counted(len(facts), "inferred fact")

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from nicegui import events, ui
+from nicegui.elements.mixins.text_element import TextElement
 
 from nodes.extern.web.deleting import delete_selected, undo
 from nodes.extern.web.page import Page
@@ -73,7 +74,8 @@ def layout(page: Page) -> None:
         page.widen = lambda wide: left.props(f"width={_TABLE_PX if wide else _LIST_PX}")
         _Tabs(page, LEFT, "What there is").draw()
     with ui.right_drawer(bordered=False, value=True).props("width=370 breakpoint=960") as right:
-        details = _Tabs(page, RIGHT, "Details of what is selected, and adding")
+        may = {name: panels for name, panels in RIGHT.items() if name != "Add" or page.may("add")}
+        details = _Tabs(page, may, "Details of what is selected, and adding")
         details.draw()
     with ui.column().classes("semmap-centre"):
         _away(page)
@@ -112,7 +114,7 @@ def _header(
     page: Page, left: ui.left_drawer, right: ui.right_drawer, dark: ui.dark_mode, open_add: Callable[[], None]
 ) -> None:
     _icon("menu", "Show or hide the lists", left.toggle)
-    ui.label("semmap").classes("semmap-name")
+    heading("semmap", 1).classes("semmap-name")
     with ui.element("div").classes("semmap-search").props('role="search"'):
         find(page)
     ui.element("div").classes("semmap-space")
@@ -128,6 +130,11 @@ def _header(
     _icon("dark_mode", "Dark or light", toggle_dark)
     _icon("keyboard", "Keys (?)", help_).classes("semmap-wide")
     _icon("view_sidebar", "Show or hide the details", right.toggle)
+
+
+def heading(text: str, level: int) -> TextElement:
+    """A heading, 1 for that of the page and 2 for those of its panels."""
+    return TextElement(tag=f"h{level}", text=text)
 
 
 def _icon(icon: str, label: str, on_click: Callable[..., Any]) -> ui.button:
@@ -213,12 +220,12 @@ def _told(event: events.GenericEventArguments) -> dict[str, Any]:
 def help_() -> None:
     """Show which keys there are."""
     with ui.dialog(value=True).props('aria-label="Keys"') as dialog, ui.card():
-        ui.label("Keys").classes("text-h6")
+        heading("Keys", 2).classes("text-h6")
         with ui.element("table").classes("semmap-keys"), ui.element("tbody"):
             for key, does in KEYS.items():
                 with ui.element("tr"):
-                    with ui.element("td"), ui.element("kbd"):
-                        ui.label(key)
+                    with ui.element("td"):
+                        TextElement(tag="kbd", text=key)
                     with ui.element("td"):
                         ui.label(does)
         with ui.row().classes("w-full justify-end"):
@@ -260,6 +267,7 @@ class _Tabs:
         if name not in self._drawn:
             self._drawn.add(name)
             with self.containers[name]:
+                heading(name, 2).classes("semmap-unseen")
                 for panel in self._panels[name]:
                     panel(self._page)
         self._page.turned()

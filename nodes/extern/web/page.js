@@ -22,6 +22,20 @@
     emitEvent("semmap_key", { key: event.key });
   }
 
+  // The table of entities is one stop: arrow keys move within it, and Tab goes on from it.
+  const FOCUSED = "a[href], button, input, select, textarea, iframe, [tabindex]";
+
+  function leaveTable(event) {
+    const table = event.key === "Tab" && event.target.closest?.(".entity-table");
+    if (!table) return;
+    const side = event.shiftKey ? Node.DOCUMENT_POSITION_PRECEDING : Node.DOCUMENT_POSITION_FOLLOWING;
+    const beside = [...document.querySelectorAll(FOCUSED)].filter((element) =>
+      element.tabIndex >= 0 && !element.disabled && element.checkVisibility() && !table.contains(element)
+      && table.compareDocumentPosition(element) & side);
+    const next = event.shiftKey ? beside.at(-1) : beside[0];
+    if (next) { event.preventDefault(); event.stopPropagation(); next.focus(); }
+  }
+
   function tellLook() {
     emitEvent("semmap_look", {
       dark: document.body.classList.contains("body--dark"),
@@ -37,6 +51,7 @@
   };
 
   document.addEventListener("keydown", onKey);
+  document.addEventListener("keydown", leaveTable, true);
   window.semmapStart = () => {
     new MutationObserver(tellLook).observe(document.body, { attributeFilter: ["class"] });
     window.matchMedia("(max-width: 960px)").addEventListener("change", tellLook);

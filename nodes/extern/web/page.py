@@ -8,14 +8,16 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping
-from typing import Any, Final, Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
-from nicegui import Client, background_tasks, ui
+from nicegui import Client, background_tasks
 
 from nodes.extern.web.differences import Difference, differences
 from nodes.extern.web.live import Happening, Live
 from nodes.extern.web.moments import NOW, Moment, Past, State
+from nodes.extern.web.notices import Notices, Tone
 from nodes.extern.web.tape import tape_of
+from nodes.extern.web.views.sentences import in_the_page
 from schemas import errors
 from schemas.commands import Command
 from schemas.relations import ViewPoint
@@ -25,10 +27,6 @@ log = logging.getLogger(__name__)
 R = TypeVar("R")
 Compared = Literal["before", "now", ""]
 """With what a moment of the past is compared: the map before its commit, as it is now, or nothing."""
-Tone = Literal["info", "positive", "warning", "negative"]
-
-_SHOWN_MS: Final = {"info": 4000, "positive": 3000, "warning": 8000, "negative": 10_000}
-
 
 Place = tuple[float, float, float, float]
 """x, y, z [m] and yaw [rad], map frame."""
@@ -66,6 +64,7 @@ class Page:
         """Ends pointing or dragging in the scene, and tells whether there was any; set by the scene."""
         self.look: Callable[[], ViewPoint | None] | None = None
         """Whence the scene is seen; set by the scene."""
+        self._notices = Notices()
         self._on_select: list[Callable[[], None]] = []
         self._on_moment: list[Callable[[], None]] = []
         self._on_change: list[Callable[[], None]] = []
@@ -284,7 +283,7 @@ class Page:
     def tell(self, text: str, kind: Tone = "info") -> None:
         """Show a sentence for some seconds, as text."""
         with self.client:
-            ui.notify(text, type=kind, timeout=_SHOWN_MS[kind], html=False, close_button="Close")
+            self._notices.tell(in_the_page(text), kind)
 
     def later(self, coroutine: Coroutine[Any, Any, Any]) -> asyncio.Task[Any]:
         """Let it run beside what is being drawn, in this tab."""

@@ -92,7 +92,7 @@ def _serve(
 
     app.include_router(proxy.router(scene.at))
 
-    @ui.page("/", title="semmap")
+    @ui.page("/", title="semmap", language="en-US")
     def tab(client: Client) -> None:
         page = Page(live, client)
         stage.show(page)

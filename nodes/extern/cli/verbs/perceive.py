@@ -83,7 +83,7 @@ def perceive(
     masks_only: bool,
     format: str,
 ) -> None:
-    """Find the objects in point clouds, depth images or whole datasets.
+    """Find the objects in point clouds, depth images or datasets.
 
     Clouds are PCD or PLY files; images are one in colour and one of depth (PNG). Labels are integers in the
     cloud's own shape, (height, width), or (1, points) when it is not organised: 0 for background, 1 to n

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from typing import Final
 
 from nicegui import ui
@@ -17,10 +18,12 @@ from nodes.extern.web.panels.states import States
 from nodes.extern.web.panels.view import Touched, View
 from nodes.extern.web.views.past import provenance
 from schemas import errors
+from schemas.commands import LastSeen
 from schemas.entities import Entity
 from schemas.errors import shortened
 
 _LATER_S: Final = 0.4
+_AGES_S: Final = 10.0
 _LONGEST: Final = 2000
 _SETTLED_S: Final = 0.5
 """So long a moment of the past is shown before what followed then is asked for: it takes seconds."""
@@ -43,6 +46,7 @@ class _Detail:
         page.on_moment(self._draw)
         self._view.on_touched(self._touch)
         ui.timer(_LATER_S, self._look)
+        ui.timer(_AGES_S, self._see)
         self._draw()
 
     def _touch(self, names: Touched) -> None:
@@ -56,6 +60,20 @@ class _Detail:
         if self._is_due:
             self._is_due = False
             self._renew()
+
+    async def _see(self) -> None:
+        """How long ago it was placed or seen grows, without a commit that would tell."""
+        names = self._present()
+        if len(names) != 1 or names != self._of or not self._page.moment.is_now:
+            return
+        with contextlib.suppress(errors.SemmapError):  # it has just gone; it will be drawn so
+            found = await self._page.live.ask(LastSeen(name=names[0]))
+            if names == self._of and self._page.moment.is_now:
+                self._say_seen(found.text)
+
+    def _say_seen(self, text: str) -> None:
+        self._seen.text = f"{text[:1].upper()}{text[1:]}"
+        self._seen.set_visibility(bool(text))
 
     def _present(self) -> tuple[str, ...]:
         """What is selected and is there, at the moment that is shown."""
@@ -89,6 +107,7 @@ class _Detail:
         self._facts = ui.column().classes("w-full gap-0")
         self._states = States(page, entity)
         with ui.expansion("History", icon="history").props("dense").classes("w-full") as past:
+            self._seen = ui.label().classes("semmap-sentence")
             self._past = ui.column().classes("w-full gap-2")
         with ui.expansion("Who said so", icon="badge").props("dense").classes("w-full"):
             self._who = ui.column().classes("w-full gap-1")
@@ -117,15 +136,15 @@ class _Detail:
         self._head.clear()
         with self._head:
             ui.label(shortened(called, _LONGEST)).classes("semmap-heading").props(
-                'role="heading" aria-level="2"'
+                'role="heading" aria-level="3"'
             )
             is_a = entity.class_ if label in ("", entity.class_) else f"{label} ({entity.class_})"
             ui.label(f"{entity.name} · {is_a}").classes("semmap-quiet")
             if entity.alternative_references:
                 also = ", ".join(entity.alternative_references)
                 ui.label(f"also called {shortened(also, _LONGEST)}").classes("semmap-quiet")
-            size = f"{size_text(entity)} m" if entity.size_m is not None else "size not stated"
-            ui.label(f"{pose_text(entity.pose)} · {size}").classes("semmap-quiet semmap-figures")
+            size = f" · {size_text(entity)} m" if entity.size_m is not None else ""
+            ui.label(f"{pose_text(entity.pose)}{size}").classes("semmap-quiet semmap-figures")
         self._doubt.text = entity.conflict and f"Perception says otherwise: {entity.conflict}"
         self._doubt.set_visibility(bool(entity.conflict))
         self._states.show(entity)
@@ -158,7 +177,7 @@ class _Detail:
 
     def _show(self, name: str, number: int, found: asking.Asked, pending: str) -> None:
         """Draw what was answered; `pending` says why what is inferred is not among it."""
-        if number != self._asked_for or self._of != (name,):
+        if number != self._asked_for or self._of != (name,) or self._facts.is_deleted:
             return
         before, self._drawn = self._drawn, (found, pending)
         self._words.text = shortened(found.told, _LONGEST)
@@ -167,10 +186,11 @@ class _Detail:
             self._facts.clear()
             with self._facts:
                 fact_list(self._page, found.facts, pending)
-        past = (found.commits, found.last_seen, found.problems)
-        if before is None or (before[0].commits, before[0].last_seen, before[0].problems) != past:
+        self._say_seen(found.last_seen)
+        past = (found.commits, found.problems)
+        if before is None or (before[0].commits, before[0].problems) != past:
             self._past.clear()
             with self._past:
-                history(self._page, name, found.commits, found.last_seen)
+                history(self._page, name, found.commits)
                 for problem in found.problems:
                     ui.label(problem).classes("semmap-doubt")

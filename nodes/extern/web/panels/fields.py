@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import Any, Final
 
 from nicegui import ui
 
 from nodes.extern.web.page import Page
-from nodes.extern.web.views.forms import Filled
+from nodes.extern.web.views.forms import Filled, best_class
 
 _AXES: Final = ("x", "y", "z")
 
@@ -18,11 +19,13 @@ class Fields:
     def __init__(self, page: Page, *, named: bool) -> None:
         """Draw them where this is made; `named`: with a field for the name."""
         self._page = page
+        self._classes: dict[str, str] = {}
         with ui.column().classes("w-full gap-2 semmap-fields"):
             self._class = (
                 ui.select({}, label="Class", with_input=True, new_value_mode="add-unique", clearable=True)
                 .props("dense outlined options-dense hide-bottom-space")
                 .classes("w-full")
+                .on_value_change(self._take_class)
             )
             self._name = ui.input("Name (made from the class, if empty)") if named else None
             if self._name is not None:
@@ -71,11 +74,23 @@ class Fields:
 
     def offer(self, classes: dict[str, str]) -> None:
         """The classes to choose from, each with what it is called."""
+        self._classes = dict(classes)  # what is typed becomes an option, but no class
         chosen = self._class.value
         if chosen and chosen not in classes:
             classes = {**classes, chosen: chosen}
         if self._class.options != classes:
             self._class.set_options(classes, value=chosen)
+
+    def _take_class(self) -> None:
+        """Enter takes what is typed as it is: let it be the class that is meant."""
+        typed = str(self._class.value or "")
+        if typed and self._classes and (meant := best_class(typed, self._classes)) != typed:
+            self._page.later(self._choose(meant))
+
+    async def _choose(self, class_: str) -> None:
+        """Once the choice has taken in what was typed, which it also made an option."""
+        await asyncio.sleep(0.0)
+        self._class.set_options(dict(self._classes), value=class_)
 
     async def _pick(self) -> None:
         place = await self._page.pick_place()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from typing import Final, get_args
 
 from nicegui import events, ui
@@ -47,6 +48,8 @@ class _Loading:
     def __init__(self, page: Page) -> None:
         self._page = page
         self._tried: Load | None = None
+        self._size = 0
+        """Bytes of the file as it was uploaded; on the wire it is packed."""
         with ui.card().classes("grow").props("flat bordered").style("min-width: 18rem; flex-basis: 24rem"):
             ui.label("Load").classes("text-subtitle1")
             ui.label(
@@ -96,7 +99,7 @@ class _Loading:
             self._error.text = sentence
             return
         content = await asyncio.to_thread(packed, await file.read())
-        self._tried = Load(content=content, filename=file.name)
+        self._tried, self._size = Load(content=content, filename=file.name), file.size()
         await self._try()
 
     async def _again(self) -> None:
@@ -120,17 +123,23 @@ class _Loading:
             spatial_root=spatial_roots(self._roots.value) if self._tbox.value else (),
             dry_run=True,
         )
-        name, size = self._tried.filename, len(self._tried.content)
+        name, size, began_s = self._tried.filename, self._size, time.monotonic()
         self._error.text, self._button.visible = "", False
         self._say(
-            f"Trying {name} ({megabytes(size)}) ..." + (" this may take a while" if takes_long(size) else "")
+            f"Trying {name} ({megabytes(size)}) ..."
+            + (" this may take a while" if takes_long(len(self._tried.content)) else "")
         )
+        with self._said:
+            elapsed = ui.label().classes("text-caption")
+            ticking = ui.timer(1.0, lambda: elapsed.set_text(f"{time.monotonic() - began_s:.0f} s so far"))
         try:
             reply = await self._page.live.ask(self._tried, _TIMEOUT_S)
         except errors.SemmapError as error:
             self._say()
             self._error.text = error.text
             return
+        finally:
+            ticking.cancel()
         self._say(f"If {name} is loaded:", *changed(reply))
         self._button.text = f"Load {name}"
         self._button.visible = True

@@ -28,7 +28,7 @@ class _Find:
         self._page, self._view = page, View.of(page)
         with ui.element("div").classes("w-full"):
             self._words = (
-                ui.input(placeholder="Find: the red cup on the table, la tazza sul tavolo …")
+                ui.input(placeholder="the red cup on the table")
                 .props('dense outlined clearable aria-label="Find by words" maxlength=1000')
                 .classes("w-full semmap-find")
                 .on("keydown.enter", self._look)

@@ -13,11 +13,9 @@ from schemas.errors import shortened
 from schemas.replies import LoggedCommit
 
 
-def history(page: Page, name: str, commits: Iterable[LoggedCommit], last_seen: str) -> None:
+def history(page: Page, name: str, commits: Iterable[LoggedCommit]) -> None:
     """Draw it where it is called."""
     places = [entity for entity in page.state.entities.values() if entity.place and entity.name != name]
-    if last_seen:
-        ui.label(f"{last_seen[:1].upper()}{last_seen[1:]}").classes("semmap-sentence")
     with ui.element("ol").classes("semmap-history").props('aria-label="History"'):
         for event in events(name, commits, places):
             with ui.element("li"):

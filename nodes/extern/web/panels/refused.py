@@ -10,6 +10,7 @@ from nodes.extern.web.page import Page
 from nodes.extern.web.panels.proof import proof
 from nodes.extern.web.panels.view import View
 from nodes.extern.web.views.mends import Mend, mends
+from nodes.extern.web.views.sentences import in_the_page
 from schemas import errors
 from schemas.commands import Command
 
@@ -27,7 +28,9 @@ def refused(page: Page, command: Command[Any], error: errors.SemmapError) -> Non
         return
     with ui.dialog(value=True).props('aria-label="Refused"') as dialog, ui.card().classes("semmap-refused"):
         ui.label("This was refused; nothing has changed").classes("text-subtitle1 text-weight-medium")
-        ui.label(errors.shortened(error.text, 2000)).classes("semmap-sentence").props('role="alert"')
+        ui.label(errors.shortened(in_the_page(error.text), 2000)).classes("semmap-sentence").props(
+            'role="alert"'
+        )
         if error.explanation is not None:
             with ui.expansion("Step by step", value=True).classes("w-full").props("dense"):
                 proof(error.explanation, view.knowing.words, sentence=False)

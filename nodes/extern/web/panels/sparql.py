@@ -58,6 +58,7 @@ class _Sparql:
             self._error.mark("sparql-error")
             self._notes = ui.label().classes("text-caption whitespace-pre-wrap")
             self._table = table("Rows of the answer", [], select=self._select).mark("sparql-rows")
+        self._table.visible = False
         self._save.set_enabled(False)
         self._offer()
         page.on_change(self._offer)
@@ -104,6 +105,7 @@ class _Sparql:
         self._said.text = summary(result, elapsed_s)
         self._notes.text = "\n".join(result.notes)
         self._table.columns = columns_of((f"c{i}", name) for i, name in enumerate(found.columns))
+        self._table.visible = True
         self._table.rows, self._table.selected = found.rows, []
 
     def _select(self, rows: list[dict[str, object]]) -> None:

@@ -66,6 +66,8 @@ _NO_ROOM: Final = (
 _RENDER_S: Final = (0.3, 1.0, 3.0, 8.0)
 _MEASURES: Final = 8
 """Of so many relations, the nearest things first, it is written what they are."""
+_HANDLES: Final = "handles"
+"""About as wide as what a thing is held by, which no measure is to cover."""
 _MARKED: Final = "otherwise "
 """Before the name of a thing, in the key of what is written at it because it is otherwise."""
 _NAMED: Final = 50
@@ -548,11 +550,16 @@ class TabScene:
         chosen: list[str] = []
         if self._client is not None and written:
             names = {name: self._named(name) for name in self.page.selected if name in self._things}
-            every = {**names, **written}
-            chosen = uncrowded(self._view(self._client), every, every, _MEASURES + len(names))
+            handles = {f"{name}'s handles": (_HANDLES, self._middle_of(name)) for name in names}
+            taken = {**handles, **names}
+            every = {**taken, **written}
+            chosen = uncrowded(self._view(self._client), every, every, _MEASURES + len(taken))
         self._measures = {key: written[key] for key in chosen if key in written}
         self._line_labels.show(self._measures)
         self._label_soon()
+
+    def _middle_of(self, name: str) -> Vector:
+        return _middle(self._things[name].pose, self._things[name].size_m)
 
     # Switches
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from schemas import wording
@@ -10,18 +11,27 @@ from schemas.replies import Changed
 _FEW: Final = 4
 
 
+_PAST: Final = re.compile(r"^((?:On|Inside) \S+) (was|were) ")
+
+
 def consequences(tried: Changed) -> tuple[str, ...]:
-    """A sentence each: what the dry run notes, what of other things no longer follows, and how much else."""
+    """A sentence each: what the dry run notes, and what of other things would no longer follow."""
     gone = set(tried.names)
-    own = [fact for fact in tried.no_longer_follows if fact.partition(" ")[0] in gone]
     others = [fact for fact in tried.no_longer_follows if fact.partition(" ")[0] not in gone]
-    said = [f"{note[:1].upper()}{note[1:]}." for note in tried.notes]
+    said = [_PAST.sub(_is, f"{note[:1].upper()}{note[1:]}.") for note in tried.notes]
     if others:
         rest = len(others) - _FEW
         more = f", and {wording.counted(rest, 'more fact')}" if rest > 0 else ""
-        said.append(f"No longer so: {'; '.join(others[:_FEW])}{more}.")
-    if own:
-        said.append(
-            f"With it {'goes' if len(own) == 1 else 'go'} {wording.counted(len(own), 'inferred fact')}."
-        )
+        said.append(f"No longer so then: {'; '.join(others[:_FEW])}{more}.")
     return tuple(said)
+
+
+def facts_of(tried: Changed) -> tuple[str, ...]:
+    """The facts about the deleted things themselves that follow no longer."""
+    gone = set(tried.names)
+    return tuple(fact for fact in tried.no_longer_follows if fact.partition(" ")[0] in gone)
+
+
+def _is(stood: re.Match[str]) -> str:
+    """What the dry run says was so before is still so while somebody is asked."""
+    return f"{stood[1]} {'is' if stood[2] == 'was' else 'are'} "

@@ -16,6 +16,7 @@ from schemas.relations import Relation, RelationName
 
 _MEASURED: Final = frozenset(v.dm(name) for name in get_args(RelationName)) - {v.dm("isLocatedIn")}
 """Properties that poses tell; where a thing is located also follows from where others are."""
+_NEAR: Final = v.dm("isNear")
 _PARTS: Final = frozenset(
     (
         *map(v.dm, ("hasReference", "hasPosition", "hasSize")),
@@ -66,13 +67,18 @@ def facts(
 ) -> Facts:
     """`follows` is what `infer` answers, and `relations` what the command of that name does."""
     follows, relations = tuple(follows), tuple(relations)
+    beside = {frozenset((r.subject, r.object)) for r in relations if r.relation == "isNextTo"}
+    relations = tuple(
+        r for r in relations if r.relation != "isNear" or frozenset((r.subject, r.object)) not in beside
+    )
     told = {(v.entity_iri(r.subject), v.dm(r.relation), v.entity_iri(r.object)) for r in relations}
     rest = [t for t in follows if t not in told and (t[2], t[1], t[0]) not in told]
+    rest = [t for t in rest if t[1] != _NEAR or frozenset(map(v.entity_name, (t[0], t[2]))) not in beside]
     untold = [t for t in rest if t[1] in _MEASURED and t[2].startswith("<")]
     return Facts(
         asserted(entity, properties),
-        inferred(entity, (t for t in rest if t not in untold), words),
-        (*computed(entity, relations), *inferred(entity, untold, words)),
+        inferred(entity, (t for t in rest if t not in untold), words, properties),
+        (*computed(entity, relations), *inferred(entity, untold, words, properties)),
     )
 
 
@@ -113,7 +119,9 @@ def asserted(entity: Entity, properties: Mapping[str, PropertyInfo]) -> tuple[Fa
     return tuple(found)
 
 
-def inferred(entity: Entity, follows: Iterable[Triple], words: Words) -> tuple[Fact, ...]:
+def inferred(
+    entity: Entity, follows: Iterable[Triple], words: Words, properties: Mapping[str, PropertyInfo]
+) -> tuple[Fact, ...]:
     """What follows of it, without what is measured: classes first, then the rest, in the order of words."""
     name = entity.name
     found: list[tuple[bool, str, Fact]] = []
@@ -123,6 +131,9 @@ def inferred(entity: Entity, follows: Iterable[Triple], words: Words) -> tuple[F
             continue
         is_class = predicate == v.RDF_TYPE
         text = said(triple, words).removeprefix(f"{name} ")
+        known = properties.get(v.local_name(predicate))
+        if known is not None and (called := known.values.get(v.local_name(value), "")):
+            text = f"{english(known.labels) or known.name} {called}"
         if value.startswith('"'):
             question = Question(name, v.local_name(predicate), v.lexical(value))
         else:

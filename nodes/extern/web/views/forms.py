@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Final
 
 from msgspec import Struct
@@ -151,6 +151,24 @@ def class_choices(classes: Iterable[ClassInfo]) -> dict[str, str]:
             words = ", ".join(word for word in called if word and word != c.name)
             found[c.name] = f"{c.name} · {words}" if words else c.name
     return dict(sorted(found.items(), key=lambda item: item[0].casefold()))
+
+
+def best_class(typed: str, choices: Mapping[str, str]) -> str:
+    """The class that was meant by what was typed: its name, or the first that is called something like it.
+
+    What no class is called is returned as it is.
+    """
+    wanted = typed.strip().casefold()
+    called = {name: label.casefold() for name, label in choices.items()}
+    tests: tuple[Callable[[str, str], bool], ...] = (
+        lambda name, _: name.casefold() == wanted,
+        lambda _, label: wanted in re.split(" · |, ", label),
+        lambda _, label: wanted in label,
+    )
+    for fits in tests:
+        if found := next((name for name, label in called.items() if fits(name, label)), ""):
+            return found
+    return typed
 
 
 def _values(state: State, text: Entered) -> tuple[Value, ...]:

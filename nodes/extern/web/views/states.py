@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Final, Literal, NamedTuple
 
 from nodes.extern.phrasing import english, labelled
+from ontology import vocabulary as v
 from schemas.changes import stated_in_words
 from schemas.entities import Entity, PropertyInfo, Stated
 
@@ -29,6 +30,13 @@ _GEOMETRY: Final = frozenset(
     )
 )
 """What poses tell; it may be stated, but nobody does that by hand."""
+_ONLY_OF: Final = {
+    v.TBOX + "isOpen": "Openable_Thing",
+    v.TBOX + "openness": "Openable_Thing",
+    v.TBOX + "jointPositions": "Openable_Thing",
+    v.TBOX + "isSwitchedOn": "Switchable_Thing",
+}
+"""Who is offered a property, by its IRI: its domain is wider, and so is what `set` takes."""
 
 
 class State(NamedTuple):
@@ -89,7 +97,8 @@ def in_common(
 
 def _fits(p: PropertyInfo, types: set[str]) -> bool:
     """Whether its domain is known to take such a thing; of several classes all must."""
-    return all(class_ in types for class_ in p.domain)
+    only = _ONLY_OF.get(p.iri)
+    return all(class_ in types for class_ in p.domain) and (only is None or only in types)
 
 
 def _state(entity: Entity, p: PropertyInfo, things: Mapping[str, Entity]) -> State:

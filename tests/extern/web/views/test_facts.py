@@ -92,3 +92,19 @@ def test_what_followed_is_what_held_without_what_was_said():
         fact("milk1", "isLocatedIn", "flat1"),
     ]
     assert followed(MILK, held) == (is_a("milk1", "Drink"), fact("milk1", "isLocatedIn", "flat1"))
+
+
+def test_what_is_next_to_something_is_not_said_to_be_near_it_as_well():
+    next_to = Relation(
+        relation="isNextTo", subject="milk1", object="cup1", text="milk1 is next to cup1: 2 cm"
+    )
+    near = Relation(relation="isNear", subject="cup1", object="milk1", text="cup1 is near milk1: 2 cm")
+    other = Relation(relation="isNear", subject="milk1", object="jug1", text="milk1 is near jug1: 9 cm")
+    follows = [fact("milk1", "isNear", "cup1"), fact("milk1", "isNear", "tin1")]
+    found = facts(MILK, PROPERTIES, follows, [next_to, near, other], WORDS)
+    assert [f.other for f in found.computed] == ["cup1", "jug1", "tin1"]
+
+
+def test_individuals_are_called_in_what_follows_as_in_what_was_said():
+    (color,) = facts(MILK, PROPERTIES, [fact("milk1", "hasColor", "color_red")], [], WORDS).inferred
+    assert color.text == "has color red"

@@ -155,3 +155,21 @@ def test_classes_are_found_by_everything_they_are_called():
         ]
     )
     assert choices == {"Chair": "Chair", "Cup": "Cup · cup, tazza, mug"}
+
+
+CHOICES = {"Cup": "Cup · cup, tazza, mug", "Cupboard": "Cupboard · cupboard, credenza", "Mug": "Mug"}
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("Cup", "Cup"),
+        ("tazz", "Cup"),
+        ("CREDENZA", "Cupboard"),
+        ("mug", "Mug"),
+        ("cup", "Cup"),
+        ("sofa", "sofa"),
+    ],
+)
+def test_a_class_is_found_by_anything_that_it_is_called(typed, meant):
+    assert forms.best_class(typed, CHOICES) == meant

@@ -1,4 +1,7 @@
+from msgspec import structs
+
 from nodes.extern.web.views.states import in_common, states
+from ontology import vocabulary as v
 from schemas.entities import PropertyInfo
 from tests.extern.web.views.worlds import by_name, thing
 
@@ -52,3 +55,13 @@ def test_of_several_things_the_states_are_those_of_all():
     found = {s.name: s.now for s in in_common([device, other], ALL, THINGS)}
     assert found == {"isOpen": True, "mass": None, "hasColor": None, "isOwnedBy": None}
     assert in_common([], ALL, THINGS) == ()
+
+
+def test_only_what_can_be_opened_is_offered_to_be_open():
+    is_open = structs.replace(OPEN, iri=f"{v.TBOX}isOpen", domain=("Physical_Thing",))
+    fridge = thing("fridge1", "Fridge", types=("Physical_Thing", "Openable_Thing"))
+    table = thing("table1", "Table", types=("Physical_Thing",))
+    said = thing("table2", "Table", types=("Physical_Thing",), properties={"isOpen": True})
+    assert [state.name for state in states(fridge, [is_open], {})] == ["isOpen"]
+    assert states(table, [is_open], {}) == ()
+    assert [state.now for state in states(said, [is_open], {})] == [True]
