@@ -155,3 +155,14 @@ def test_names_have_no_article_and_what_is_no_name_is_no_noun(accounts, room):
     assert accounts.tell(Tell(name="the Anna")).text.startswith("person1 is Anna in the kitchen")
     assert accounts.tell(Tell(name="nothing")).text.startswith("chair4 is a chair in the kitchen")
     assert "round it, Anna, 2 chairs and a lamp" in accounts.tell(Tell()).text
+
+
+def test_how_open_a_thing_is_is_told_and_not_how_each_joint_stands(room, accounts):
+    said = (
+        Statement(property="isOpen", values=("true",)),
+        Statement(property="jointPositions", values=("door=1.2 freezer=0",)),
+    )
+    room(2, add=(new("fridge1", "Fridge", (2.0, 2.0, 0.0), (0.65, 0.6, 1.8), set=said),))
+    told = accounts.tell(Tell(name="fridge1")).text
+    assert "It is open." in told
+    assert "joint" not in told
