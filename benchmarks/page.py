@@ -52,7 +52,11 @@ _WATCH = """() => {
 _IS_SHOWN = "n => Object.keys(semmapShown).some(key => Number(key) >= n)"
 _SHOWN_AT = """n => Math.min(...Object.entries(semmapShown)
   .filter(([key]) => Number(key) >= n).map(([, when]) => when))"""
-_ROWS = ".entity-table .ag-row"
+_WATCH_START = """new MutationObserver((_, observer) => {
+  if (!document.querySelector(".semmap-ready .entity-table .ag-row")) return;
+  observer.disconnect();
+  requestAnimationFrame(() => setTimeout(() => { window.semmapUsableAt = Date.now(); }));
+}).observe(document, { subtree: true, childList: true, attributeFilter: ["class"] });"""
 _COUNTED = "n => [...document.querySelectorAll('[role=status]')].some(e => e.innerText.includes(n))"
 _WAIT_MS = 60_000
 
@@ -74,19 +78,22 @@ def page_of(endpoint: str) -> Iterator[tuple[str, psutil.Process, float]]:
 
 
 def opened(browser: Browser, address: str, *, scene: bool = True) -> tuple[Page, float, float]:
-    """A tab, and how long it took until it could be used: by the clock, and the browser's processor time [s].
+    """A tab, how long it took until it could be used, by its own clock, and the browser's processor time [s].
 
-    Without the scene its frame is empty: a browser without a graphics processor draws it for ever.
+    It can be used when the browser has painted the first rows of its table. Whoever asks from outside is told
+    later: asking waits for the scene, which is prepared then. Without the scene its frame is empty: a browser
+    without a graphics processor draws it for ever.
     """
-    began, used_s = time.monotonic(), _used_by_children_s()
     context = browser.new_context(viewport={"width": 1400, "height": 900})
     if not scene:
         context.route("**/scene/**", lambda route: route.fulfill(body="<title>Scene</title>"))
     tab = context.new_page()
+    tab.add_init_script(_WATCH_START)
+    began_s, used_s = time.time(), _used_by_children_s()
     tab.goto(address, timeout=_WAIT_MS, wait_until="commit")
-    tab.wait_for_selector("body.semmap-ready", timeout=_WAIT_MS)
-    tab.wait_for_selector(_ROWS, timeout=_WAIT_MS)
-    return tab, time.monotonic() - began, _used_by_children_s() - used_s
+    tab.wait_for_function("window.semmapUsableAt", polling=50, timeout=_WAIT_MS)
+    usable_s = float(tab.evaluate("semmapUsableAt")) / 1e3 - began_s
+    return tab, usable_s, _used_by_children_s() - used_s
 
 
 def _used_by_children_s() -> float:

@@ -9,8 +9,19 @@ its attachment:
 
 from schemas.codec import decode, encode
 from schemas.health import Health
-from schemas.keys import ACK, COMMIT, ENTITY, HEALTH, OBSERVATIONS, POSES, Topic, camera_key, entity_key
-from schemas.perception import CameraView, Observation, Observations
+from schemas.keys import (
+    ACK,
+    COMMIT,
+    ENTITY,
+    HEALTH,
+    MASKS,
+    OBSERVATIONS,
+    POSES,
+    Topic,
+    camera_key,
+    entity_key,
+)
+from schemas.perception import CameraView, DetectedMasks, MaskImage, MaskRun, Observation, Observations
 from schemas.replies import Ack
 from schemas.scenes import CameraFrame, Poses
 
@@ -19,12 +30,16 @@ __all__ = [
     "COMMIT",
     "ENTITY",
     "HEALTH",
+    "MASKS",
     "OBSERVATIONS",
     "POSES",
     "Ack",
     "CameraFrame",
     "CameraView",
+    "DetectedMasks",
     "Health",
+    "MaskImage",
+    "MaskRun",
     "Observation",
     "Observations",
     "Poses",

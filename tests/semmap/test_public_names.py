@@ -33,8 +33,9 @@ PUBLIC = {
     "semmap.recordings": "Film check movie replay",
     "semmap.testing": "free_endpoint own_system",
     "semmap.wire": """
-        ACK COMMIT ENTITY HEALTH OBSERVATIONS POSES Ack CameraFrame CameraView Health Observation Observations
-        Poses Topic camera_key decode encode entity_key
+        ACK COMMIT ENTITY HEALTH MASKS OBSERVATIONS POSES Ack CameraFrame CameraView DetectedMasks Health
+        MaskImage
+        MaskRun Observation Observations Poses Topic camera_key decode encode entity_key
     """,
 }
 

@@ -43,11 +43,15 @@
     });
   }
 
-  // The scene is drawn on the same thread as the rest: it begins when the table has rows, or will not have any soon.
+  // The scene is drawn on the same thread as the rest: it begins when the first rows of the table have been painted
+  // and the browser has a moment to spare, or when there will not be any rows soon.
   let hasBegun = false;
   window.semmapBeginScene = () => {
-    if (!hasBegun) emitEvent("semmap_scene");
+    if (hasBegun) return;
     hasBegun = true;
+    const begin = () => emitEvent("semmap_scene");
+    const whenIdle = window.requestIdleCallback ?? ((call) => setTimeout(call, 100));
+    requestAnimationFrame(() => requestAnimationFrame(() => whenIdle(begin, { timeout: 1000 })));
   };
 
   document.addEventListener("keydown", onKey);

@@ -18,6 +18,7 @@ from nodes.perception_node.views.boxes import Box
 from nodes.perception_node.views.merged_thing import Thing
 from nodes.perception_node.views.segmented_view import Sight, labelled, see
 from nodes.perception_node.views.segments import map_points
+from nodes.perception_node.views.supports import Support
 from nodes.sim_node.models.parts import about, bounds, rotation_matrix
 from nodes.sim_node.models.parts import product as rotated
 from nodes.training.recognition.array_tables import Table
@@ -93,9 +94,9 @@ def _truly(cloud: Cloud, owner: NDArray[np.int32], bodies: Sequence[Body]) -> Si
     labels = np.where(out, owner, 0).astype(np.int32)
     labels[(np.bincount(labels.ravel(), minlength=len(bodies) + 1) < _FEWEST)[labels]] = 0
     carriers = frozenset(n for n, body in enumerate(bodies, 1) if max(body.size_m[:2]) > _CARRIER_M)
-    heights = tuple(sorted({0.0, *bottoms.tolist()}))
+    supports = tuple(Support(height) for height in sorted({0.0, *bottoms.tolist()}))
     undisputed = np.zeros((0, 0), np.float32)
-    bare = Sight(cloud, pose, labels, carriers, labels, heights, undisputed)
+    bare = Sight(cloud, pose, labels, carriers, labels, supports, undisputed)
     return labelled(bare, labels, carriers)
 
 

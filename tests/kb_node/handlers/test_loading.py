@@ -37,7 +37,7 @@ def loading(semantic_map, said):
 
 def test_a_load_counts_what_it_describes_and_not_what_follows_of_others(flat):
     said = []
-    star = stars.star("apple9", v.dm("Apple"), pose=Pose(position_m=(6.3, 0.98, 0.1)))
+    star = stars.star("apple9", v.dm("Apple"), pose=Pose(position_m=(9.81, 0.34, 0.1)))
     document = LoadDocument(
         id="1",
         source="file",

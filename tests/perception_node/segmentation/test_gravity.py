@@ -41,7 +41,8 @@ def test_without_a_pose_the_same_things_are_found_at_the_same_height(view):
 def test_a_table_top_alone_tells_no_height():
     seen = boxes_on_table(*SCENES["apart"])
     assert room_pose(grid_of(seen.cloud).points) is None
-    assert see(seen.cloud).supports_m == pytest.approx([0.0], abs=0.01)
+    (support,) = see(seen.cloud).supports
+    assert support.height_m == pytest.approx(0.0, abs=0.01)
 
 
 def plane(normal, points):
