@@ -78,7 +78,8 @@ def associate(
         with_load(update_of(entities[name], track, classes, config), entities[name], stays)
         for name, track in known.items()
     ]
-    boxes = [OrientedBox(candidate.target.pose, candidate.target.size_m) for candidate in candidates.values()]
+    targets = [candidate.target for candidate in candidates.values()]
+    boxes = [OrientedBox(target.pose, target.size_m) for target in targets if target.size_m is not None]
     sure = (track for track in tentative if is_sure(track, classes, config) and not _is_leg(track, boxes))
     proposed = _apart_from_one_another(sure)
     added = additions(proposed, {*tracks.names, *entities}, classes)
