@@ -18,6 +18,7 @@ from nodes.perception_node.recognition.shipped_votes import Learnt, shipped
 from nodes.perception_node.recognition.told_names import Labels
 from nodes.perception_node.recognition.vote import leaves
 from nodes.perception_node.views.disputes import settled
+from nodes.perception_node.views.feet import supports_at_feet
 from nodes.perception_node.views.furniture_planes import with_what_hangs_below
 from nodes.perception_node.views.fusion import Member, fuse, held_for_one
 from nodes.perception_node.views.masked import with_masks
@@ -89,7 +90,7 @@ def look_at(
     """The same for clouds that were taken apart already."""
     parts = parts_in(sights)
     recalled = before.recalled(sights, parts.labels)
-    parts = parts.completed(recalled)
+    parts = parts.put_on_feet([s for s in sights if s.cloud.camera in before.moving]).completed(recalled)
     things, chances, members = put_together(parts.things, parts.held_for_one, learnt, parts.join)
     found = recognise(things, chances, learnt, labels)
     kept = [n for n, observation in enumerate(found) if observation is not None]
@@ -135,6 +136,16 @@ class Parts:
     def join(self, a: Thing, b: Thing) -> Thing:
         """Two of them as one."""
         return thing_of((*a.segments, *b.segments), self.supports)
+
+    def put_on_feet(self, sights: Sequence[Sight]) -> Parts:
+        """With what these sights show around the feet of what seems to hang in the air as supports, too."""
+        feet = supports_at_feet(sights, self.things)
+        if not feet:
+            return self
+        supports = [*self.supports, *feet]
+        return replace(
+            self, things=[thing_of(thing.segments, supports) for thing in self.things], supports=supports
+        )
 
     def completed(self, recalled: Sequence[Recalled]) -> Parts:
         """With what is remembered of those that a picture's edge cuts."""

@@ -98,6 +98,11 @@ def test_a_class_chosen_in_the_tree_filters_the_table(tab, added):
     assert not row(tab, "chair1").is_visible()
     tab.get_by_role("button", name="Show all").click()
     row(tab, "apple1").wait_for()
+    tab.get_by_role("tab", name="Classes").click()  # where it is marked no more, so that one click chooses it
+    tab.locator(".q-tree__node--selected").wait_for(state="detached")
+    tab.get_by_label("Classes").get_by_text("Drinking_Vessel").click()
+    tab.get_by_role("tab", name="Entities").click()
+    row(tab, "apple1").wait_for(state="detached")
 
 
 def test_something_is_added_by_typing_what_it_is_called(tab, client):

@@ -59,6 +59,20 @@ def test_it_fits_a_phone(open_tab, web):
     tab.get_by_role("tab", name="Entities").wait_for()
 
 
+def test_on_a_phone_the_list_stays_while_boxes_are_ticked_and_ends_when_a_row_is_chosen(open_tab, web):
+    tab = open_tab(web, width=390, height=800)
+    tab.get_by_role("button", name="Show or hide the lists").click()
+    rows = tab.locator(".entity-table .ag-center-cols-container .ag-row")
+    for index in (0, 1):
+        tab.locator(f".entity-table [row-index='{index}'] input[type=checkbox]").click()
+        tab.locator(f".entity-table [row-index='{index}'].ag-row-selected").first.wait_for()
+    tab.wait_for_timeout(500)  # in which the list would slide away
+    assert tab.get_by_role("tab", name="Entities").is_visible()
+    assert not tab.get_by_role("tab", name="Details").is_visible()
+    rows.nth(2).click()
+    tab.get_by_role("tab", name="Details").wait_for()
+
+
 @pytest.mark.parametrize("dark", [False, True])
 def test_it_looks_as_the_browser_does_until_it_is_told(open_tab, web, dark):
     tab = open_tab(web, dark=dark)

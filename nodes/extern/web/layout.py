@@ -203,7 +203,7 @@ def _look(page: Page, left: ui.left_drawer, right: ui.right_drawer) -> None:
             right.hide()
 
     def on_select() -> None:
-        if page.narrow and page.selected and page.selected_by != "scene":
+        if page.narrow and page.selected and page.selected_by not in ("scene", "ticks"):
             left.hide()
             right.show()
 

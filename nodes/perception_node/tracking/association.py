@@ -20,6 +20,7 @@ from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.tracking.assignment import Candidate, Matching, match
 from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
 from nodes.perception_node.tracking.costs import Target
+from nodes.perception_node.tracking.legs import is_leg
 from nodes.perception_node.tracking.map_updates import additions, has_moved, is_sure, update_of, with_load
 from nodes.perception_node.tracking.occupancy import OccupancyOf
 from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, share
@@ -77,7 +78,10 @@ def associate(
         with_load(update_of(entities[name], track, classes, config), entities[name], stays)
         for name, track in known.items()
     ]
-    proposed = _apart_from_one_another(track for track in tentative if is_sure(track, classes, config))
+    targets = [candidate.target for candidate in candidates.values()]
+    boxes = [OrientedBox(target.pose, target.size_m) for target in targets if target.size_m is not None]
+    sure = (track for track in tentative if is_sure(track, classes, config) and not _is_leg(track, boxes))
+    proposed = _apart_from_one_another(sure)
     added = additions(proposed, {*tracks.names, *entities}, classes)
     names = {j: name for name, j in matching.known.items()}
     new = (replace(track, part=not track.whole) for track in proposed)
@@ -169,6 +173,11 @@ def _tentative(
         *(track for track in after if track.unseen < _FORGOTTEN_AFTER),
         *(Track(o.pose, o.size_m).see(o, config) for o in new),
     ]
+
+
+def _is_leg(track: Track, things: Iterable[OrientedBox]) -> bool:
+    piece = OrientedBox(track.pose, track.size_m)
+    return any(is_leg(piece, thing) for thing in things)
 
 
 def _apart_from_one_another(tracks: Iterable[Track]) -> list[Track]:

@@ -479,3 +479,10 @@ def test_a_place_in_which_a_part_is_seen_is_not_empty_though_a_camera_looks_thro
     table.looks(5)
     told = associate(table.entities, table.tracks, [shown], lambda *_: "free", CLASSES, CONFIG)
     assert told.tracks.known["bottle1"].unseen == unseen
+
+
+@pytest.mark.parametrize(("x", "added"), [(1.21, False), (1.5, True)])
+def test_a_leg_of_a_known_thing_is_no_new_entity(x, added):
+    leg = seen("Cup", at(x, x, 0.0), (0.04, 0.04, 0.16))
+    table = Table([leg], hidden=True).told([entity("chair1", "Object", at(1, 1, 0.0), (0.45, 0.45, 0.9))])
+    assert any(isinstance(command, Add) for command in table.looks(CONFIG.confirm_looks)) is added

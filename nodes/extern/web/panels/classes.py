@@ -21,7 +21,8 @@ def classes(page: Page) -> None:
     def chosen(event: Any) -> None:
         view.want(class_=str(event.value or "").rpartition("/")[2])
 
-    tree = ui.tree([], on_select=chosen).props('dense no-transition aria-label="Classes"').classes("w-full")
+    tree = ui.tree([], on_select=chosen).classes("w-full")
+    tree.props('dense no-transition selected-color=primary aria-label="Classes"')
     drawn: list[Node] = []
 
     def draw() -> None:
@@ -33,7 +34,13 @@ def classes(page: Page) -> None:
             if is_first and nodes:
                 tree.expand(_upper(nodes, _OPEN_DEPTH))
 
+    def follow() -> None:
+        """The filter may have been changed elsewhere: no class stays marked that it is not set to."""
+        if str(tree.props.get("selected") or "").rpartition("/")[2] != view.wanted.class_:
+            tree.deselect()
+
     with_empty.on_value_change(draw)
+    view.on_wanted(follow)
     view.now_and_then(draw, 1.0)
 
 

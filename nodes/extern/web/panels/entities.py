@@ -13,6 +13,8 @@ from nodes.extern.web.views.entity_rows import Cells, Changes, Wanted, changes, 
 from nodes.extern.web.views.forms import class_choices
 
 _BY: Final = "entities"
+_TICKED: Final = "ticks"
+"""By the boxes, with which somebody goes on to choose more: a phone keeps the list open."""
 _COLUMNS: Final = (
     {"field": "name", "headerName": "Name", "flex": 12, "sort": "asc"},
     {"field": "called", "headerName": "Called", "flex": 11, "hide": True},
@@ -46,7 +48,8 @@ _OPTIONS: Final = {
 }
 _CHOSEN_BY_HAND: Final = (
     "(event) => { if (!/^(api|rowData|rowGroup|selectable|gridInit)/.test(event.source))"
-    " emit(getElement(%d).api.getSelectedNodes().map((row) => row.id)); }"
+    " emit({isTicked: !/^rowClicked/.test(event.source),"
+    " names: getElement(%d).api.getSelectedNodes().map((row) => row.id)}); }"
 )
 _SELECT: Final = """
     const api = getElement(%d)?.api;
@@ -85,7 +88,7 @@ class _Entities:
         self._grid.on("gridReady", self._begin, args=[])
         self._grid.on(
             "selectionChanged",
-            lambda event: page.select(event.args, by=_BY),
+            lambda event: page.select(event.args["names"], by=_TICKED if event.args["isTicked"] else _BY),
             js_handler=_CHOSEN_BY_HAND % self._grid.id,
         )
         page.on_select(self._select)
@@ -244,7 +247,7 @@ class _Entities:
 
     def _select(self) -> None:
         """Select in the table what is selected in the tab, and bring the first of it into view."""
-        if not self._is_ready or (self._page.selected_by == _BY and self._page.selected):
+        if not self._is_ready or (self._page.selected_by in (_BY, _TICKED) and self._page.selected):
             return
         names = list(self._page.selected)
         first = json.dumps(names[0] if names else "")

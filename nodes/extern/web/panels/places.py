@@ -21,7 +21,8 @@ def places(page: Page) -> None:
         if name:
             page.select([name], by="places")
 
-    tree = ui.tree([], on_select=chosen).props('dense no-transition aria-label="Places"').classes("w-full")
+    tree = ui.tree([], on_select=chosen).classes("w-full")
+    tree.props('dense no-transition selected-color=primary aria-label="Places"')
     empty = ui.label("The map has no places.").classes("text-caption q-pa-sm")
     drawn: list[Node] = []
 
@@ -35,4 +36,10 @@ def places(page: Page) -> None:
             if is_first:
                 tree.expand()
 
+    def follow() -> None:
+        """The filter may have been changed elsewhere: no place stays marked that it is not set to."""
+        if (tree.props.get("selected") or "") != view.wanted.room:
+            tree.deselect()
+
+    view.on_wanted(follow)
     view.now_and_then(draw, 1.0)
