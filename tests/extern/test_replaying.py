@@ -80,18 +80,19 @@ def test_a_recording_is_compared_with_the_map_that_it_is_of(system, tmp_path):
 
 
 def test_of_a_recording_that_is_cut_off_the_missing_commits_are_named(system, tmp_path):
-    with system.client() as client:
-        last = client.status().commit
     (recording,) = (system.data / "recordings").glob("*.rrd")
-    until(lambda: read_commits(recording)[-1].seq == last, "the recorder has written all")
-    whole, cut = recording.read_bytes(), tmp_path / "cut.rrd"
-    share = 0.99
-    while share > 0.0:
-        cut.write_bytes(whole[: int(share * len(whole))])
-        if read_commits(cut)[-1].seq < last:
-            break
-        share -= 0.1
-    left = read_commits(cut)[-1].seq
+
+    def newest():
+        return read_commits(recording)[-1].seq
+
+    with system.client() as client:
+        until(lambda: newest() == client.status().commit, "the recorder has written all so far")
+        left, whole, cut = newest(), recording.read_bytes(), tmp_path / "cut.rrd"
+        client.add("Room", "late_room", at=(20.0, 20.0, 0.0), size=(3.0, 3.0, 2.5))
+        until(lambda: newest() == client.status().commit > left, "and what came after it")
+        last = newest()
+    cut.write_bytes(whole + recording.read_bytes()[len(whole) : len(whole) + 40])
+    assert read_commits(cut)[-1].seq == left
     command = [_BIN / "semmap", "replay", cut, "--check", "--data", system.data]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 1

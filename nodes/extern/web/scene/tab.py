@@ -520,7 +520,7 @@ class TabScene:
         self._asked += 1
         one = self.page.selected[0] if len(self.page.selected) == 1 else ""
         entity = self.page.state.entities.get(one)
-        if "relations" in self.on and entity is not None and not entity.place:
+        if self.on & {"relations", "from here"} and entity is not None and not entity.place:
             self.page.later(self._fetch_relations(one, self._asked))
         elif self._relations:
             self._relations = ()
