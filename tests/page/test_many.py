@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from tests.conftest import running
+from tests.conftest import running, until
 from tests.page.conftest import serving
 
 _ROOMS, _CUPS = 20, 249
@@ -45,6 +45,7 @@ def test_five_thousand_entities_are_usable(crowded, open_tab):
     tab.get_by_role("button", name="Show all").click()
     tab.get_by_text("5,020 entities", exact=True).wait_for()
     scroll = tab.locator(".entity-table .ag-body-vertical-scroll-viewport")
+    until(lambda: scroll.evaluate("e => e.scrollHeight") > 150_000, "the table has all rows again")
     scroll.evaluate("e => e.scrollTop = 60000")
     row = tab.locator('.entity-table .ag-center-cols-container [row-index="2005"]')
     row.click()
