@@ -1,6 +1,6 @@
 # Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-long test-faults lint format docs diagrams pictures schema shapes models relations-picture drive-picture train-perception wheel clean
+.PHONY: help setup demo test test-long test-faults lint format docs diagrams pictures schema shapes models relations-picture drive-picture foreign-picture train-perception wheel clean
 
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
@@ -64,6 +64,7 @@ schema: setup  ## Write the JSON Schema of scene files anew
 
 shapes: setup  ## Write the models' sizes, support surfaces and hollows anew, for the other nodes
 	$(BIN)/python -m nodes.sim_node.models.write_shapes
+	$(BIN)/python -m nodes.training.model_surfaces
 
 models: setup  ## Draw the contact sheet of all models
 	$(BIN)/python -m nodes.sim_node.models.sheet docs/models.png
@@ -77,9 +78,13 @@ drive-picture: setup  ## Draw what cameras saw in the drive that `make demo` has
 relations-picture: setup  ## Draw the sixty situations of docs/relations.md
 	$(BIN)/python -m benchmarks.relations.picture docs/relations.png
 
-train-perception: setup  ## Learn anew what perception knows: an hour on two cores; recorded scenes too where they are
+foreign-picture: setup  ## Draw what foreign things are taken for by what learnt from all others in dist/parts
+	$(BIN)/python -m benchmarks.perception.foreign_picture docs/foreign.png --things $${SEMMAP_DATA:-../shared/data}/foreign --samples dist/parts
+
+train-perception: setup  ## Learn anew what perception knows, from recorded scenes and foreign things too: an hour or two
 	$(BIN)/python -m nodes.training.segmentation --recorded $${SEMMAP_DATA:-../shared/data}/mosd
-	$(BIN)/python -m nodes.training.recognition
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m nodes.training.recognition --foreign $${SEMMAP_DATA:-../shared/data}/foreign --parts dist/parts
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m nodes.training.recognition.learn_likeness --parts dist/parts
 
 train-language: setup  ## Learn anew what commands mean, from the HuRIC corpus: a minute
 	$(BIN)/python -m nodes.training.language $${SEMMAP_DATA:-../shared/data}/huric

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 import msgspec
-from msgspec import Struct
+from msgspec import Struct, structs
 
 from ontology import MODEL_SHAPES_JSON
 from schemas.entities import Size
@@ -95,6 +95,12 @@ class ModelShape(Struct, frozen=True, kw_only=True, omit_defaults=True):
     parts: tuple[ConvexPart, ...] = ()
     leaves: tuple[LeafShape, ...] = ()
     turns: bool = True
+    of: tuple[str, ...] = ()
+    """The models beside which it may be chosen for an entity (`model_choice.py`)."""
+    words: tuple[str, ...] = ()
+    """What it is called in names, beside its own name."""
+    only_named: bool = False
+    """Its size alone does not say it."""
 
 
 def own_size_m(model: str) -> Size | None:
@@ -112,7 +118,35 @@ def shapes() -> dict[str, ModelShape]:
     return msgspec.json.decode(MODEL_SHAPES_JSON.read_bytes(), type=dict[str, ModelShape])
 
 
+def varieties_of(model: str) -> tuple[str, ...]:
+    """The models that may be chosen instead of one that the TBox names for a class."""
+    return _varieties().get(model, ())
+
+
+@cache
+def _varieties() -> dict[str, tuple[str, ...]]:
+    found: dict[str, tuple[str, ...]] = {}
+    for name, shape in shapes().items():
+        for model in shape.of:
+            found[model] = (*found.get(model, ()), name)
+    return found
+
+
 def add_own(path: Path) -> None:
-    """Take up the shapes of the user's own models, if there is such a file; before any is asked for."""
-    if path.is_file():
-        shapes().update(msgspec.json.decode(path.read_bytes(), type=dict[str, ModelShape]))
+    """Take up the shapes of the user's own models, if there is such a file; before any is asked for.
+
+    One in the place of a library's model stands for all that this stood for, without the library's
+    varieties of it; one in the place of a variety is chosen as that was.
+    """
+    if not path.is_file():
+        return
+    known, own = shapes(), msgspec.json.decode(path.read_bytes(), type=dict[str, ModelShape])
+    for name, shape in own.items():
+        was = known.get(name)
+        if was is not None:
+            shape = structs.replace(shape, of=was.of, words=was.words, only_named=was.only_named)
+        known[name] = shape
+    for name, shape in known.items():
+        if name not in own and not own.keys().isdisjoint(shape.of):
+            known[name] = structs.replace(shape, of=tuple(model for model in shape.of if model not in own))
+    _varieties.cache_clear()

@@ -193,6 +193,9 @@ IS_OPEN: Final = dm("isOpen")
 OPENNESS: Final = dm("openness")
 JOINT_POSITIONS: Final = dm("jointPositions")
 """How far open a thing is and how its joints stand; each says more than the one before."""
+IS_SWITCHED_ON: Final = dm("isSwitchedOn")
+SWITCH_POSITIONS: Final = dm("switchPositions")
+"""Whether it is on, and how its switches stand; the second says more."""
 
 IS_GRASPED_BY: Final = dm("isGraspedBy")
 GRASP_POSE: Final = dm("graspPose")
@@ -207,7 +210,7 @@ SPATIAL: Final = dm("spatial")
 SET_ASIDE: Final = dm("setAside")
 """Annotation of a term of the TBox: a statement about it that does not count, and why."""
 MODEL: Final = dm("model")
-"""Annotation of a class: the name or file of its body model."""
+"""Annotation of a class, or of an entity: the name or file of its body model."""
 FIXED: Final = dm("fixed")
 """Annotation of a class: whether its bodies stay where they are put."""
 

@@ -36,6 +36,7 @@ from schemas.explanations import Explanation
 from schemas.frames import Frame, FrameName
 from schemas.happenings import Difference, KeptRelation, Spells
 from schemas.language import Account, Found, Language, Understood
+from schemas.lessons import LessonTold, ShownView
 from schemas.moments import When
 from schemas.plans import HEIGHTS_M, RADIUS_M, Clearance, HeightRange, Plan, Way
 from schemas.relations import Described, Relation, ViewPoint, Where
@@ -705,6 +706,29 @@ class Drive(Command[Moved], frozen=True, tag="drive"):
     speed: Annotated[float, Meta(gt=0.0, le=2.0)] = 0.4
     stop: bool = False
     wait: bool = False
+
+
+class Learn(Command[LessonTold], frozen=True, tag="learn"):
+    """Show perception a thing of a class: what it sees of an `entity` now, or `views` of it.
+
+    It is recognised from then on; the class may be new to perception, but the TBox must have it. `shown` says
+    where the views are from.
+    """
+
+    class_: ClassName = field(name="class")
+    entity: Word | None = None
+    views: Annotated[tuple[ShownView, ...], Meta(max_length=200)] = ()
+    shown: Remark = ""
+
+
+class Learned(Command[tuple[LessonTold, ...]], frozen=True, tag="learned"):
+    """What perception was shown, in order."""
+
+
+class Forget(Command[LessonTold], frozen=True, tag="forget"):
+    """Undo a lesson of perception's."""
+
+    number: Annotated[int, Meta(ge=1)]
 
 
 class Pause(Command[Done], frozen=True, tag="pause"):

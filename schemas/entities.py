@@ -238,6 +238,8 @@ class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The joints that move parts of the body, as they stand just now."""
     openness: float | None = None
     """How far open it is just now, 0 to 1: as the joint that is open furthest; None if nothing opens."""
+    switched_on: bool | None = None
+    """Whether any of its switches is on just now; None if it has none."""
 
 
 Tracking = Literal["sim", "stream"]
@@ -272,8 +274,9 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     that was journalled, and `live`, which replies fill in, the newest.
     `pose_provenance` says what last changed its pose, `shape_provenance` its class or size,
     `reference_provenance` what it is called, `joint_provenance` how far open it is and how its joints stand
-    (None if that was never stated), and `grip_provenance` what holds it (likewise). `properties` are the data
-    and object properties asserted of it.
+    (None if that was never stated), `switch_provenance` whether it is on and how its switches stand, and
+    `grip_provenance` what holds it (likewise). `properties` are the data and object properties that are
+    asserted of it.
     """
 
     name: str
@@ -299,7 +302,14 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     shape_provenance: Provenance
     reference_provenance: Provenance
     joint_provenance: Provenance | None = None
+    switch_provenance: Provenance | None = None
     grip_provenance: Provenance | None = None
+
+    @property
+    def joints_said(self) -> Provenance | None:
+        """What last changed how its joints are to stand, those of switches among them; None for nothing."""
+        said = (self.joint_provenance, self.switch_provenance)
+        return max((p for p in said if p is not None), key=lambda p: p.commit, default=None)
 
 
 class ClassInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

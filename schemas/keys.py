@@ -27,14 +27,13 @@ _RESERVED = re.compile(r"[/*$?#%@\s]")
 CMD = f"{ROOT}/cmd"
 BRIDGE = f"{ROOT}/bridge"
 SIM = f"{ROOT}/sim"
-SERVED_BY = {CMD: "coordinator", BRIDGE: "kb_node", SIM: "sim_node"}
+PERCEPTION = f"{ROOT}/perception"
+SERVED_BY = {CMD: "coordinator", BRIDGE: "kb_node", SIM: "sim_node", PERCEPTION: "perception_node"}
 
 _AS = f"{ROOT}/as"
 
 OF_THE_MAP = frozenset({"sparql"})
 """Verbs of `CMD` that kb_node serves itself while it is ready: look-ups, for which the way is short."""
-
-PERCEPTION = f"{ROOT}/perception"
 
 NODES = ("kb_node", "coordinator", "sim_node", "perception_node", "recorder")
 """The nodes that `semmap up` can start."""

@@ -31,6 +31,10 @@ class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     whole: bool = True
     entity: str = ""
     """The entity of the map that it was taken for, once it was."""
+    fit: Probability | None = None
+    """How well the model of its class fits what was seen, if that was tried; `pose` is the model's then."""
+    shown: bool = False
+    """Whether its class is that of a thing that was shown, as which it is known rather than by training."""
 
 
 class CameraView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -78,6 +82,7 @@ class SeenInFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     size_m: Size
     box_px: tuple[int, int, int, int]
     points: int
+    fit: Probability | None = None
 
 
 class FrameRow(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -88,7 +93,7 @@ class FrameRow(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     error: str = ""
 
 
-class MaskRun(Struct, frozen=True, kw_only=True):
+class MaskRun(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A mask as COCO writes it: `counts` are run lengths, column after column, as numbers or compressed.
 
     `size` is (height, width) [pixel]. `label` is what its thing is taken for, in the detector's own words.

@@ -44,6 +44,7 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
         ),
         *("status", "history", "last-seen", "sparql", "watch", "renew", "picture", "floorplan", "route"),
         "frames",
+        "learned",
     ),
     _OBSERVERS: ("add", "update", "set", "unset", "batch", "remove"),
     _OPERATORS: (
@@ -53,6 +54,8 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
         "track",
         "attach",
         "detach",
+        "learn",
+        "forget",
         "submit",
         "approve",
         "move",
@@ -114,6 +117,7 @@ GRANTS: Final[tuple[Grant, ...]] = (
     Grant("ask", f"{keys.SIM}/surfaces", ANYBODY),
     Grant("ask", f"{keys.SIM}/world", ANYBODY),
     Grant("ask", f"{keys.SIM}/*", _NODES),
+    Grant("ask", f"{keys.PERCEPTION}/*", _NODES),
     Grant("ask", f"{keys.CMD}/*", _NODES),
 )
 """Everything but commands under one's own name and the presence of nodes, which everybody sees."""

@@ -8,11 +8,11 @@ import os
 import platform
 from pathlib import Path
 
-from benchmarks.perception import live, recorded, simulated, tracking, unknown
+from benchmarks.perception import fitted, foreign, learnt, live, recorded, simulated, tracking, unknown
 from benchmarks.perception.table import Row, lines
 from nodes.perception_node.recognition.shipped_votes import shipped
 
-PARTS = ("recorded", "simulated", "unknown", "tracking", "live")
+PARTS = ("recorded", "simulated", "painted", "unknown", "foreign", "fitted", "learnt", "tracking", "live")
 
 
 def arguments() -> argparse.Namespace:
@@ -24,7 +24,8 @@ def arguments() -> argparse.Namespace:
         "--recorded", type=Path, default=recorded.data_folder(), help="real scenes with labels"
     )
     parser.add_argument("--piles", type=int, default=300, help="rendered scenes to learn segmentation from")
-    parser.add_argument("--samples", type=Path, help="from python -m nodes.training.recognition --samples")
+    parser.add_argument("--samples", type=Path, help="of nodes.training.recognition --parts")
+    parser.add_argument("--things", type=Path, default=recorded.data_folder().with_name("foreign"))
     parser.add_argument("--training-scenes", type=int, default=400, help="where there are no samples")
     parser.add_argument("--moves", type=int, default=100, help="of things that keep their names")
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
@@ -40,6 +41,14 @@ def main() -> None:
         rows += recorded.measure(words.recorded, words.piles)
     if "simulated" in parts:
         rows += simulated.measure(words.scenes, shipped())
+    if "painted" in parts:
+        rows += simulated.measure_painted(words.scenes, shipped())
+    if "foreign" in parts:
+        rows += foreign.measure(words.things, words.samples, words.training_scenes)
+    if "fitted" in parts:
+        rows += fitted.measure(words.scenes, shipped())
+    if "learnt" in parts:
+        rows += learnt.measure(words.things, words.scenes // 2, shipped())
     if "unknown" in parts:
         rows += unknown.measure(words.scenes, words.samples, words.training_scenes)
     if "tracking" in parts:

@@ -61,6 +61,11 @@ def scenes(
         yield "mixed", [Stood(t, place[0], place[1], z, place[4]) for t, place in pairs if place is not None]
 
 
+def distance_m(number: int, rng: np.random.Generator) -> float:
+    """From how far a frame of this number is taken: every other one from near."""
+    return float(rng.uniform(*(_NEAR_M if number % 2 == 0 else _FAR_M)))
+
+
 def _height(rng: np.random.Generator) -> float:
     return float(rng.uniform(0.5, 0.9))
 
@@ -205,7 +210,7 @@ def main() -> None:
     found = foreign_things(options.things)
     for number, (kind, stood) in enumerate(scenes(found, options.alone, options.mixed, rng)):
         distance = "near" if number % 2 == 0 else "far"
-        shot = studio.shoot(stood, float(rng.uniform(*(_NEAR_M if distance == "near" else _FAR_M))), rng)
+        shot = studio.shoot(stood, distance_m(number, rng), rng)
         write_frame(options.out / f"{number:04d}", shot, kind, distance, stood)
     print(f"{options.out}: {number + 1} frames")
 

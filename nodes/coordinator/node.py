@@ -26,6 +26,7 @@ from nodes.coordinator.scene.gripping import Gripping
 from nodes.coordinator.scene.opening import Opening
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
+from nodes.coordinator.teaching import Teaching
 from nodes.coordinator.turns import Change, Results, Turns
 from nodes.runtime import heap
 from nodes.runtime.class_names import ClassNames
@@ -77,6 +78,7 @@ class Coordinator:
         self._gripping = Gripping(
             config.truth, door, scene, self._turns.change, self._ask_sim, self._bridge.ask_later
         )
+        teaching = Teaching(door, lambda: self._health.alive("perception_node"))
         door.map.where, door.map.bodies = self._live.where, lambda: scene.bodies
         relay = self._bridge.relay
         of_the_map = calls.by_verb(
@@ -103,6 +105,9 @@ class Coordinator:
             c.StepOnce.answered_by(running.step),
             c.Reset.answered_by(running.reset),
             c.TakePicture.answered_by(running.picture),
+            c.Learn.answered_by(teaching.learn),
+            c.Learned.answered_by(teaching.relay),
+            c.Forget.answered_by(teaching.relay),
             c.History.answered_by(relay),
             c.LastSeen.answered_by(relay),
             c.Check.answered_by(relay),

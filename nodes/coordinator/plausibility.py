@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 
+from ontology.model_choice import chosen
 from ontology.model_shapes import own_size_m
 from schemas import errors
 from schemas.commands import Attach, Move, Update
@@ -36,7 +37,7 @@ def doubts(
     name: str, found: ClassInfo | None, pose: Pose | None, size_m: Size | None, places: Collection[Entity]
 ) -> tuple[str, ...]:
     """What may be wrong with the pose and size of entity `name`, of class `found`; None for the unsaid."""
-    return (*_outside(name, found, pose, places), *_odd_size(found, size_m))
+    return (*_outside(name, found, pose, places), *_odd_size(name, found, size_m))
 
 
 def _outside(
@@ -62,10 +63,10 @@ def _is_over(place: Entity, pose: Pose) -> bool:
     return abs(c * dx + s * dy) <= width / 2.0 and abs(c * dy - s * dx) <= depth / 2.0
 
 
-def _odd_size(found: ClassInfo | None, size_m: Size | None) -> tuple[str, ...]:
+def _odd_size(name: str, found: ClassInfo | None, size_m: Size | None) -> tuple[str, ...]:
     if found is None or size_m is None or found.place:
         return ()
-    usual = own_size_m(found.model)
+    usual = own_size_m(chosen(found.model, name, size_m))
     if usual is None or 1.0 / FAR_OFF < max(size_m) / max(usual) < FAR_OFF:
         return ()
     return (f"{_metres(size_m)} is far from the usual size of a {found.name}, {_metres(usual)}",)

@@ -371,3 +371,8 @@ class Verbs:
     step = Verb(commands.StepOnce)
     reset = Verb(commands.Reset)
     picture = Verb(commands.TakePicture, _png)
+
+    # To show perception
+    learn = Verb(commands.Learn)
+    learned = Verb(commands.Learned)
+    forget = Verb(commands.Forget)

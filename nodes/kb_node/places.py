@@ -38,7 +38,7 @@ _MANY = 1000
 """Of those that leave, so many are looked at for what they leave behind."""
 _OPENING = frozenset((v.IS_OPEN, v.OPENNESS, v.JOINT_POSITIONS))
 _GEOMETRY = _OPENING.union(
-    stars.COORDINATE_PROPERTIES, v.SIZE_XYZ, (v.HAS_POSITION, v.HAS_SIZE, v.HAS_EXTENT)
+    stars.COORDINATE_PROPERTIES, v.SIZE_XYZ, (v.HAS_POSITION, v.HAS_SIZE, v.HAS_EXTENT, v.MODEL)
 )
 _SHAPING: Final = (EXTENT, *OPENING)
 """Properties that its shape depends on."""
@@ -214,7 +214,7 @@ def _moved(
     gone: Collection[Triple],
     come: Collection[Triple],
 ) -> Iterator[tuple[str, Entity]]:
-    """The entities that a change of triples puts elsewhere or resizes, as they will be."""
+    """The entities that a change of triples puts elsewhere or gives another shape, as they will be."""
     own_words = not classes.alignments
     changed = chain(gone, come)
     touched = subjects(t for t in changed if t[1] in _GEOMETRY) if own_words else subjects(gone, come)
@@ -229,10 +229,12 @@ def _moved(
             pose, size_m = entity_reading.read_place(about, classes, iri)
             is_reshaped = was.place or iri in opened
             stated = classes.stated.stated(about(iri)) if is_reshaped else was.properties
-            if (pose, size_m) != (was.pose, was.size_m) or any(
+            model = entity_reading.model_of(was, classes, about(iri), size_m)
+            if (pose, size_m, model) != (was.pose, was.size_m, was.model) or any(
                 stated.get(name) != was.properties.get(name) for name in _SHAPING
             ):
-                yield was.name, structs.replace(was, pose=pose, size_m=size_m, properties=stated)
+                now = structs.replace(was, pose=pose, size_m=size_m, model=model, properties=stated)
+                yield was.name, now
 
 
 def _about_after(

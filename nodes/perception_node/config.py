@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Literal
 
 from nodes.bus import Network
@@ -27,6 +28,10 @@ class TrackingConfig:
     """Looks in which a known entity must be seen elsewhere, at rest, before it has moved."""
     nudge_looks: int = 8
     """The same where it is still half in its place, which is not seen empty: it may only seem so."""
+    kept_looks: int = 40
+    """The same where what it would have left of its place is filled: a part of it may have been seen."""
+    pushed_m: float = math.inf
+    """How far from its place a large thing that has vanished is found again in one of the same kind."""
     odd_looks: int = 15
     """Looks in a row in which a thing of another size fills its place, before an entity is gone."""
     gone_looks: int = 10
@@ -43,8 +48,16 @@ class TrackingConfig:
 
     @property
     def on_the_move(self) -> TrackingConfig:
-        """For looks of which a camera moves: it sees more soon, and other things of the same kind."""
-        return replace(self, part_looks=2 * self.part_looks, vanished_looks=self.vanished_looks + 2)
+        """For looks of which a camera moves: it sees more soon, and other things of the same kind.
+
+        A chair that comes into its picture two metres from one that has gone is another.
+        """
+        return replace(
+            self,
+            part_looks=2 * self.part_looks,
+            vanished_looks=self.vanished_looks + 2,
+            pushed_m=min(self.pushed_m, 0.6),
+        )
 
 
 @dataclass(frozen=True)
@@ -55,3 +68,5 @@ class PerceptionConfig:
     network: Network = field(default_factory=Network)
     labels: Mapping[str, str] = field(default_factory=dict)
     """From the labels of a detector of one's own to classes; class names need no entry."""
+    lessons: Path | None = None
+    """The file in which what people show is kept; without one it is forgotten at the end."""

@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.detector import Detector
+from nodes.perception_node.fitting.model_surfaces import ClassSurfaces
+from nodes.perception_node.fitting.things import all_fitted
 from nodes.perception_node.input.files.frame_folders import FileFrame, read_frame
 from nodes.perception_node.pipeline import Learnt, look
 from schemas.errors import SemmapError
@@ -33,20 +35,28 @@ class Told(NamedTuple):
     unknown_labels: tuple[str, ...] = ()
 
 
-def perceived(folders: Sequence[Path], learnt: Learnt, detector: Detector | None = None) -> Iterator[Told]:
-    """What the frames in these folders show, in their order; what is wrong with one is told in its row."""
+def perceived(
+    folders: Sequence[Path],
+    learnt: Learnt,
+    detector: Detector | None = None,
+    surfaces: ClassSurfaces | None = None,
+) -> Iterator[Told]:
+    """What the frames in these folders show, in their order; what is wrong with one is told in its row.
+
+    With `surfaces` the models of classes are fitted to the things of each.
+    """
     cores = os.cpu_count() or 1
     under_way: deque[Future[Told]] = deque()
     with ThreadPoolExecutor(cores) as threads:
         for folder in folders:
-            under_way.append(threads.submit(_told, folder, learnt, detector))
+            under_way.append(threads.submit(_told, folder, learnt, detector, surfaces))
             if len(under_way) >= _AHEAD * cores:
                 yield under_way.popleft().result()
         while under_way:
             yield under_way.popleft().result()
 
 
-def _told(folder: Path, learnt: Learnt, detector: Detector | None) -> Told:
+def _told(folder: Path, learnt: Learnt, detector: Detector | None, surfaces: ClassSurfaces | None) -> Told:
     try:
         frame = read_frame(folder)
         masks = None
@@ -57,7 +67,10 @@ def _told(folder: Path, learnt: Learnt, detector: Detector | None) -> Told:
     seen = look([frame.cloud], learnt, [masks], None if detector is None else detector.labels)
     labels = _whole(seen.labels[0], frame)
     boxes = _boxes(labels, len(seen.observations.observations))
-    rows = zip(seen.observations.observations, boxes, strict=True)
+    told = seen.observations.observations
+    if surfaces is not None:
+        told = all_fitted([frame.cloud], seen, surfaces)
+    rows = zip(told, boxes, strict=True)
     return Told(
         FrameRow(frame=folder.name, objects=tuple(_object(*row) for row in rows)), labels, seen.unknown_labels
     )
@@ -90,4 +103,5 @@ def _object(seen: Observation, box_px: tuple[int, int, int, int]) -> SeenInFrame
         size_m=seen.size_m,
         box_px=box_px,
         points=seen.points,
+        fit=seen.fit,
     )

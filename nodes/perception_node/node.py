@@ -10,6 +10,7 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -17,12 +18,19 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.perception_node.config import PerceptionConfig
+from nodes.perception_node.fitting.fit import Fit, available
+from nodes.perception_node.fitting.model_surfaces import shipped as shipped_surfaces
+from nodes.perception_node.fitting.tracked import FitToModels, known_fit, known_of, request_fit
+from nodes.perception_node.fitting.worker import FitTo, FitWorker, Request
 from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.input.frame_worker import FrameWorker
 from nodes.perception_node.input.masks import Masks
+from nodes.perception_node.lesson_book import LessonBook
 from nodes.perception_node.pipeline import Look, shipped
+from nodes.perception_node.recognition.shipped_votes import Learnt
 from nodes.perception_node.recognition.told_names import Labels
 from nodes.perception_node.segmented_cloud import segmented_cloud
+from nodes.perception_node.teaching import Teaching
 from nodes.perception_node.tracking.association import associate, renamed
 from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy, hierarchy_of
 from nodes.perception_node.tracking.map_updates import subject_of
@@ -62,10 +70,14 @@ class Perception:
         config: PerceptionConfig,
         look: Callable[[Sequence[Cloud], Sequence[Masks | None]], Look],
         usual_m: Mapping[str, Size],
+        lessons: LessonBook | None = None,
+        taught: Callable[[Learnt], None] = lambda _: None,
+        fit: FitTo | None = None,
     ) -> None:
         """`look(clouds, masks)` tells what clouds of one moment, and a detector's masks in them, show.
 
-        `usual_m`: what things of a class measure.
+        `usual_m`: what things of a class measure. `lessons`: what was shown; `taught` is told of each change.
+        `fit` aligns a class's model with what is seen of a thing; without it there are no full poses.
         """
         self._node = node
         self._config = config
@@ -84,20 +96,30 @@ class Perception:
         self._cloud_is_wanted = bus.watched(node.session, keys.CLOUD)
         Follower(node, self._map, keys.EFFECTS, heard=lambda commit, known: None, begun=self._on_map)
         node.every(0.5, self._tick)
+        self._on_taught = taught
+        self._teaching = (
+            None if lessons is None else Teaching(node, lessons, lambda: self._classes, self._on_lessons)
+        )
         node.follow_newest(keys.DETECTIONS, self._on_detections)
+        self._fits = None if fit is None else FitWorker(fit, self._hand_over_fit, self._complain)
         self._worker = FrameWorker(look, self._hand_over, self._complain)
         bus.follow(node.session, keys.MASKS, lambda _, found: self._worker.keep_masks(found))
         for plane in ("rgb", "depth"):
             bus.follow_cameras(node.session, plane, self._worker.keep, self._complain)
 
     def close(self) -> None:
-        """Let the look in hand be finished, and no other be begun."""
+        """Let the look and the fit in hand be finished, and no other be begun."""
         self._worker.close()
+        if self._fits is not None:
+            self._fits.close()
 
     # On the worker's and on Zenoh's threads
 
     def _hand_over(self, clouds: Sequence[Cloud], found: Look, took_s: float) -> None:
         self._node.soon(lambda: self._on_look(clouds, found, took_s))
+
+    def _hand_over_fit(self, request: Request, found: Fit | None) -> None:
+        self._node.soon(lambda: self._on_fit(request, found))
 
     def _complain(self, text: str) -> None:
         self._node.soon(lambda: self._on_complaint(text))
@@ -117,12 +139,27 @@ class Perception:
         seen = found.observations
         if found.unknown_labels:
             self._on_complaint(wording.unknown_labels(found.unknown_labels))
-        self._compare(seen, clouds, on_the_move=found.on_the_move)
+        seen = self._compare(seen, clouds, on_the_move=found.on_the_move)
+        if self._teaching is not None:
+            self._teaching.see(found.things, seen.observations)
+        self._ask_for_fit(seen, clouds, found)
         if time.monotonic() >= self._cloud_due and self._cloud_is_wanted():
             self._cloud_due = time.monotonic() + _CLOUD_S
             cloud = segmented_cloud(clouds, found)
             self._cloud.put(codec.encode(cloud), encoding=codec.encoding_of(cloud))
-        self._node.describe(summary(clouds, len(seen.observations), took_s))
+        without = "" if self._fits else "; no full poses without Open3D"
+        self._node.describe(summary(clouds, len(seen.observations), took_s) + without)
+
+    def _ask_for_fit(self, seen: Observations, clouds: Sequence[Cloud], found: Look) -> None:
+        """Have a thing fitted that rests, and was not since it does."""
+        if self._fits is None or self._fits.busy or found.on_the_move:
+            return
+        request = request_fit(seen, clouds, found, self._tracks, self._config.tracking, self._classes)
+        if request is not None:
+            self._fits.ask(request)
+
+    def _on_fit(self, request: Request, found: Fit | None) -> None:
+        self._tracks = known_fit(self._tracks, request, found, self._config.tracking)
 
     def _on_detections(self, seen: Observations) -> None:
         """What a detector of one's own has seen; without its picture nothing is known to be gone."""
@@ -133,8 +170,19 @@ class Perception:
         known = tuple(o for o in seen.observations if o.class_ not in unknown)
         self._compare(structs.replace(seen, observations=known), ())
 
-    def _compare(self, seen: Observations, clouds: Sequence[Cloud], *, on_the_move: bool = False) -> None:
-        """Tell the map what differs, and all others what was seen; `on_the_move`: a camera of these moves."""
+    def _on_lessons(self, learnt: Learnt) -> None:
+        """Something was shown or forgotten: know it from the next look on."""
+        self._on_taught(learnt)
+        self._usual_m = learnt.usual_m
+        self._classes = replace(self._classes, usual_m=self._usual_m)
+
+    def _compare(
+        self, seen: Observations, clouds: Sequence[Cloud], *, on_the_move: bool = False
+    ) -> Observations:
+        """Tell the map what differs, and all others what was seen; `on_the_move`: a camera of these moves.
+
+        Returns what was seen with the entities that it was taken for.
+        """
         tracking = self._config.tracking
         if self._map_is_current():
             result = associate(
@@ -147,9 +195,10 @@ class Perception:
             )
             self._tracks = result.tracks
             named = zip(seen.observations, result.entities, strict=True)
-            seen = structs.replace(seen, observations=tuple(structs.replace(o, entity=e) for o, e in named))
+            seen = structs.replace(seen, observations=tuple(known_of(o, e, self._tracks) for o, e in named))
             self._tell(result.commands)
         self._observations.put(codec.encode(seen), encoding=codec.encoding_of(seen))
+        return seen
 
     # The map
 
@@ -217,9 +266,11 @@ def summary(clouds: Sequence[Cloud], things: int, took_s: float) -> str:
 def run(config: PerceptionConfig) -> None:
     """Look until stopped. Raises BadFile when what perception learnt cannot be read."""
     learnt = shipped()
+    lessons = LessonBook(config.lessons, learnt)
     with open_node("perception_node", config.network) as node:
         watching = Watching(learnt, Labels(learnt, config.labels))
-        perception = Perception(node, config, watching, learnt.usual_m)
+        fit = FitToModels(shipped_surfaces()) if available() else None
+        perception = Perception(node, config, watching, learnt.usual_m, lessons, watching.take, fit)
         try:
             node.run()
         finally:

@@ -17,6 +17,7 @@ from nodes.perception_node.recognition.recognise import recognise
 from nodes.perception_node.recognition.shipped_votes import Learnt, shipped
 from nodes.perception_node.recognition.told_names import Labels
 from nodes.perception_node.recognition.vote import leaves
+from nodes.perception_node.views.bases import supports_of_things
 from nodes.perception_node.views.disputes import settled
 from nodes.perception_node.views.feet import supports_at_feet
 from nodes.perception_node.views.furniture_planes import with_what_hangs_below
@@ -40,13 +41,14 @@ class Look:
 
     In `labels` 0 is background and n stands for `observations.observations[n - 1]`. `unknown_labels`: what a
     detector said that is no class here. `remembered` is what the next look is to know of this one and those
-    before it.
+    before it. `things`: of which each observation is.
     """
 
     observations: Observations
     labels: tuple[NDArray[np.int32], ...]
     unknown_labels: tuple[str, ...] = ()
     remembered: Remembered = _NOTHING
+    things: tuple[Thing, ...] = ()
 
     @property
     def on_the_move(self) -> bool:
@@ -107,6 +109,7 @@ def look_at(
         observations,
         tuple(numbers[label] for label in parts.labels),
         remembered=before.after(sights, [thing.segments for thing in things], elsewhere),
+        things=tuple(things[n] for n in kept),
     )
 
 
@@ -138,8 +141,13 @@ class Parts:
         return thing_of((*a.segments, *b.segments), self.supports)
 
     def put_on_feet(self, sights: Sequence[Sight]) -> Parts:
-        """With what these sights show around the feet of what seems to hang in the air as supports, too."""
-        feet = supports_at_feet(sights, self.things)
+        """With what these sights show around the feet of what seems to hang in the air as supports, too.
+
+        And with the tops of things below it. Without sights nothing is asked.
+        """
+        if not sights:
+            return self
+        feet = [*supports_at_feet(sights, self.things), *supports_of_things(self.things)]
         if not feet:
             return self
         supports = [*self.supports, *feet]

@@ -21,6 +21,10 @@ class Watching:
         self._labels = labels
         self._remembered = Remembered()
 
+    def take(self, learnt: Learnt) -> None:
+        """Know this from the next look on. Any thread may say so."""
+        self._learnt = learnt
+
     def __call__(self, clouds: Sequence[Cloud], masks: Sequence[Masks | None] = ()) -> Look:
         """What clouds of one moment show; see `pipeline.look`."""
         found = look(clouds, self._learnt, masks, self._labels, self._remembered)

@@ -47,6 +47,8 @@ class SharedParts:
         _set(entity, "reference_provenance", whole if reference_s.commit == seq else of(reference_s))
         if (joint_s := entity.joint_provenance) is not None:
             _set(entity, "joint_provenance", whole if joint_s.commit == seq else of(joint_s))
+        if (switch_s := entity.switch_provenance) is not None:
+            _set(entity, "switch_provenance", whole if switch_s.commit == seq else of(switch_s))
         if (grip_s := entity.grip_provenance) is not None:
             _set(entity, "grip_provenance", whole if grip_s.commit == seq else of(grip_s))
         return entity

@@ -74,6 +74,7 @@ def _joints(order: BodyOrder, model: Model) -> tuple[Joint, ...]:
             lower=leaf.joint.range and leaf.joint.range[0],
             upper=leaf.joint.range and leaf.joint.range[1],
             closed=leaf.joint.closed,
+            switch=leaf.joint.switch,
         )
         for leaf in model.leaves
     ]
@@ -120,7 +121,7 @@ def _targets(order: JointOrder, joints: Sequence[Joint]) -> dict[str, float]:
             for joint in of_use
             if joint.name in order.positions
         }
-    opening = [joint for joint in of_use if joint.opens]
+    opening = [joint for joint in of_use if joint.opens or (order.joint and joint.switches)]
     if not opening:
         raise ModelError(f"{order.name} has no joint that opens it")
     share = 1.0 if order.openness is None else order.openness

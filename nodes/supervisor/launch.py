@@ -149,10 +149,12 @@ def _sim_node(settings: Settings) -> None:
 
 def _perception_node(settings: Settings) -> None:
     from nodes.perception_node.config import PerceptionConfig, TrackingConfig
+    from nodes.perception_node.lesson_book import FILENAME
     from nodes.perception_node.node import run
 
     tracking = TrackingConfig(when_gone=settings.when_gone)
-    run(PerceptionConfig(tracking, settings.network("perception_node"), settings.label_map))
+    lessons = Path(settings.data) / FILENAME
+    run(PerceptionConfig(tracking, settings.network("perception_node"), settings.label_map, lessons))
 
 
 def _recorder(settings: Settings) -> None:

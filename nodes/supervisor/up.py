@@ -26,10 +26,12 @@ from nodes.supervisor.control import LONGEST_STOP_S, Supervisor
 from nodes.supervisor.notices import Notices
 from nodes.supervisor.settings import Replay, Settings
 from nodes.supervisor.watchdog import Watchdog
+from ontology.model_shapes import varieties_of
 from schemas import errors, keys
 from schemas.calls import reply_type
-from schemas.commands import Classes, Get, Status
+from schemas.commands import Classes, Get, List, Status
 from schemas.endpoints import WEB_TOKEN_VARIABLE
+from schemas.entities import Entity
 from schemas.health import Health
 
 _START_TIMEOUT_S = 120.0
@@ -293,7 +295,10 @@ class _Foreground:
         folder = Path(self._settings.models)
         with contextlib.suppress(errors.SemmapError, OSError):
             classes = bus.ask(session, keys.CMD, Classes.VERB, Classes(), reply_type(Classes))
-            names = {c.model for c in classes}
+            names = {name for c in classes for name in (c.model, *varieties_of(c.model))}
+            if passed_over(folder, names):
+                listed = bus.ask(session, keys.CMD, List.VERB, List(), reply_type(List))
+                names |= {entity.model for entity in listed if isinstance(entity, Entity)}
             if strange := passed_over(folder, names):
                 said = f"ignored, because no class has a model of that name: {', '.join(strange)}"
                 self._say(f"{'models':<{_COLUMN}} {said}")

@@ -39,6 +39,8 @@ TBOX = b"""
 :hasPosition a owl:ObjectProperty , owl:FunctionalProperty ;
   rdfs:domain :Physical_Thing ; rdfs:range :Coordinates .
 :isOpen a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:boolean .
+:openness a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:float .
+:jointPositions a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:string .
 :note a owl:DatatypeProperty .
 :float_coordinates_x a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:float .
 """

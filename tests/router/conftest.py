@@ -58,7 +58,7 @@ def sessions(folder, endpoint):
     with contextlib.ExitStack() as stack:
         yield {
             name: opened(stack, endpoint, Identity.read(folder / name))
-            for name in (*ROLES, "kb_node", "coordinator", "sim_node")
+            for name in (*ROLES, "kb_node", "coordinator", "sim_node", "perception_node")
         }
 
 

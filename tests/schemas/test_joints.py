@@ -1,6 +1,7 @@
 """How far open a thing is, and how a map states it."""
 
 import pytest
+from msgspec import structs
 
 from schemas import joints
 from schemas.joints import Joint
@@ -13,7 +14,8 @@ BALL = Joint(name="ball", kind="ball", position=0.3)
 
 def at(joint: Joint, position: float) -> Joint:
     return Joint(
-        **{n: getattr(joint, n) for n in ("name", "kind", "lower", "upper", "closed")}, position=position
+        **{n: getattr(joint, n) for n in ("name", "kind", "lower", "upper", "closed", "switch")},
+        position=position,
     )
 
 
@@ -72,3 +74,31 @@ def test_the_most_exact_statement_counts():
 )
 def test_joints_are_told_in_words(joint, said):
     assert joints.in_words(joint) == said
+
+
+SWITCH = Joint(name="light", kind="hinge", lower=-0.7, upper=0.0, closed=0.0, switch=True)
+
+
+def test_a_switch_opens_nothing_and_is_on_from_half_of_its_way():
+    assert (SWITCH.opens, SWITCH.openness, joints.openness([SWITCH])) == (False, None, None)
+    assert [at(SWITCH, angle).is_on for angle in (0.0, -0.3, -0.36, -0.7)] == [False, False, True, True]
+    assert at(SWITCH, -0.35).share == pytest.approx(0.5)
+    assert joints.is_on([DOOR]) is None
+    assert joints.is_on([DOOR, SWITCH, at(SWITCH, -0.7)]) is True
+    assert joints.in_words(at(SWITCH, -0.7)) == "light on (-0.7 rad)"
+
+
+def test_of_switches_and_of_all_else_the_most_exact_statement_counts():
+    both = [DOOR, SWITCH]
+    said = {"isOpen": True, "isSwitchedOn": True}
+    assert joints.stated(both, said) == {"door": 1.6, "light": -0.7}
+    assert joints.stated(both, {**said, "switchPositions": "light=-0.1"}) == {"door": 1.6, "light": -0.1}
+    assert joints.stated(both, {"isSwitchedOn": False}) == {"light": 0.0}
+
+
+def test_what_is_said_of_switches_leaves_doors_as_they_are_made():
+    ajar = structs.replace(DOOR, initial=0.2)
+    assert joints.wanted([ajar, SWITCH], {"isSwitchedOn": True}) == {"door": 0.2, "light": -0.7}
+    assert joints.wanted([ajar, SWITCH], {"openness": 1.0}) == {"door": 1.6, "light": 0.0}
+    assert joints.wanted([ajar, SWITCH], {}) == {"door": 0.2, "light": 0.0}
+    assert joints.wanted([KNOB], {"isOpen": True}) == {}

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.model_table import MODELS
+from nodes.sim_node.models.variety_table import KINDS
 from nodes.sim_node.world import World
 from schemas.entities import Pose, angle_rad, distance_m
 from tests.sim_node.orders import hand, order, pose
@@ -16,7 +16,7 @@ def poses(world):
 
 def test_every_model_stays_where_it_is_put():
     world = World()
-    at = {name: pose(3.0 * (i % 13), 3.0 * (i // 13)) for i, name in enumerate(MODELS)}
+    at = {name: pose(3.0 * (i % 13), 3.0 * (i // 13)) for i, name in enumerate(KINDS)}
     world.spawn([order(name, name, where) for name, where in at.items()])
     world.step(2.0)
     for name, now in poses(world).items():

@@ -213,7 +213,7 @@ def follow(view: KnownMap, settled: Settled, hand: Hand) -> Talk[Changed]:
     edits = settled.edits(view.entities)
     if not edits:
         return changed(None, UNCHANGED)
-    reason = settled.reason or (hand.reason if hand.verb or settled.poses else _of_joints(settled))
+    reason = settled.reason or (hand.reason if hand.verb or not settled.joints else _of_joints(view, settled))
     moved = Transaction(
         id=new_id(),
         source=settled.source,
@@ -226,8 +226,12 @@ def follow(view: KnownMap, settled: Settled, hand: Hand) -> Talk[Changed]:
     return changed(made, reason, names=tuple(edit.name for edit in edits))
 
 
-def _of_joints(settled: Settled) -> str:
-    return "; ".join(f"{name} {doing(joints)} in the scene" for name, joints in settled.joints.items())
+def _of_joints(view: KnownMap, settled: Settled) -> str:
+    return "; ".join(
+        f"{name} {doing(joints, view.entities[name].properties)} in the scene"
+        for name, joints in settled.joints.items()
+        if name in view.entities
+    )
 
 
 def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:

@@ -31,10 +31,10 @@ class Hands:
     def __init__(self) -> None:
         self._released: dict[str, tuple[Hand, float]] = {}
 
-    def let_go(self, command: Move | Open | Close, load: Collection[str] = ()) -> None:
-        """A hand let go of a body, and of what it carried along with it."""
+    def let_go(self, command: Move | Open | Close, load: Collection[str] = (), reason: str = "") -> None:
+        """A hand let go of a body, and of what it carried along with it; `reason` where none is given."""
         party = frozenset((command.name, *load)) if load else frozenset[str]()
-        reason = command.reason or f"{command.name} was {_DONE[command.VERB]} by hand"
+        reason = command.reason or reason or f"{command.name} was {_DONE[command.VERB]} by hand"
         hand = Hand(command.VERB, command.agent, reason, party)
         for name in (command.name, *load):
             self._released[name] = (hand, time.monotonic() + _RESTS_WITHIN_S)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from concurrent.futures import Future
 from typing import NamedTuple
 
@@ -11,7 +12,7 @@ from nodes.coordinator.scene.reconciler import AskSim, Keeping
 from nodes.runtime.futures import OwnFuture, settle
 from schemas import commands as c
 from schemas import errors
-from schemas.joints import in_words
+from schemas.joints import Joint, in_words
 from schemas.replies import Moved
 from schemas.scenes import Body, JointOrder, JointsMoving, MoveJoints
 
@@ -45,21 +46,25 @@ class Opening:
             if not self._keeping.scene.known:
                 raise errors.NoAnswer(
                     f"no simulator is running; to state it: semmap set {entity.name} isOpen"
-                    f" {str(isinstance(command, c.Open)).lower()}"
+                    f" {_is_open(command)}"
                 )
             raise errors.Refused(
                 f"{entity.name} has no body to {command.VERB}: {state.detail or state.status}"
             )
         _require_joints(command, body)
+        named = (joint.name for joint in body.joints if joint.switches and joint.name == command.joint)
+        switch = next(named, "")
         order = JointOrder(name=command.name, joint=command.joint or "", openness=_share(command))
 
         def moving(reply: JointsMoving) -> Moved | Future[Moved]:
             if command.name in reply.failed:
                 raise errors.Refused(reply.failed[command.name])
             self._keeping.scene.add(reply.bodies)
-            self._door.hands.let_go(command)
+            self._door.hands.let_go(
+                command, reason=f"{switch} of {body.name} was turned by hand" if switch else ""
+            )
             if not command.wait:
-                return Moved(name=command.name, text=_on_its_way(command))
+                return Moved(name=command.name, text=_on_its_way(command, switch))
             later: Future[Moved] = OwnFuture()
             self._waiting.append(_Waiting(command, time.monotonic() + _WAIT_S, later))
             return later
@@ -92,17 +97,43 @@ def _share(command: c.Open | c.Close) -> float:
     return command.to if isinstance(command, c.Open) else 0.0
 
 
+def _is_open(command: c.Open | c.Close) -> str:
+    return str(isinstance(command, c.Open)).lower()
+
+
+def _moves(command: c.Open | c.Close, joint: Joint) -> bool:
+    """Does a command move this joint? Switches it does only by name."""
+    return joint.name == command.joint if command.joint else joint.opens
+
+
 def _require_joints(command: c.Open | c.Close, body: Body) -> None:
     """Raises Refused where nothing opens."""
     opening = [joint.name for joint in body.joints if joint.opens]
-    if not opening:
-        raise errors.Refused(f"{body.name} has no door, lid or drawer to {command.VERB}")
-    if command.joint and command.joint not in opening:
-        hint = errors.did_you_mean(command.joint, opening) or f"; it has: {', '.join(opening)}"
+    switches = [joint.name for joint in body.joints if joint.switches]
+    if not opening and command.joint not in switches:
+        to_switch = f"; to switch it: semmap set {body.name} isSwitchedOn {_is_open(command)}"
+        raise errors.Refused(
+            f"{body.name} has no door, lid or drawer to {command.VERB}"
+            f"{to_switch if switches else _endless(body.joints)}"
+        )
+    if command.joint and command.joint not in (*opening, *switches):
+        there = [*opening, *switches]
+        hint = errors.did_you_mean(command.joint, there) or f"; it has: {', '.join(there)}"
         raise errors.Refused(f"{body.name} has no joint '{command.joint}' to {command.VERB}{hint}")
 
 
-def _on_its_way(command: c.Open | c.Close) -> str:
+def _endless(joints: Sequence[Joint]) -> str:
+    """Why joints open nothing, of one of them that has no ends; nothing where there is none."""
+    joint = next((joint for joint in joints if not joint.has_ends), None)
+    if joint is None:
+        return ""
+    why = "is a ball joint" if joint.kind == "ball" else "has no limits, of which one could be the closed one"
+    return f": its joint {joint.name} {why}"
+
+
+def _on_its_way(command: c.Open | c.Close, switch: str) -> str:
+    if switch:
+        return f"turning {switch} of {command.name} to {_share(command):.0%}"
     if isinstance(command, c.Close):
         return f"closing {command.name}"
     return f"opening {command.name}{'' if command.to == 1.0 else f' to {command.to:.0%}'}"
@@ -110,7 +141,7 @@ def _on_its_way(command: c.Open | c.Close) -> str:
 
 def _arrived(command: c.Open | c.Close, body: Body) -> str:
     """How the joints stand that were moved; and which did not get there."""
-    moved = [joint for joint in body.joints if joint.opens and command.joint in (None, joint.name)]
+    moved = [joint for joint in body.joints if _moves(command, joint)]
     text = f"{body.name}: {', '.join(map(in_words, moved))}"
-    short = [joint.name for joint in moved if abs((joint.openness or 0.0) - _share(command)) > _THERE]
+    short = [joint.name for joint in moved if abs((joint.share or 0.0) - _share(command)) > _THERE]
     return f"{text}; something stops {' and '.join(short)}" if short else text

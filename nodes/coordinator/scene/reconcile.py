@@ -23,7 +23,19 @@ from typing import NamedTuple
 from nodes.coordinator.config import Thresholds, Truth
 from schemas.entities import Entity, Pose, angle_rad, distance_m
 from schemas.grips import grip_of, holder_of
-from schemas.joints import IS_OPEN, JOINT_POSITIONS, OPEN_FROM, OPENING, OPENNESS, Joint, openness, stated
+from schemas.joints import (
+    IS_OPEN,
+    IS_SWITCHED_ON,
+    JOINT_POSITIONS,
+    OPEN_FROM,
+    OPENNESS,
+    STANDING,
+    SWITCH_POSITIONS,
+    Joint,
+    is_on,
+    openness,
+    wanted,
+)
 from schemas.scenes import Body, BodyOrder, GripOrder, JointOrder, Placement
 
 _TO_THE_LETTER = Thresholds(distance_m=0.001, angle_rad=0.002, share=0.001)
@@ -159,7 +171,7 @@ def order(entity: Entity, pose: Pose) -> BodyOrder:
         fixed=entity.fixed,
         properties={
             name: said
-            for name in OPENING
+            for name in STANDING
             if isinstance(said := entity.properties.get(name), (bool, int, float, str))
         },
         commit=latest(entity),
@@ -183,11 +195,11 @@ def joint_order(entity: Entity, body: Body) -> JointOrder:
     What suits it and moves may be on its way to somewhere else, by an earlier order. A word is done to the
     letter: the thresholds are for what a hand leaves.
     """
-    said = entity.joint_provenance
+    said = entity.joints_said
     suits = body.resting and not _stand_elsewhere(entity, body, _TO_THE_LETTER)
     return JointOrder(
         name=entity.name,
-        positions={} if suits else _wanted(entity, body),
+        positions={} if suits else wanted(body.joints, entity.properties),
         commit=said.commit if said is not None else entity.provenance.commit,
     )
 
@@ -224,39 +236,39 @@ def _is_held_otherwise(entity: Entity, body: Body, thresholds: Thresholds) -> bo
 
 def latest(entity: Entity) -> int:
     """The commit that last changed anything which concerns the body."""
-    joints = entity.joint_provenance
+    joints = entity.joints_said
     latest = max(entity.pose_provenance.commit, entity.shape_provenance.commit)
     return latest if joints is None else max(latest, joints.commit)
 
 
-def _wanted(entity: Entity, body: Body) -> dict[str, float]:
-    """Where the map says that the joints of a body stand; as they are made where it does not say."""
-    said = stated(body.joints, entity.properties)
-    return {joint.name: joint.initial for joint in body.joints} if said is None else said
-
-
 def _stand_elsewhere(entity: Entity, body: Body, thresholds: Thresholds) -> bool:
     """Do the joints of a body stand otherwise than the map says?"""
-    if entity.properties.keys().isdisjoint((OPENNESS, JOINT_POSITIONS)) and IS_OPEN in entity.properties:
-        share = openness(body.joints)
-        return share is not None and (share > OPEN_FROM) != entity.properties[IS_OPEN]
-    wanted = _wanted(entity, body)
+    said = entity.properties
+    roughly_open = IS_OPEN in said and said.keys().isdisjoint((OPENNESS, JOINT_POSITIONS))
+    roughly_on = IS_SWITCHED_ON in said and SWITCH_POSITIONS not in said
+    share, on = openness(body.joints), is_on(body.joints)
+    if roughly_open and share is not None and (share > OPEN_FROM) != said[IS_OPEN]:
+        return True
+    if roughly_on and on is not None and on != said[IS_SWITCHED_ON]:
+        return True
+    exact = [joint for joint in body.joints if not (roughly_on if joint.switches else roughly_open)]
+    goals = wanted(exact, said)
     return any(
-        joint.name in wanted and abs(joint.position - wanted[joint.name]) > _tolerance(joint, thresholds)
-        for joint in body.joints
+        joint.name in goals and abs(joint.position - goals[joint.name]) > _tolerance(joint, thresholds)
+        for joint in exact
     )
 
 
 def _tolerance(joint: Joint, thresholds: Thresholds) -> float:
     """How far a joint may be from where the map says [rad, m]."""
-    if joint.opens:
+    if joint.has_ends:
         return thresholds.share * abs(joint.open_end - joint.position_at(0.0))
     return thresholds.distance_m if joint.kind == "slide" else thresholds.angle_rad
 
 
 def _joints_ordered_since(entity: Entity, body: Body, *, whoever: bool = False) -> bool:
     """Has the map said since how they are to stand: by anybody but the scene, or by `whoever`?"""
-    said = entity.joint_provenance
+    said = entity.joints_said
     return said is not None and (whoever or said.source != "scene") and said.commit > body.joint_commit
 
 

@@ -7,6 +7,7 @@ never older than the orders before it.
 from __future__ import annotations
 
 import logging
+import time
 from collections import deque
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import Future
@@ -15,6 +16,7 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
+from nodes.coordinator.scene.contents import inside
 from nodes.coordinator.scene.reconcile import Actions, grip_order, joint_order, latest, order, reconcile
 from nodes.coordinator.scene.scene_view import SceneView
 from nodes.coordinator.scene.settled import Settled
@@ -24,7 +26,7 @@ from schemas.calls import Call
 from schemas.commands import Add
 from schemas.entities import BodyState, Entity, rounded
 from schemas.grips import holder_of
-from schemas.joints import openness
+from schemas.joints import is_on, openness
 from schemas.replies import Changed
 from schemas.scenes import (
     BodiesMoved,
@@ -48,6 +50,8 @@ log = logging.getLogger(__name__)
 
 T = TypeVar("T")
 _PART_OF = "isDirectPartOf"
+_CALM_S = 2.0
+"""So long the map waits for what is inside a thing to rest, too."""
 GHOSTLY = "overlaps another body, so it does not collide until there is room"
 
 
@@ -100,6 +104,7 @@ class Keeping:
         self._shut_again: dict[str, JointOrder] = {}  # those whose joints it did not follow
         self._regrip: dict[str, GripOrder] = {}  # those whose holder it did not take over
         self._ungripped: dict[str, tuple[int, str]] = {}  # what the scene could not have held, and why
+        self._waiting: dict[str, float] = {}  # things in which something still moves, and since when [s]
         self._unsaid: set[str] = set()  # bodies of whose joints the map has no way to speak
 
     def on_poses(self, poses: Poses) -> None:
@@ -122,7 +127,7 @@ class Keeping:
             self._later.update(names or ())
         if self._busy or not self.scene.known:
             return
-        actions = self.wanted(names)
+        actions = self._follow_contents(self.wanted(names))
         for group in self._to_follow(actions.follow):
             self._follow(group)
         self._follow_joints(actions.opened)
@@ -220,6 +225,7 @@ class Keeping:
                 model=body.model,
                 joints=body.joints,
                 openness=openness(body.joints),
+                switched_on=is_on(body.joints),
             )
         if entity.name in self._failed and self._failed[entity.name][0] == latest(entity):
             return BodyState(status="failed", detail=self._failed[entity.name][1], model=entity.model)
@@ -356,6 +362,45 @@ class Keeping:
             gone = Delete(names=tuple(order.name for order in anew))
             self._steps.extendleft([self._spawning(anew), Step(gone, lambda _: None)])
 
+    def _follow_contents(self, actions: Actions) -> Actions:
+        """Follow in one commit how joints stand and what they took along, once all of it rests.
+
+        Gives what is left to be done: what is alone is followed like everything else.
+        """
+        bodies = self.scene.bodies
+        follow = {
+            placement.name: placement
+            for placement in actions.follow
+            if placement.name not in self._following and not self._door.hands.party_of(placement.name)
+        }
+        opened = [name for name in actions.opened if self._may_follow_joints(name)]
+        gone = [bodies[name] for name in follow]
+        around = (n for n, b in bodies.items() if gone and b.joints and n not in opened and inside(b, gone))
+        done: set[str] = set()
+        for whole in (*opened, *around):
+            content = inside(bodies[whole], bodies.values())
+            moved = [name for name in content if name in follow and name not in done]
+            party = [*([whole] if whole in opened else ()), *moved]
+            moves = not all(bodies[name].resting for name in (whole, *content))
+            if not party or not (moves or len(party) > 1):
+                self._waiting.pop(whole, None)
+                continue
+            done.update(party)
+            now = time.monotonic()
+            if moves and now < self._waiting.setdefault(whole, now) + _CALM_S:
+                self._later.update(party)
+                continue
+            self._waiting.pop(whole, None)
+            self._follow([follow[name] for name in moved], whole if whole in opened else "")
+        self._waiting = {name: since for name, since in self._waiting.items() if name in bodies}
+        return actions._replace(
+            follow=tuple(placement for placement in actions.follow if placement.name not in done),
+            opened=tuple(name for name in actions.opened if name not in done),
+        )
+
+    def _may_follow_joints(self, name: str) -> bool:
+        return not (name in self._following or name in self._unsaid or name in self._shut_again)
+
     def _to_follow(self, placements: Sequence[Placement]) -> Iterator[tuple[Placement, ...]]:
         """Each by itself, or together with what a hand carried along with it, once all of that rests."""
         done: set[str] = set()
@@ -370,13 +415,17 @@ class Keeping:
             elif all(body.resting for body in there):
                 yield self.wanted(party).follow
 
-    def _follow(self, placements: Sequence[Placement]) -> None:
-        """Let the map follow bodies; if the map refuses, they have to go back."""
+    def _follow(self, placements: Sequence[Placement], opened: str = "") -> None:
+        """Let the map follow bodies, and how the joints of one stand; if it refuses, they have to go back."""
         poses = {placement.name: rounded(placement.pose) for placement in placements}
         if any(name in self._put_back for name in poses):
             return
 
         def failed(error: BaseException) -> None:
+            if opened:
+                self._not_followed(opened, error)
+            if not poses:
+                return
             if not isinstance(error, errors.Refused):
                 self._report(f"the map cannot follow {wording.few(poses)} yet: {error}")
                 return
@@ -389,16 +438,15 @@ class Keeping:
                     commit = entity.pose_provenance.commit
                     self._put_back[name] = Placement(name=name, pose=entity.pose, commit=commit)
 
-        self._change_about(poses, Settled.of(self._door.map.entities, poses), failed)
+        joints = {opened: self.scene.bodies[opened].joints} if opened else {}
+        settled = Settled.of(self._door.map.entities, poses, joints)
+        self._change_about(settled.names, settled, failed)
 
     def _follow_joints(self, names: Sequence[str]) -> None:
         """Let the map take over how joints stand; if the map refuses, they have to go back."""
         for name in names:
-            if name in self._following or name in self._unsaid or name in self._shut_again:
-                continue
-            body = self.scene.bodies[name]
-            settled = Settled.of(self._door.map.entities, {}, {name: body.joints})
-            self._change_about((name,), settled, partial(self._not_followed, name))
+            if self._may_follow_joints(name):
+                self._follow((), name)
 
     def _not_followed(self, name: str, error: BaseException) -> None:
         if isinstance(error, errors.BadRequest):  # a TBox without these properties

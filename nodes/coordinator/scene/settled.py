@@ -9,9 +9,23 @@ from typing import NamedTuple
 from nodes.coordinator.transactions import gripped
 from schemas.commits import Edit, Statement
 from schemas.entities import Entity, Pose, Source
-from schemas.joints import IS_OPEN, JOINT_POSITIONS, OPEN_FROM, OPENNESS, Joint, openness, positions_text
+from schemas.joints import (
+    IS_OPEN,
+    IS_SWITCHED_ON,
+    JOINT_POSITIONS,
+    OPEN_FROM,
+    OPENNESS,
+    SWITCH_POSITIONS,
+    Joint,
+    is_on,
+    openness,
+    positions_text,
+    wanted,
+)
 
 _DIGITS = 3
+_STAYED = 0.005
+"""A joint that is so near to where it was has not moved [rad, m]."""
 
 
 class Settled(NamedTuple):
@@ -48,8 +62,8 @@ class Settled(NamedTuple):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The entities that it is about."""
-        return tuple({**self.poses, **self.joints, **self.grips})
+        """The entities that it is about, those first whose joints took others along."""
+        return tuple({**self.joints, **self.poses, **self.grips})
 
     def edits(self, entities: Mapping[str, Entity]) -> list[Edit]:
         """What is to change of the entities that nobody has moved, opened or removed meanwhile."""
@@ -73,23 +87,23 @@ class Settled(NamedTuple):
 
 def statements(joints: tuple[Joint, ...]) -> tuple[Statement, ...]:
     """What a map states of how joints stand."""
-    if not joints:
-        return ()
-    positions = Statement(property=JOINT_POSITIONS, values=(positions_text(joints),))
-    share = openness(joints)
-    if share is None:
-        return (positions,)
-    is_open = str(share > OPEN_FROM).lower()
-    return (
-        Statement(property=IS_OPEN, values=(is_open,)),
-        Statement(property=OPENNESS, values=(f"{round(share, _DIGITS):g}",)),
-        positions,
-    )
+    switches = tuple(joint for joint in joints if joint.switches)
+    others = tuple(joint for joint in joints if not joint.switches)
+    found = []
+    if (share := openness(others)) is not None:
+        found.append(Statement(property=IS_OPEN, values=(str(share > OPEN_FROM).lower(),)))
+        found.append(Statement(property=OPENNESS, values=(f"{round(share, _DIGITS):g}",)))
+    if others:
+        found.append(Statement(property=JOINT_POSITIONS, values=(positions_text(others),)))
+    if switches:
+        found.append(Statement(property=IS_SWITCHED_ON, values=(str(is_on(switches)).lower(),)))
+        found.append(Statement(property=SWITCH_POSITIONS, values=(positions_text(switches),)))
+    return tuple(found)
 
 
 def said_by(entity: Entity) -> tuple[int, int, int]:
     """The commits that an entity's pose, its joints and its grip are from; -1 for what it has not."""
-    joints, grip = entity.joint_provenance, entity.grip_provenance
+    joints, grip = entity.joints_said, entity.grip_provenance
     return (
         -1 if entity.pose is None else entity.pose_provenance.commit,
         -1 if joints is None else joints.commit,
@@ -97,9 +111,24 @@ def said_by(entity: Entity) -> tuple[int, int, int]:
     )
 
 
-def doing(joints: tuple[Joint, ...]) -> str:
-    """What has become of a thing whose joints came to stand so: `was closed`, `was opened to 40%`."""
+def doing(joints: tuple[Joint, ...], before: Mapping[str, object] = MappingProxyType({})) -> str:
+    """What has become of a thing whose joints came to stand so: `was closed`, `was switched on`.
+
+    `before` is what the map stated of it until now: only of what is new something is told.
+    """
+    was = wanted(joints, before)
+    moved = [j for j in joints if abs(j.position - was.get(j.name, j.initial)) > _STAYED]
+    told = moved or joints
+    switched = [joint for joint in told if joint.switches]
+    others = tuple(joint for joint in told if not joint.switches)
     share = openness(joints)
-    if share is None:
-        return f"stands at {positions_text(joints)}"
-    return f"was opened to {share:.0%}" if share > OPEN_FROM else "was closed"
+    words = []
+    if others and share is None:
+        words.append(f"stands at {positions_text(others)}")
+    elif others and share is not None:
+        words.append(f"was opened to {share:.0%}" if share > OPEN_FROM else "was closed")
+    if switched:
+        on = is_on(joints)
+        turned = on == before.get(IS_SWITCHED_ON, False) and moved
+        words.append(f"has {positions_text(switched)}" if turned else f"was switched {'on' if on else 'off'}")
+    return " and ".join(words)

@@ -23,6 +23,7 @@ _MODULES = {
     "past": ("undo", "history", "diff", "when", "last-seen"),
     "run": ("run",),
     "perceive": ("perceive",),
+    "learn": ("learn", "learned", "forget"),
     "navigation": ("floorplan", "route"),
     "scene": ("move", "drive", "attach", "detach", "open", "close", "pause", "step", "reset", "picture"),
     "replay": ("replay",),

@@ -65,9 +65,14 @@ class Frames:
 def matrix(transform: Any) -> Transform | None:
     """A `geometry_msgs/Transform` as a matrix; None for what has no length, or is no number."""
     t, r = transform.translation, transform.rotation
-    w, x, y, z = r.w, r.x, r.y, r.z
+    return placed((t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
+
+
+def placed(position_m: tuple[float, ...], wxyz: tuple[float, ...]) -> Transform | None:
+    """A position and a quaternion of any length as a matrix; None for what has none, or is no number."""
+    w, x, y, z = wxyz
     norm = float(np.sqrt(w * w + x * x + y * y + z * z))
-    if not np.isfinite([t.x, t.y, t.z, norm]).all() or norm < 1e-6:
+    if not np.isfinite([*position_m, norm]).all() or norm < 1e-6:
         return None
     w, x, y, z = w / norm, x / norm, y / norm, z / norm
     found = np.eye(4)
@@ -76,5 +81,5 @@ def matrix(transform: Any) -> Transform | None:
         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
         [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
     ]
-    found[:3, 3] = t.x, t.y, t.z
+    found[:3, 3] = position_m
     return found

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from schemas import errors
 
-_COLOURS: Final[Mapping[str, tuple[int, tuple[int, int, int]]]] = {
+COLOURS: Final[Mapping[str, tuple[int, tuple[int, int, int]]]] = {
     "rgb8": (3, (0, 1, 2)),
     "bgr8": (3, (2, 1, 0)),
     "rgba8": (4, (0, 1, 2)),
@@ -30,11 +30,11 @@ _DEPTHS: Final[Mapping[str, tuple[str, float]]] = {
 
 def colour_of(image: Any) -> bytes:
     """A `sensor_msgs/Image` as (height, width, 3) bytes. Raises BadRequest for an encoding without colour."""
-    if image.encoding not in _COLOURS:
+    if image.encoding not in COLOURS:
         raise errors.BadRequest(
-            f"a colour picture in {image.encoding!r} cannot be read; there are: {', '.join(_COLOURS)}"
+            f"a colour picture in {image.encoding!r} cannot be read; there are: {', '.join(COLOURS)}"
         )
-    channels, order = _COLOURS[image.encoding]
+    channels, order = COLOURS[image.encoding]
     rows = _rows(image, "u1", channels).reshape(image.height, image.width, channels)
     return np.ascontiguousarray(rows[:, :, order]).tobytes()
 

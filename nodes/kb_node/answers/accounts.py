@@ -20,7 +20,7 @@ from ontology.model_shapes import own_size_m
 from schemas import language
 from schemas.commands import Tell
 from schemas.entities import Entity, PropertyInfo, Stated, Value
-from schemas.joints import JOINT_POSITIONS
+from schemas.joints import JOINT_POSITIONS, SWITCH_POSITIONS
 
 
 class Accounts:
@@ -92,7 +92,8 @@ class Accounts:
         wrong = {(r.subject, r.relation, r.object) for r in self._now.denied()}
         known = {row.name: row for row in self._map.classes.stated.rows()}
         for property_, stated in entity.properties.items():
-            if property_ != JOINT_POSITIONS and (row := known.get(property_)) is not None:  # for programs
+            for_programs = property_ in (JOINT_POSITIONS, SWITCH_POSITIONS)
+            if not for_programs and (row := known.get(property_)) is not None:
                 values = stated if isinstance(stated, tuple) else (stated,)
                 left = tuple(value for value in values if (entity.name, property_, value) not in wrong)
                 if left:

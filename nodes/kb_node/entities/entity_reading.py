@@ -14,12 +14,13 @@ from nodes.kb_node.entities.class_table import ClassTable, Kind
 from nodes.kb_node.reasoner import Reasoner
 from ontology import stars
 from ontology import vocabulary as v
+from ontology.model_choice import chosen
 from schemas import errors, polygons
 from schemas.commits import Star
 from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
 from schemas.explanations import Term, Triple
 from schemas.grips import GRASPING
-from schemas.joints import OPENING
+from schemas.joints import OPENING, SWITCHING
 
 _NAME = re.compile(NAME_PATTERN)
 _FEW = 16
@@ -81,6 +82,7 @@ def read_entity(
         alternatives=_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
         conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
         tracked=_tracked(iri, said.get(v.TRACKED_FROM, ())),
+        model=stated_model(said),
         properties=classes.stated.stated(said),
     )
 
@@ -125,15 +127,17 @@ def entity_of(
     alternatives: Iterable[str],
     conflict: str = "",
     tracked: Tracked = "",
+    model: str = "",
     properties: dict[str, Stated] | None = None,
 ) -> Entity:
     """The entity of a kind whose star says this, all of it by `provenance`.
 
-    Of several preferred references the first in the alphabet counts. Raises BadRequest for one that cannot
-    be named.
+    Of several preferred references the first in the alphabet counts. `model` is what is stated of that, or ""
+    where the class, the name and the size say it. Raises BadRequest for one that cannot be named.
     """
+    name = _name(iri, kind.class_name)
     return Entity(
-        name=_name(iri, kind.class_name),
+        name=name,
         class_=kind.class_name,
         iri=v.bare(iri),
         types=kind.types,
@@ -144,16 +148,35 @@ def entity_of(
         conflict=conflict,
         tracked=tracked,
         properties=properties or {},
-        joint_provenance=provenance if properties and not properties.keys().isdisjoint(OPENING) else None,
-        grip_provenance=provenance if properties and not properties.keys().isdisjoint(GRASPING) else None,
+        joint_provenance=provenance if _states(properties, OPENING) else None,
+        switch_provenance=provenance if _states(properties, SWITCHING) else None,
+        grip_provenance=provenance if _states(properties, GRASPING) else None,
         place=kind.place,
         fixed=kind.fixed,
-        model=kind.model,
+        model=model or chosen(kind.model, name, size_m),
         provenance=provenance,
         pose_provenance=provenance,
         shape_provenance=provenance,
         reference_provenance=provenance,
     )
+
+
+def _states(properties: Mapping[str, Stated] | None, names: Iterable[str]) -> bool:
+    """Is any of these properties stated?"""
+    return properties is not None and any(name in properties for name in names)
+
+
+def model_of(known: Entity, classes: ClassTable, said: Objects, size_m: Size | None) -> str:
+    """The model of an entity of the same class of which this is asserted, of this size."""
+    class_ = classes.iris.get(known.class_)
+    usual = known.model if class_ is None else classes.models[class_]
+    return stated_model(said) or chosen(usual, known.name, size_m)
+
+
+def stated_model(said: Objects) -> str:
+    """The model that an entity is stated to have, or ""."""
+    terms = said.get(v.MODEL, ())
+    return _said(min(terms)) if terms else ""
 
 
 def moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
@@ -177,6 +200,7 @@ def read_again(reasoner: Reasoner, classes: ClassTable, known: Entity) -> Entity
         shape_provenance=known.shape_provenance,
         reference_provenance=known.reference_provenance,
         joint_provenance=entity.joint_provenance and known.joint_provenance,
+        switch_provenance=entity.switch_provenance and (known.switch_provenance or entity.switch_provenance),
         grip_provenance=known.grip_provenance or entity.grip_provenance,
     )
 
@@ -204,6 +228,9 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
     same_joints = not (entity.joint_provenance or known.joint_provenance) or all(
         entity.properties.get(name) == known.properties.get(name) for name in OPENING
     )
+    same_switches = not (entity.switch_provenance or known.switch_provenance) or all(
+        entity.properties.get(name) == known.properties.get(name) for name in SWITCHING
+    )
     same_grip = not (entity.grip_provenance or known.grip_provenance) or all(
         entity.properties.get(name) == known.properties.get(name) for name in GRASPING
     )
@@ -214,6 +241,7 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
         shape_provenance=known.shape_provenance if same_shape else said,
         reference_provenance=known.reference_provenance if same_references else said,
         joint_provenance=known.joint_provenance if same_joints else said,
+        switch_provenance=known.switch_provenance if same_switches else said,
         grip_provenance=known.grip_provenance if same_grip else said,
     )
 

@@ -22,7 +22,7 @@ _EXTENT: Final = frozenset((v.HAS_EXTENT,))
 Places = tuple[int, ...]
 """Which of a run's other objects."""
 
-_OF_FEW = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM)
+_OF_FEW = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM, v.MODEL)
 
 
 class _Text(NamedTuple):
@@ -175,7 +175,7 @@ class _Said:
 
     @property
     def is_out_of_the_ordinary(self) -> bool:
-        """Whether it says what few entities do: that perception is against it, or that it is tracked."""
+        """Whether it says what few entities do: perception against it, tracking, a model."""
         return any((0, p) in by for p in _OF_FEW for by in (self._nodes, self._places))
 
     def speaks(self, words: Set[Term]) -> bool:

@@ -1,8 +1,8 @@
-"""What a map states of how far open a thing is, kept consistent with itself.
+"""What a map states of how far open a thing is, and whether it is on, kept consistent with itself.
 
 There are three properties, each more exact than the one before: whether it is open, how far, and where each
-joint stands. Who states one of them takes back what is more exact and was stated earlier; what is less exact
-follows.
+joint stands; and two of switches, whether it is on, and where each of them stands. Who states one of them
+takes back what is more exact and was stated earlier; what is less exact follows.
 """
 
 from __future__ import annotations
@@ -15,7 +15,10 @@ from ontology import vocabulary as v
 from schemas.explanations import Term
 from schemas.joints import OPEN_FROM
 
-_FROM_ROUGH_TO_EXACT: Final = (v.IS_OPEN, v.OPENNESS, v.JOINT_POSITIONS)
+_FROM_ROUGH_TO_EXACT: Final = (
+    (v.IS_OPEN, v.OPENNESS, v.JOINT_POSITIONS),
+    (v.IS_SWITCHED_ON, v.SWITCH_POSITIONS),
+)
 
 
 def implied(
@@ -25,13 +28,12 @@ def implied(
 
     `before` is what was stated until now.
     """
-    new = [p for p in _FROM_ROUGH_TO_EXACT if p in stated and list(stated[p]) != list(before.get(p, ()))]
-    if not new:
-        return {}
-    rank = _FROM_ROUGH_TO_EXACT.index
-    most_exact = max(map(rank, new))
-    outdated = (p for p in _FROM_ROUGH_TO_EXACT[most_exact + 1 :] if before.get(p) and p not in stated)
-    found: dict[Term, list[Term]] = {p: [] for p in outdated}
+    new = {p for p in stated if list(stated[p]) != list(before.get(p, ()))}
+    found: dict[Term, list[Term]] = {}
+    for properties in _FROM_ROUGH_TO_EXACT:
+        most_exact = max((rank for rank, p in enumerate(properties) if p in new), default=len(properties))
+        outdated = (p for p in properties[most_exact + 1 :] if before.get(p) and p not in stated)
+        found.update({p: [] for p in outdated})
     if v.OPENNESS in new and v.IS_OPEN not in stated and len(stated[v.OPENNESS]) == 1:
         share = plain(stated[v.OPENNESS][0])
         if isinstance(share, (int, float)):

@@ -12,6 +12,7 @@ from nodes.kb_node.entities.property_names import PropertyNames
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.sparql.queries.text import query_prefixes
 from ontology import vocabulary as v
+from ontology.model_choice import require_model
 from schemas import errors
 from schemas.entities import PropertyInfo
 from schemas.explanations import Term
@@ -28,6 +29,7 @@ STRUCTURAL: Mapping[Term, str] = {
 }
 """What makes up an entity's star has options of its own."""
 _TYPE = frozenset(("type", "class"))
+_TEXT = frozenset((v.XSD_STRING,))
 _OF_A_STAR = frozenset((v.LEXICAL_REFERENCE, *v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ))
 
 
@@ -42,7 +44,10 @@ class Property(NamedTuple):
 
 
 class PropertyTable:
-    """The data and object properties of a TBox, by IRI, local name and label; and its individuals."""
+    """The data and object properties of a TBox, by IRI, local name and label; and its individuals.
+
+    With them is the annotation `dm:model`, which a class has, and an entity may have.
+    """
 
     def __init__(
         self,
@@ -66,6 +71,8 @@ class PropertyTable:
             for p, _, _ in reasoner.asserted(None, v.RDF_TYPE, kind)
             if p.startswith("<") and p not in _OF_A_STAR
         }
+        if v.MODEL in names.names:
+            declared[v.MODEL] = True
         self.by_iri: dict[Term, Property] = {}
         for p, is_data in sorted(declared.items()):
             if p in STRUCTURAL or p in edges:
@@ -75,8 +82,10 @@ class PropertyTable:
                 iri=p,
                 name=names.names[p],
                 is_data=is_data,
-                functional=any(self._is(q, v.OWL_FUNCTIONAL_PROPERTY) for q in above),
-                ranges=frozenset(o for q in above for _, _, o in reasoner.asserted(q, v.RDFS_RANGE, None)),
+                functional=p == v.MODEL or any(self._is(q, v.OWL_FUNCTIONAL_PROPERTY) for q in above),
+                ranges=_TEXT
+                if p == v.MODEL
+                else frozenset(o for q in above for _, _, o in reasoner.asserted(q, v.RDFS_RANGE, None)),
             )
 
     def stated(self, said: Mapping[Term, Iterable[Term]]) -> dict[str, property_values.Stated]:
@@ -109,8 +118,11 @@ class PropertyTable:
     ) -> Term:
         """The value that `text` denotes for a property; `named` finds the map's individuals, among `names`.
 
-        Raises BadRequest for a literal outside the range, UnknownName for an individual that does not exist.
+        Raises BadRequest for a literal outside the range and for a model that there is not, UnknownName for
+        an individual that does not exist.
         """
+        if prop.iri == v.MODEL:
+            require_model(text)
         if prop.is_data:
             return property_values.literal(prop.name, prop.ranges, text)
         term = self._term(text)

@@ -7,7 +7,7 @@ holds digests of rules, layouts and examples beside it.
 
 from __future__ import annotations
 
-FORMAT = 5
+FORMAT = 6
 
 
 def mark() -> bytes:

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from schemas.perception import MaskImage, MaskRun
 
-_MOST_PIXELS = 50_000_000
+_MOST = 65_535
+"""Things in one picture."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,8 @@ def of_numbers(
     if numbers.ndim != 2 or numbers.min(initial=0) < 0:
         raise ValueError("a label image has one number a pixel: 0 for none, n for the n-th thing")
     count = int(numbers.max(initial=0))
+    if count > _MOST:
+        raise ValueError(f"the label image has a thing number {count}; there may be {_MOST}")
     if names and count > len(names):
         raise ValueError(f"the label image has a thing number {count}, but only {len(names)} names")
     if scores and len(scores) != len(names):
@@ -83,14 +86,15 @@ def _decoded(mask: MaskRun, height: int, width: int) -> NDArray[np.bool_]:
     if tuple(mask.size) != (height, width):
         rows, columns = mask.size
         raise ValueError(f"a mask is of {columns} x {rows} pixels, the picture of {width} x {height}")
-    counts = _counts(mask.counts) if isinstance(mask.counts, str) else np.asarray(mask.counts, np.int64)
+    told = _counts(mask.counts) if isinstance(mask.counts, str) else mask.counts
+    counts = np.array([run if 0 <= run <= height * width else -1 for run in told], np.int64)
     if (counts < 0).any() or counts.sum() != height * width:
-        raise ValueError(f"the runs of a mask add up to {counts.sum()} pixels, not to {height * width}")
+        raise ValueError(f"the runs of a mask add up to {sum(told)} pixels, not to {height * width}")
     own = np.arange(len(counts)) % 2 == 1
     return np.asarray(np.repeat(own, counts).reshape(width, height).T)
 
 
-def _counts(text: str) -> NDArray[np.int64]:
+def _counts(text: str) -> list[int]:
     """The runs in COCO's compressed text: six bits a character, the lowest first, runs as differences."""
     found: list[int] = []
     at = 0
@@ -110,4 +114,4 @@ def _counts(text: str) -> NDArray[np.int64]:
             if not more and code & 0x10:
                 value |= -1 << shift
         found.append(value + (found[-2] if len(found) > 2 else 0))
-    return np.array(found, np.int64)
+    return found

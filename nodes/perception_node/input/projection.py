@@ -11,6 +11,8 @@ from nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Cloud, Tran
 
 MOST_PIXELS = 640 * 480 * 3 // 2
 """Of a picture with more, every second, third ... row and column is used."""
+_OFF_MIDDLE = 0.2
+"""Of a picture's width and height; twice or half as large a picture's middle is a half or a quarter off."""
 _FOCAL = (0.1, 20.0)
 """A focal length is this many times as long as its picture is wide and high: a view of 3 to 157 degrees."""
 
@@ -18,14 +20,14 @@ _FOCAL = (0.1, 20.0)
 def fits(intrinsics: Transform, width: int, height: int) -> bool:
     """Whether intrinsics (3, 3) may be those of a picture of this size, and not of one twice as large.
 
-    They are of a pinhole without skew, and its optical axis meets the middle half of the picture.
+    They are of a pinhole without skew, and its optical axis meets the middle of the picture, or nearly so.
     """
     focal, middle, size = intrinsics[[0, 1], [0, 1]], intrinsics[:2, 2], np.array([width, height])
     return bool(
         np.isfinite(intrinsics).all()
         and (_FOCAL[0] * size < focal).all()
         and (focal < _FOCAL[1] * size).all()
-        and (np.abs(middle - size / 2.0) <= size / 4.0).all()
+        and (np.abs(middle - size / 2.0) <= _OFF_MIDDLE * size).all()
         and intrinsics[0, 1] == 0.0 == intrinsics[1, 0]
         and (intrinsics[2] == [0, 0, 1]).all()
     )

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.distance import cdist
 
 from nodes.perception_node.views.boxes import Numbers
 
@@ -39,7 +40,7 @@ def signs(novelty: Novelty, features: Sequence[Numbers], votes: Numbers, pooled:
     rows = np.arange(len(best))
     doubt = -(np.exp(pooled) * pooled).sum(axis=1)
     place = (np.concatenate(features, axis=1) - novelty.mean) @ novelty.axes
-    apart = np.linalg.norm(place[:, None] - novelty.centres, axis=2)
+    apart = cdist(place, novelty.centres)
     agreed = np.maximum(votes[:, rows, best], -10.0)
     return np.column_stack(
         [pooled[rows, best], doubt, *agreed, np.log(apart.min(axis=1)), np.log(apart[rows, best])]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,7 +59,7 @@ def _observation(
         return None
     chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
     class_, probability = answer(chances, learnt.ancestors, learnt.sure)
-    if told is not None and told[1] > probability:
+    if told is not None and told[1] > (learnt.sure if class_ == UNKNOWN else probability):
         class_, probability = told
     likely = sorted(chances, key=chances.__getitem__, reverse=True)[:_CANDIDATES]
     box = completed(thing, side_features(thing, expected_m), learnt.sides)
@@ -67,14 +67,32 @@ def _observation(
     x, y, z = box.bottom_m.tolist()
     a, b, c = box.size_m.tolist()
     return Observation(
-        class_=class_,
+        class_=learnt.class_of(class_),
         probability=probability,
-        candidates={leaf: chances[leaf] for leaf in likely if chances[leaf] > _WORTH_SAYING},
+        candidates=_candidates(chances, likely, learnt),
         pose=Pose(position_m=(x, y, z), orientation_wxyz=orientation_from_yaw(box.yaw_rad)),
         size_m=(a, b, c),
         points=thing.count,
         whole=thing.whole,
+        shown=_as_shown(chances, class_, learnt),
     )
+
+
+def _as_shown(chances: Mapping[str, float], class_: str, learnt: Learnt) -> bool:
+    """Whether what people have shown says a class (or leaf) at least as loudly as the votes do."""
+    lessons = set() if learnt.shown is None else {lesson.leaf for lesson in learnt.shown.lessons}
+    of_it = {leaf for leaf in chances if class_ in (leaf, *learnt.ancestors.get(leaf, ()))}
+    shown = sum(chances[leaf] for leaf in of_it & lessons)
+    return shown > 0.0 and shown >= sum(chances[leaf] for leaf in of_it - lessons)
+
+
+def _candidates(chances: Mapping[str, float], likely: Sequence[str], learnt: Learnt) -> dict[str, float]:
+    """The likely leaves by their classes: what was shown of a class counts for it."""
+    found: dict[str, float] = {}
+    for leaf in likely:
+        if chances[leaf] > _WORTH_SAYING:
+            found[learnt.class_of(leaf)] = min(1.0, found.get(learnt.class_of(leaf), 0.0) + chances[leaf])
+    return found
 
 
 def _turned(box: Box, sideways: bool) -> Box:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,9 @@ from nodes.perception_node.views.boxes import Numbers
 from schemas.entities import Size
 from schemas.errors import BadFile
 
+if TYPE_CHECKING:
+    from nodes.perception_node.recognition.lessons import Shown
+
 SHIPPED = Path(__file__).with_name("recognition.npz")
 
 UNKNOWN = "Object"
@@ -26,8 +30,10 @@ UNKNOWN = "Object"
 CLUTTER = ""
 """The leaf for what is no thing: a table's edge, a leg, a piece of something."""
 
-VOTERS = ("geometry", "shape", "colour", "all", "all_again")
-"""Who votes, in the order of the weights: one by each sort of features, and two by all of them."""
+VOTERS = ("geometry", "shape", "colour", "all", "all_again", "all_anew")
+"""Who votes, in the order of the weights: one by each sort of features, and the others by all of them.
+
+A file of fewer has those that come first."""
 
 _JOINING = ("feature", "threshold", "keeps", "first", "value")
 _NOVELTY = ("mean", "axes", "centres", "weights")
@@ -43,6 +49,7 @@ class Learnt:
     features. `weights`: (voters,) how much each one's vote counts. `joining`: whether two
     things are pieces of one, from `joining.signs`. `sides`: see `sides.completed`.
     `sure`: the probability from which on a class is said. `story`: what all this was learnt from.
+    `shown`: what people have shown since, whose leaves come last.
     """
 
     classes: tuple[str, ...]
@@ -56,10 +63,21 @@ class Learnt:
     sides: Perceptron
     sure: float
     story: str
+    shown: Shown | None = None
+
+    def class_of(self, leaf: str) -> str:
+        """The class of a leaf: a lesson's has another name."""
+        lessons = () if self.shown is None else self.shown.lessons
+        return next((lesson.class_ for lesson in lessons if lesson.leaf == leaf), leaf)
 
     @property
     def usual_m(self) -> dict[str, Size]:
         """What things of each class measure along their own axes [m]."""
+        of_leaf = self._usual_m
+        return {self.class_of(leaf): of_leaf[leaf] for leaf in reversed(of_leaf)}
+
+    @property
+    def _usual_m(self) -> dict[str, Size]:
         return {
             name: (short, long, height) if sideways else (long, short, height)
             for name, (long, short, height), sideways in zip(
@@ -78,7 +96,8 @@ def save(learnt: Learnt, path: Path) -> None:
         **{f"joining.{name}": getattr(learnt.joining, name) for name in _JOINING},
         **{f"novelty.{name}": getattr(learnt.novelty, name).astype(np.float32) for name in _NOVELTY},
     }
-    for name, perceptron in zip((*VOTERS, "sides"), (*learnt.voters, learnt.sides), strict=True):
+    voters = VOTERS[: len(learnt.voters)]
+    for name, perceptron in zip((*voters, "sides"), (*learnt.voters, learnt.sides), strict=True):
         arrays |= {f"{name}.mean": perceptron.mean.astype(np.float32)}
         arrays |= {f"{name}.scale": perceptron.scale.astype(np.float32)}
         for layer, (weight, bias) in enumerate(zip(perceptron.weights, perceptron.biases, strict=True)):
@@ -104,7 +123,7 @@ def load(path: Path = SHIPPED) -> Learnt:
                 ancestors={name: tuple(above) for name, above in text["ancestors"].items()},
                 sizes_m=arrays["sizes_m"],
                 sideways=arrays["sideways"],
-                voters=tuple(_perceptron(arrays, name) for name in VOTERS),
+                voters=tuple(_perceptron(arrays, name) for name in VOTERS if f"{name}.mean" in arrays),
                 weights=arrays["weights"],
                 novelty=Novelty(*(arrays[f"novelty.{name}"].astype(float) for name in _NOVELTY)),
                 joining=Trees(

@@ -22,7 +22,7 @@ _WORTH = 0.1
 
 def stand_alone(things: Sequence[Thing]) -> NDArray[np.bool_]:
     """(N,) whether each is compact, seen whole, upon its support, and beside nothing else."""
-    alone = np.array([_is_compact(thing) for thing in things], dtype=bool)
+    alone = np.array([is_compact(thing) for thing in things], dtype=bool)
     for a, b in near(things):
         for one, other in ((a, b), (b, a)):
             if things[other].count > _WORTH * things[one].count:
@@ -30,7 +30,8 @@ def stand_alone(things: Sequence[Thing]) -> NDArray[np.bool_]:
     return alone
 
 
-def _is_compact(thing: Thing) -> bool:
+def is_compact(thing: Thing) -> bool:
+    """Of the size of what stands on tables, seen whole, and upon its support."""
     x, y, z = thing.box.size_m.tolist()
     return (
         not thing.carrier

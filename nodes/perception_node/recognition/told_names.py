@@ -28,6 +28,10 @@ class Labels:
         """The class, or None for a label that nobody knows."""
         return self._classes.get(_plain(label)) or self._known.get(_plain(label))
 
+    def is_learnt(self, class_: str) -> bool:
+        """Whether our own votes know a class of exactly this name, or leaves of it."""
+        return class_ in self._known.values()
+
     def unknown(self, masks: Iterable[Masks | None]) -> tuple[str, ...]:
         """Labels of these masks that nobody knows, sorted."""
         labels = {said.label for found in masks if found is not None for said in found.said if said}

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
+from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS, Learnt
 from nodes.perception_node.views.boxes import Numbers
 
 _CLEAR = 2.0 / 3.0
@@ -22,15 +22,15 @@ def vote(voters: Sequence[Perceptron], weights: Numbers, features: Sequence[Numb
     return np.exp(pool(ballots(voters, features), weights))
 
 
-def shown_to_voters(features: Sequence[Numbers]) -> list[Numbers]:
-    """What each voter looks at: one sort of features; the last two at all of them."""
+def shown_to_voters(features: Sequence[Numbers], voters: int = len(VOTERS)) -> list[Numbers]:
+    """What each of `VOTERS` looks at: one sort of features; the last ones at all of them."""
     everything = np.concatenate(features, axis=1)
-    return [*features, everything, everything]
+    return [*features, *[everything] * (voters - len(features))]
 
 
 def ballots(voters: Sequence[Perceptron], features: Sequence[Numbers]) -> Numbers:
     """(voters, N, K) logarithms of the probabilities that each voter gives."""
-    shown = shown_to_voters(features)
+    shown = shown_to_voters(features, len(voters))
     return np.array([log_softmax(voter(seen)) for voter, seen in zip(voters, shown, strict=True)])
 
 
@@ -40,16 +40,19 @@ def pool(votes: Numbers, weights: Numbers) -> Numbers:
 
 
 def leaves(learnt: Learnt, features: Sequence[Numbers]) -> Numbers:
-    """(N, K) probabilities of the leaves, in which what is like nothing known counts as `UNKNOWN`."""
+    """(N, K) probabilities of the leaves, in which what is like nothing known counts as `UNKNOWN`.
+
+    What people have shown is a leaf each, and is told apart from the votes.
+    """
     votes = ballots(learnt.voters, features)
     pooled = pool(votes, learnt.weights)
     new = learnt.novelty(features, votes, pooled)
     probabilities = np.exp(pooled)
-    nameable = np.array([name not in (UNKNOWN, CLUTTER) for name in learnt.classes])
+    nameable = np.array([name not in (UNKNOWN, CLUTTER) for name in learnt.classes[: pooled.shape[1]]])
     moved = np.where(nameable, probabilities * new[:, None], 0.0)
     probabilities -= moved
     probabilities[:, learnt.classes.index(UNKNOWN)] += moved.sum(axis=1)
-    return probabilities
+    return probabilities if learnt.shown is None else learnt.shown.mixed(features, probabilities)
 
 
 def expected_sizes(probabilities: Numbers, sizes_m: Numbers) -> Numbers:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from nodes.perception_node.input.cloud import Transform
+from nodes.perception_node.segmentation.plane_pieces import pieces_of
 from nodes.perception_node.segmentation.working_picture import Floats, Labels, Mask
 
 Kind = Literal["floor", "wall", "support", "plane"]
@@ -94,12 +95,16 @@ def find_planes(
         kind = _kind(normal, offset, map_from_camera, first=not planes)
         if kind is None:
             continue
-        piece = on if kind == "floor" else _largest_piece(on)  # of a floor, things leave islands
-        sides = _sides(_some(points, piece, count), normal)
-        if planes and sides[1] < (_LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M):
-            continue
-        planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
-        of_plane[on] = len(planes)
+        height = _height(points, normal, offset)
+        level = kind == "support" and map_from_camera is not None
+        for piece in pieces_of(on, points, height, thickness, least) if level else [on]:
+            count = int(piece.sum())
+            solid = piece if kind == "floor" else _largest_piece(piece)  # of a floor, things leave islands
+            sides = _sides(_some(points, solid, count), normal)
+            if planes and sides[1] < (_LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M):
+                continue
+            planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
+            of_plane[piece] = len(planes)
     if map_from_camera is None:
         return tuple(planes), of_plane
     tops = _tops_of_things(planes, of_plane, points, map_from_camera)

@@ -15,6 +15,7 @@ from nodes.perception_node.segmentation.picture import as_picture
 from nodes.perception_node.segmentation.planes import Plane, find_planes
 from nodes.perception_node.segmentation.shipped_trees import shipped
 from nodes.perception_node.segmentation.statistics import Statistics, Upright, statistics
+from nodes.perception_node.segmentation.thin_things import thin_things
 from nodes.perception_node.segmentation.working_picture import Floats, Grid, Labels, Mask, grid_of, spread
 
 LOWEST_M, HIGHEST_M = 0.009, 0.5
@@ -74,12 +75,15 @@ def taken_apart(cloud: Cloud) -> Parts:
     grid = grid_of(cloud)
     rng = np.random.default_rng(0)  # the same cloud, the same answer
     planes, of_plane = find_planes(grid.points, cloud.map_from_camera, rng)
+    thin = thin_things(grid.points, planes, of_plane)
+    of_plane[thin > 0] = 0
     where = _candidates(grid.points, planes, of_plane, known=cloud.map_from_camera is not None)
     window = _window(where)
     points = grid.points[:, *window]
     surface = normals(points, where[window])
     of_patch = np.zeros_like(of_plane)
-    of_patch[window] = patches(points, surface, where[window])
+    thick = patches(points, surface, where[window] & (thin[window] == 0))
+    of_patch[window] = np.where(thin[window] > 0, thin[window] + thick.max(), thick)
     shades = grid.shades(of_patch > 0)[:, *window]
     known = statistics(of_patch[window], points, surface, shades, _upright(planes))
     return Parts(grid, planes, of_plane, of_patch, known)

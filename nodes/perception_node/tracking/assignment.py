@@ -15,11 +15,13 @@ from nodes.perception_node.tracking.costs import (
     Target,
     cost_anywhere,
     cost_in_place,
+    cost_of_height,
     size_difference,
 )
 from nodes.perception_node.tracking.occupancy import Occupancy, OccupancyOf
 from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, share
 from nodes.perception_node.tracking.tracks import Track
+from schemas.entities import distance_m
 from schemas.perception import Observation
 
 A = TypeVar("A")
@@ -32,6 +34,8 @@ _COVERED = 0.6
 _FILLED = 0.2
 """Its parts fill this share of a segment's box: that of a table holds what lies on it, but not much of it."""
 _LIKE = 0.15
+_LARGE_M = 0.4
+"""What is larger is not carried about."""
 
 
 class Candidate(NamedTuple):
@@ -85,6 +89,10 @@ def match(
         for name, c in known.items()
         if name not in seen
     }
+    odd = {name: known[name] for name in occupancy if known[name].track.is_nearly_odd(config)}
+    corrected = pairs(odd, rest, lambda name, j: cost_of_height(odd[name].target, observations[j], classes))
+    seen, rest = seen | corrected, rest.difference(corrected.values())
+    occupancy = {name: found for name, found in occupancy.items() if name not in corrected}
     parts = {
         name: {j for j in rest if _may_be_of(c.target, observations[j])}
         for name, c in known.items()
@@ -109,9 +117,10 @@ def match(
 
     def elsewhere(name: str, j: int) -> float:
         was_there_before = looks.get(j, 0) > known[name].track.absent
-        if was_there_before or not known[name].target.whole:
+        target = known[name].target
+        if was_there_before or not target.whole or _is_too_far(target, observations[j], config):
             return FORBIDDEN
-        return cost_anywhere(known[name].target, observations[j], classes)
+        return cost_anywhere(target, observations[j], classes)
 
     found = pairs(vanished, rest - relatives, elsewhere)
     again = pairs(others, left.difference(found.values()), in_place(others))
@@ -156,6 +165,11 @@ def _is_of_several(seen: Observation, known: Iterable[Candidate]) -> bool:
         and volume_m3 > _FILLED * whole.volume_m3
         and all(size_difference(target, seen) > _LIKE for target, _ in covered)
     )
+
+
+def _is_too_far(target: Target, seen: Observation, config: TrackingConfig) -> bool:
+    """Whether something large would have been pushed further than it is."""
+    return max(seen.size_m) > _LARGE_M and distance_m(target.pose, seen.pose) > config.pushed_m
 
 
 def _shows_a_part(target: Target, seen: Observation, classes: ClassHierarchy) -> bool:

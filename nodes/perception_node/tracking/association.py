@@ -21,9 +21,17 @@ from nodes.perception_node.tracking.assignment import Candidate, Matching, match
 from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
 from nodes.perception_node.tracking.costs import Target
 from nodes.perception_node.tracking.legs import is_leg
-from nodes.perception_node.tracking.map_updates import additions, has_moved, is_sure, update_of, with_load
+from nodes.perception_node.tracking.map_updates import (
+    additions,
+    has_moved,
+    is_own,
+    is_sure,
+    removal_of_leg,
+    update_of,
+    with_load,
+)
 from nodes.perception_node.tracking.occupancy import OccupancyOf
-from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, share
+from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, left_behind, share
 from nodes.perception_node.tracking.tracks import Track, Tracks, slack_m
 from nodes.perception_node.tracking.votes import Votes
 from schemas.commands import Add, Command
@@ -74,13 +82,27 @@ def associate(
         for name in candidates
         if name in matching.known or matching.occupancy[name] == "occupied"
     ]
+    boxes = {
+        name: OrientedBox(target.pose, target.size_m)
+        for name, (_, target) in candidates.items()
+        if target.size_m is not None
+    }
+    legs = {
+        name: of
+        for name, box in boxes.items()
+        if is_own(entities[name]) and (of := _leg_of(box, boxes)) is not None
+    }
     told = [
-        with_load(update_of(entities[name], track, classes, config), entities[name], stays)
+        removal_of_leg(name, legs[name])
+        if name in legs
+        else with_load(update_of(entities[name], track, classes, config), entities[name], stays)
         for name, track in known.items()
     ]
-    targets = [candidate.target for candidate in candidates.values()]
-    boxes = [OrientedBox(target.pose, target.size_m) for target in targets if target.size_m is not None]
-    sure = (track for track in tentative if is_sure(track, classes, config) and not _is_leg(track, boxes))
+    sure = (
+        track
+        for track in tentative
+        if is_sure(track, classes, config) and _leg_of(OrientedBox(track.pose, track.size_m), boxes) is None
+    )
     proposed = _apart_from_one_another(sure)
     added = additions(proposed, {*tracks.names, *entities}, classes)
     names = {j: name for name, j in matching.known.items()}
@@ -121,7 +143,7 @@ def _candidate(
         track = Track(entity.pose, entity.size_m or usual_m or _ANY_SIZE_M, votes, told=entity.pose)
     elsewhere = distance_m(track.pose, entity.pose) > slack_m(track.size_m, config.still_m)
     if track.told != entity.pose and elsewhere:
-        track = replace(track, pose=entity.pose, looks=0, unseen=0, odd=0)
+        track = replace(track, pose=entity.pose, looks=0, unseen=0, odd=0, fit=None)
     if track.part and track.whole and track.told != entity.pose:
         track = replace(track, part=False)  # the map has been told of the whole
     track = replace(track, told=entity.pose, left=track.left and track.told == entity.pose)
@@ -146,6 +168,8 @@ def _after(
 ) -> Track:
     """What is remembered of an entity after this look."""
     if name in matching.known:
+        if track.is_nearly_odd(config):
+            track = replace(track, sized=0, whole=False)  # what was believed of its size does not count
         return track.see(observations[matching.known[name]], config)
     return track.miss(matching.occupancy[name], odd=name in matching.odd)
 
@@ -153,9 +177,12 @@ def _after(
 def _watched(track: Track, entity: Entity, occupancy_of: OccupancyOf, config: TrackingConfig) -> Track:
     """With a look at the place that the map has of it: is that left, or does it only seem so?"""
     if entity.pose is None or track.unseen or not has_moved(entity, track, config):
-        return replace(track, left=False)
+        return replace(track, left=False, kept=False)
     before, now = OrientedBox(entity.pose, track.size_m), OrientedBox(track.pose, track.size_m)
-    return replace(track, left=track.left or share(now, before) == 0.0 or occupancy_of(*before) == "free")
+    left = track.left or share(now, before) == 0.0 or occupancy_of(*before) == "free"
+    whole = OrientedBox(entity.pose, entity.size_m or track.size_m)
+    kept = not left and any(occupancy_of(*slab) == "occupied" for slab in left_behind(whole, now))
+    return replace(track, left=left, kept=kept)
 
 
 def _tentative(
@@ -175,9 +202,9 @@ def _tentative(
     ]
 
 
-def _is_leg(track: Track, things: Iterable[OrientedBox]) -> bool:
-    piece = OrientedBox(track.pose, track.size_m)
-    return any(is_leg(piece, thing) for thing in things)
+def _leg_of(piece: OrientedBox, things: Mapping[str, OrientedBox]) -> str | None:
+    """The name of that of some things that a piece is a leg of."""
+    return next((name for name, thing in things.items() if is_leg(piece, thing)), None)
 
 
 def _apart_from_one_another(tracks: Iterable[Track]) -> list[Track]:

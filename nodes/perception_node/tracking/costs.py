@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
+from nodes.perception_node.tracking.fronts import is_front
 from nodes.perception_node.tracking.overlap import OrientedBox
 from schemas.entities import Pose, Size
 from schemas.perception import Observation
@@ -20,6 +21,8 @@ _VAGUE = 0.1
 """How unlike what is like nothing known is what has a class."""
 _BLUR_M = 0.01
 """What an extent may be off by, however small it is."""
+_SAME_SPOT, _AS_WIDE = 0.25, 0.2
+"""Of a thing's width so far aside, and so unlike in width (log), it still stands where it stood."""
 _HIDDEN_PART = 0.3
 """How much it counts that an extent is smaller of what is seen in part."""
 
@@ -51,9 +54,16 @@ def cost_in_place(target: Target, seen: Observation, classes: ClassHierarchy) ->
     if aside > reach or above > (size_m[2] + seen.size_m[2]) / 4.0 + _NEARBY_M:
         return FORBIDDEN
     unlike, alien = size_difference(target, seen), class_difference(target.class_, seen, classes)
+    if unlike > _SAME and target.size_m and _is_one_but_for_its_depth(target, seen):
+        unlike, reach = _SAME_OF_ANOTHER_CLASS, max(reach, 1.5 * aside)
     if unlike > (_SAME_OF_ANOTHER_CLASS if alien > 0.5 else _SAME):
         return FORBIDDEN
     return aside / reach + unlike + alien
+
+
+def _is_one_but_for_its_depth(target: Target, seen: Observation) -> bool:
+    before, now = target.box, OrientedBox(seen.pose, seen.size_m)
+    return before is not None and (is_front(before, now) or is_front(now, before))
 
 
 def cost_anywhere(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
@@ -73,6 +83,20 @@ def cost_anywhere(target: Target, seen: Observation, classes: ClassHierarchy) ->
     vaguely = vague and target.class_ != seen.class_
     alien = _VAGUE if vaguely else class_difference(target.class_, seen, classes)
     return unlike + alien + 0.1 * math.hypot(aside, above)
+
+
+def cost_of_height(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
+    """How far aside something of its kind and as wide stands on the same spot: only its height is another.
+
+    FORBIDDEN where there is no such.
+    """
+    if target.size_m is None or not classes.related(target.class_, seen.class_):
+        return FORBIDDEN
+    (x, y, z), (u, v, w) = target.pose.position_m, seen.pose.position_m
+    wide, now = _upright(target.size_m)[:2], _upright(seen.size_m)[:2]
+    aside = math.hypot(u - x, v - y) / min(wide)
+    as_wide = all(abs(math.log(b / a)) < _AS_WIDE for a, b in zip(wide, now, strict=True))
+    return aside if as_wide and aside < _SAME_SPOT and abs(w - z) < _BLUR_M else FORBIDDEN
 
 
 def size_difference(target: Target, seen: Observation) -> float:

@@ -9,7 +9,9 @@ from typing import Any
 from msgspec import structs
 
 from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
+from nodes.perception_node.tracking.fronts import is_front
+from nodes.perception_node.tracking.overlap import OrientedBox
 from nodes.perception_node.tracking.tracks import Track, slack_m, turn_between
 from schemas.commands import Add, Command, Remove, Update
 from schemas.entities import Entity, Size, distance_m, free_name, rounded
@@ -71,20 +73,24 @@ def update_of(
     entity: Entity, track: Track, classes: ClassHierarchy, config: TrackingConfig
 ) -> Update | Remove | None:
     """What the map must be told of an entity, if anything; what it is only of perception's own."""
-    own = {entity.shape_provenance.source, entity.reference_provenance.source} == {"perception"}
+    own = is_own(entity)
     if track.is_gone(config):
         return _gone(entity, track, own, config)
     if not track.rests(config.rest_looks):
         return None
     changes: dict[str, Any] = {}
-    if has_moved(entity, track, config):
-        corrected = track.part and track.whole
-        if not track.left and not corrected and track.looks < config.nudge_looks:
+    moved = has_moved(entity, track, config)
+    if moved or _is_turned(entity, track):
+        corrected = (track.part and track.whole) or _was_front(entity, track)
+        enough = config.kept_looks if track.kept else config.nudge_looks
+        looks = track.borne_out if moved else track.looks
+        if not track.left and not corrected and looks < enough:
             return None
-        pose = rounded(track.pose)
+        pose = rounded(track.told_pose)
         changes |= {"at": pose.position_m, "orientation": pose.orientation_wxyz}
     class_name = _other_class(entity, track, classes, config)
     if own:
+        class_name = class_name or _vaguer_class(entity, track, classes, config)
         changes |= _described(entity, track, class_name, classes, config)
     conflict = "" if own else _conflict(entity, track, class_name, classes)
     if conflict != entity.conflict:
@@ -123,6 +129,16 @@ def _extent(entity: Entity) -> tuple[float, float]:
     return entity.size_m[:2] if entity.size_m is not None else (_LARGE_M, _LARGE_M)
 
 
+def is_own(entity: Entity) -> bool:
+    """Whether all that the map says of it is by perception."""
+    return {entity.shape_provenance.source, entity.reference_provenance.source} == {"perception"}
+
+
+def removal_of_leg(name: str, of: str) -> Remove:
+    """Of what was an entity before the furniture was seen that it is a leg of."""
+    return Remove(source="perception", agent=AGENT, reason=f"{name} is a leg of {of}", names=(name,))
+
+
 def _gone(entity: Entity, track: Track, own: bool, config: TrackingConfig) -> Update | Remove | None:
     if own and config.when_gone == "remove":
         looks = f"{track.odd or track.unseen} looks in a row"
@@ -146,6 +162,19 @@ def has_moved(entity: Entity, track: Track, config: TrackingConfig) -> bool:
     return distance_m(entity.pose, track.pose) > slack or turn_between(track, entity.pose) > config.turned_rad
 
 
+def _is_turned(entity: Entity, track: Track) -> bool:
+    """Whether the model of a thing tells another yaw than perception itself told the map."""
+    own = entity.pose_provenance is not None and entity.pose_provenance.source == "perception"
+    return own and track.fit is not None and entity.pose is not None and track.fit.turned_from(entity.pose)
+
+
+def _was_front(entity: Entity, track: Track) -> bool:
+    """Whether the map has but the front of it."""
+    if entity.pose is None or entity.size_m is None:
+        return False
+    return is_front(OrientedBox(entity.pose, entity.size_m), OrientedBox(track.pose, track.size_m))
+
+
 def _other_class(entity: Entity, track: Track, classes: ClassHierarchy, config: TrackingConfig) -> str:
     """The class that a thing turns out to be, if that is more special than the map's, or contradicts it."""
     believed = track.votes.belief(classes)
@@ -159,6 +188,19 @@ def _other_class(entity: Entity, track: Track, classes: ClassHierarchy, config: 
     return believed if contradicts else ""
 
 
+def _vaguer_class(entity: Entity, track: Track, classes: ClassHierarchy, config: TrackingConfig) -> str:
+    """The class above the map's that a thing turns out to be, by looks that no longer bear that out.
+
+    Only one that looks tell from those below it: what is like nothing known, or what perception learnt.
+    """
+    believed = track.votes.belief(classes)
+    tells = believed == ANYTHING or believed in classes.usual_m
+    if believed == entity.class_ or not tells or not classes.is_a(entity.class_, believed):
+        return ""
+    doubted = track.looks >= config.confirm_looks and track.votes.share(entity.class_, classes) < _UNSURE
+    return believed if doubted else ""
+
+
 def _described(
     entity: Entity, track: Track, class_name: str, classes: ClassHierarchy, config: TrackingConfig
 ) -> dict[str, Any]:
@@ -170,7 +212,7 @@ def _described(
             changes["ref"] = classes.label(class_name)
     if (
         track.whole
-        and (track.part or track.looks >= config.nudge_looks)
+        and (track.part or _was_front(entity, track) or track.looks >= config.nudge_looks)
         and _is_resized(entity, track, config)
     ):
         changes["size"] = _to_millimetres(track.size_m)

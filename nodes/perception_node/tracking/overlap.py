@@ -14,6 +14,7 @@ _GRID = np.stack(
 ).reshape(-1, 3)
 """Points of a unit cube around the origin."""
 _A_PART, _NO_PART = 0.3, 0.02
+_THIN_M = 0.1
 
 
 class OrientedBox(NamedTuple):
@@ -46,6 +47,35 @@ def are_of_one(one: OrientedBox, other: OrientedBox) -> bool:
     return (ratio > _NO_PART and share(one, other) > _A_PART) or (
         1.0 / ratio > _NO_PART and share(other, one) > _A_PART
     )
+
+
+def left_behind(before: OrientedBox, now: OrientedBox) -> list[OrientedBox]:
+    """What of one box is beyond the other, along its own axes: slabs that are not too thin to look into."""
+    turn = _turn(before.pose.yaw_rad)
+    half, now_half = np.array(before.size_m) / 2.0, np.array(now.size_m) / 2.0
+    middle = np.array(now.pose.position_m) - before.pose.position_m
+    middle[:2] = turn[:2, :2].T @ middle[:2]
+    middle[2] += now_half[2] - half[2]
+    reach = np.abs(turn.T @ _turn(now.pose.yaw_rad)) @ now_half
+    slabs = []
+    for axis in range(3):
+        for low, high in (
+            (-half[axis], middle[axis] - reach[axis]),
+            (middle[axis] + reach[axis], half[axis]),
+        ):
+            thick = min(high, half[axis]) - max(low, -half[axis])
+            if thick < _THIN_M:
+                continue
+            size, at = 2.0 * half, np.zeros(3)
+            size[axis], at[axis] = thick, (max(low, -half[axis]) + min(high, half[axis])) / 2.0
+            x, y, z = turn @ at + before.pose.position_m + [0.0, 0.0, half[2] - size[2] / 2.0]
+            w, d, h = size.tolist()
+            slabs.append(
+                OrientedBox(
+                    Pose(position_m=(x, y, z), orientation_wxyz=before.pose.orientation_wxyz), (w, d, h)
+                )
+            )
+    return slabs
 
 
 def _apart(one: OrientedBox, other: OrientedBox) -> bool:

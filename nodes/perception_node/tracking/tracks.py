@@ -7,6 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from nodes.perception_node.config import TrackingConfig
+from nodes.perception_node.tracking.class_hierarchy import ANYTHING
+from nodes.perception_node.tracking.fits import KnownFit
+from nodes.perception_node.tracking.fronts import is_front
 from nodes.perception_node.tracking.occupancy import Occupancy
 from nodes.perception_node.tracking.overlap import OrientedBox, share
 from nodes.perception_node.tracking.votes import Votes
@@ -15,44 +18,78 @@ from schemas.perception import Observation
 
 _RELATIVE = 0.05
 """The box of a big thing is known to this share of its size."""
-_A_PART = 0.5
+_A_PART = 0.3
+_POINTS, _LEAST_WEIGHT = 1000, 0.25
+"""A look of so many points is worth one vote."""
+_CUT = 0.5
 _MEMORY = 20
 """How many looks a mean goes back."""
 
 
 @dataclass(frozen=True)
 class Track:
-    """Observations tied to one thing: `pose` is their mean since it came to rest, `size_m` of `sized` looks.
+    """Observations tied to one thing: `pose` is their mean since it came to rest, `size_m` of their sizes.
 
-    `looks` is how often it was seen since it rests, `occupied` how often its place was so since then although
-    the thing was not told apart, `unseen` how often in a row it should have been seen since and was not,
-    `odd` how often in a row something of another size was in its place. `whole`: it was seen unhidden, uncut.
-    `absent`: looks since it or its place was last seen filled. `told` is the map's pose at the last look;
-    `left`: that place is seen empty; `part`: the map was told of what a picture's edge cuts.
+    `placed` and `sized`: what the looks are worth of which these are the means. `looks` is how often it was
+    seen since it rests, `borne_out` how often of these as a whole, `occupied` how often its place was so
+    since then although the thing was not told apart, `unseen` how often in a row it should have been seen
+    since and was not, `odd` how often in a row something of another size was in its place. `whole`: it was
+    seen unhidden, uncut. `absent`: looks since it or its place was last seen filled. `told` is the map's pose
+    at the last look; `left`: that place is seen empty; `kept`: what it would have left of it is filled;
+    `part`: the map was told of what a picture's edge cuts. `fit`: what its class's model told of it since it
+    came to rest; `unlike`: the class whose model it is not like at all.
     """
 
     pose: Pose
     size_m: Size
     votes: Votes = field(default_factory=Votes)
-    sized: int = 0
+    sized: float = 0.0
+    placed: float = 0.0
     looks: int = 0
+    borne_out: int = 0
     occupied: int = 0
     unseen: int = 0
     odd: int = 0
     whole: bool = False
     told: Pose | None = None
     left: bool = False
+    kept: bool = False
     absent: int = 0
     part: bool = False
+    fit: KnownFit | None = None
+    unlike: str = ""
+
+    @property
+    def told_pose(self) -> Pose:
+        """What the map is to be told: where it is, turned as its model, or else its box, is."""
+        if self.fit is None or self.fit.orientation_wxyz is None:
+            return self.pose
+        return Pose(position_m=self.pose.position_m, orientation_wxyz=self.fit.orientation_wxyz)
+
+    def fitted(self, fit: KnownFit, *, unlike: bool) -> Track:
+        """With what its model told; `unlike`: that it is of another class, whatever looks say."""
+        if not unlike:
+            return replace(self, fit=fit)
+        return replace(self, fit=fit, unlike=fit.class_, votes=self.votes.moved(fit.class_, ANYTHING))
 
     def is_gone(self, config: TrackingConfig) -> bool:
         """Whether it is sure that it is no longer where it was."""
         return self.unseen >= config.gone_looks or self.odd >= config.odd_looks
 
+    def is_nearly_odd(self, config: TrackingConfig) -> bool:
+        """Whether one look more makes sure that what is in its place is not of the size it had."""
+        return bool(self.sized) and self.odd + 1 >= config.odd_looks
+
     def see(self, seen: Observation, config: TrackingConfig) -> Track:
         """One more observation of it."""
-        votes = self.votes.cast(seen.class_, seen.probability)
-        if self.whole and not seen.whole and _is_part(seen, self, config.still_m):
+        worth = _weight(seen)
+        said = ANYTHING if seen.class_ == self.unlike else seen.class_
+        votes = self.votes.cast(said, seen.probability, worth)
+        before, now = OrientedBox(self.pose, self.size_m), OrientedBox(seen.pose, seen.size_m)
+        if self.whole and self.looks and is_front(before, now):
+            return self._all_of_it(seen, votes)
+        hidden = (not seen.whole and _is_part(seen, self, config.still_m)) or is_front(now, before)
+        if self.whole and hidden:
             return replace(
                 self, votes=votes, looks=self.looks + 1, unseen=0, odd=0, absent=0
             )  # a part, where it was
@@ -60,14 +97,17 @@ class Track:
         near = self.looks > 0 and distance_m(pose, self.pose) <= slack_m(self.size_m, config.still_m)
         still = near and turn_between(self, pose) <= config.turned_rad
         return replace(
-            self._sized(size_m, whole=seen.whole),
-            pose=self._mean(pose) if still else pose,
+            self._sized(size_m, worth, whole=seen.whole),
+            pose=_between_poses(self.pose, pose, worth / self._placed(worth)) if still else pose,
+            placed=self._placed(worth) if still else worth,
             votes=votes,
             looks=self.looks + 1 if still else 1,
+            borne_out=self.borne_out + 1 if still else 1,
             occupied=self.occupied if still else self.occupied + 1 if near else 0,
             unseen=0,
             odd=0,
             absent=0,
+            fit=self.fit if still else None,
         )
 
     def miss(self, occupancy: Occupancy, *, odd: bool) -> Track:
@@ -83,20 +123,24 @@ class Track:
         """Whether it was seen where it is, and is there since so many looks."""
         return self.looks > 0 and self.looks + self.occupied >= looks and not self.unseen and not self.odd
 
-    def _sized(self, size_m: Size, *, whole: bool) -> Track:
+    def _sized(self, size_m: Size, worth: float, *, whole: bool) -> Track:
         """With one more look at its size; one at the whole of it is worth more than any at a part."""
         if self.whole and not whole:
             return self
         if self.sized and self.whole == whole:
-            sized = min(self.sized + 1, _MEMORY)
-            return replace(self, size_m=_between(self.size_m, size_m, 1.0 / sized), sized=sized)
-        return replace(self, size_m=size_m, sized=1, whole=whole)
+            sized = min(self.sized, _MEMORY * worth) + worth
+            return replace(self, size_m=_between(self.size_m, size_m, worth / sized), sized=sized)
+        return replace(self, size_m=size_m, sized=worth, whole=whole)
 
-    def _mean(self, pose: Pose) -> Pose:
-        share = 1.0 / min(self.looks + 1, _MEMORY)
-        yaw = self.pose.yaw_rad + share * _wrapped(pose.yaw_rad - self.pose.yaw_rad)
-        position = _between(self.pose.position_m, pose.position_m, share)
-        return Pose(position_m=position, orientation_wxyz=orientation_from_yaw(yaw))
+    def _placed(self, worth: float) -> float:
+        """What the looks are worth that tell where it is, with one more; not too many of them."""
+        return min(self.placed, _MEMORY * worth) + worth
+
+    def _all_of_it(self, seen: Observation, votes: Votes) -> Track:
+        """When more is seen of it than its front."""
+        worth = _weight(seen)
+        again = Track(seen.pose, seen.size_m, votes, sized=worth, placed=worth, looks=1, borne_out=1)
+        return replace(again, whole=True, told=self.told, part=self.part, unlike=self.unlike)
 
 
 @dataclass(frozen=True)
@@ -114,6 +158,12 @@ class Tracks:
 def slack_m(size_m: Size, least_m: float) -> float:
     """How far a box of this size may seem to move without having moved [m]."""
     return max(least_m, _RELATIVE * max(size_m))
+
+
+def _between_poses(start: Pose, end: Pose, share: float) -> Pose:
+    yaw = start.yaw_rad + share * _wrapped(end.yaw_rad - start.yaw_rad)
+    position = _between(start.position_m, end.position_m, share)
+    return Pose(position_m=position, orientation_wxyz=orientation_from_yaw(yaw))
 
 
 def turned_like(pose: Pose, size_m: Size, track: Track) -> tuple[Pose, Size]:
@@ -140,10 +190,16 @@ def turn_between(track: Track, pose: Pose) -> float:
     return min(turn, math.pi - turn)
 
 
+def _weight(seen: Observation) -> float:
+    """What a look's vote is worth: from near more than from afar, in part less than as a whole."""
+    near = min(max(math.sqrt(seen.points / _POINTS), _LEAST_WEIGHT), 1.0 / _LEAST_WEIGHT)
+    return near if seen.whole else _CUT * near
+
+
 def _is_part(seen: Observation, track: Track, margin_m: float) -> bool:
-    """Whether what a picture's edge cuts is of a thing that stays where it is: most of it is within."""
-    box = OrientedBox(seen.pose, seen.size_m)
-    return _within(seen, track, margin_m) or share(box, OrientedBox(track.pose, track.size_m)) > _A_PART
+    """Whether what a picture's edge cuts is of a thing that stays where it is: much of either is in both."""
+    now, before = OrientedBox(seen.pose, seen.size_m), OrientedBox(track.pose, track.size_m)
+    return _within(seen, track, margin_m) or max(share(now, before), share(before, now)) > _A_PART
 
 
 def _within(seen: Observation, track: Track, margin_m: float) -> bool:

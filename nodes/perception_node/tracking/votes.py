@@ -26,11 +26,17 @@ class Votes:
         looks = 1.0 / (1.0 - _FORGET)
         return Votes({class_name: probability * looks}, looks)
 
-    def cast(self, class_name: str, probability: float) -> Votes:
-        """One more look."""
+    def cast(self, class_name: str, probability: float, worth: float = 1.0) -> Votes:
+        """One more look, that is worth so many."""
         weights = {name: weight * _FORGET for name, weight in self.weights.items()}
-        weights[class_name] = weights.get(class_name, 0.0) + probability
-        return Votes(weights, self.looks * _FORGET + 1.0)
+        weights[class_name] = weights.get(class_name, 0.0) + probability * worth
+        return Votes(weights, self.looks * _FORGET + worth)
+
+    def moved(self, class_name: str, to: str) -> Votes:
+        """The same, but what was said of one class is said of another."""
+        weights = dict(self.weights)
+        weights[to] = weights.get(to, 0.0) + weights.pop(class_name, 0.0)
+        return Votes(weights, self.looks)
 
     def share(self, class_name: str, classes: ClassHierarchy) -> float:
         """The mean probability that it is of this class."""

@@ -20,6 +20,10 @@ _BENEATH = 0.5
 _HANGING = 0.6
 """What reaches to less of a top's height stands under it."""
 
+_LYING_M = 0.004
+"""What lies on a top, however thin, is mostly so much above it."""
+_TOP_M = 0.05
+
 _HIGHEST = 0.99  # what is higher may be a few stray points
 _UNDER_M = 0.015
 _STANDING = 0.5
@@ -75,6 +79,8 @@ def with_what_hangs_below(groups: Sequence[Sequence[Segment]]) -> list[list[int]
     clouds = [np.concatenate([segment.points for segment in group]) for group in groups]
     highest = [float(np.quantile(points[:, 2], _HIGHEST)) for points in clouds]
     tops = [n for n, group in enumerate(groups) if any(segment.carrier for segment in group)]
+    middle = [float(np.median(points[:, 2])) for points in clouds]
+    levels = {n: _level(clouds[n][:, 2], highest[n]) for n in tops}
     joined = {n: [n] for n in range(len(groups))}
     for n, own in enumerate(highest):
         if n in tops:
@@ -82,10 +88,16 @@ def with_what_hangs_below(groups: Sequence[Sequence[Segment]]) -> list[list[int]
         for top in tops:
             high = highest[top]
             reaches = _HANGING * high < own < high + 0.5 * _NEAR_M
-            if reaches and _beneath(clouds[n], clouds[top]).mean() > _BENEATH:
+            lies_on = middle[n] > levels[top] + _LYING_M
+            if reaches and not lies_on and _beneath(clouds[n], clouds[top]).mean() > _BENEATH:
                 joined[top] += joined.pop(n)
                 break
     return list(joined.values())
+
+
+def _level(heights: Floats, highest: float) -> float:
+    """How high a top is, of which the highest points are noise."""
+    return float(np.median(heights[heights > highest - _TOP_M]))
 
 
 def _beneath(points: Floats, top: Floats) -> NDArray[np.bool_]:

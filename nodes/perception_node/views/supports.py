@@ -18,6 +18,8 @@ _MARGIN_M = 0.4
 """A support may go on for this much where it is hidden."""
 _BELOW = 0.5
 """A support is below a thing if it is below this share of the thing's outline, both taken as rectangles."""
+_STRAY = 0.01
+"""So many of its points may lie elsewhere, on either side."""
 _SMALLER = 0.7
 """Nothing stands on what is smaller than this share of its own outline."""
 
@@ -52,7 +54,7 @@ def support_of(points: Floats, where: NDArray[np.bool_]) -> Support:
     """That of some points of a view (h, w, 3), map frame, a level plane."""
     pieces, _ = ndimage.label(where)
     own, piece = points[where], pieces[where]
-    low, high = own[:, :2].min(axis=0).tolist(), own[:, :2].max(axis=0).tolist()
+    low, high = np.quantile(own[:, :2], [_STRAY, 1.0 - _STRAY], axis=0).tolist()
     largest = own[piece == np.bincount(piece).argmax()]
     area_m2 = float(np.ptp(largest[:, 0]) * np.ptp(largest[:, 1]))
     return Support(float(np.median(own[:, 2])), (low[0], low[1]), (high[0], high[1]), area_m2)

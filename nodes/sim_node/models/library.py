@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from nodes.sim_node.models.forms import shifted
-from nodes.sim_node.models.model_table import MODELS, ModelKind
+from nodes.sim_node.models.model_table import ModelKind
 from nodes.sim_node.models.parts import (
     Inertial,
     Joint,
@@ -22,6 +22,7 @@ from nodes.sim_node.models.parts import (
     inertial,
     quarter_turned,
 )
+from nodes.sim_node.models.variety_table import KINDS
 
 FALLBACK_M: Vec3 = (0.3, 0.3, 0.3)
 """The size of a box for a class without a model and an entity without a size."""
@@ -85,7 +86,7 @@ def build(name: str, size_m: Vec3 | None) -> Model:
     volume. Raises ModelError for a size that no body can have.
     """
     check_size(size_m)
-    kind = MODELS.get(name)
+    kind = KINDS.get(name)
     if kind is None:
         return _plain_box(size_m or FALLBACK_M)
     x, y, z = size_m or kind.size_m

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -39,10 +40,10 @@ def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
         if all(part.role is Role.SEEN for part in parts):
             raise ModelError("it contains no colliding geometry")
         if size_m is not None:
-            parts = _stretched(parts, size_m)
+            parts = stretched(parts, size_m)
         extents = _extents(parts)
         check_size(extents, "; is the file in metres?")
-        parts = _keyed(parts, f"{path}:{version}:{size_m}")
+        parts = keyed(parts, f"{path}:{version}:{size_m}")
         model = assemble(str(path), parts, density * float(np.prod(extents)), notes)
         _try_out(model)
     except OSError:
@@ -84,9 +85,10 @@ def _colour(read: Any) -> Colour:
     return (float(red), float(green), float(blue))
 
 
-def _stretched(parts: list[Part], size_m: Vec3) -> list[Part]:
-    """Meshes are stretched along the model's axes, primitives along their own, which are mostly the same.
+def stretched(parts: Sequence[Part], size_m: Vec3) -> list[Part]:
+    """Parts that measure `size_m` together.
 
+    Meshes are stretched along the model's axes, primitives along their own, which are mostly the same.
     A hinge turns as far as before, a slide further or less far.
     """
     low, high = bounds(parts)
@@ -121,7 +123,7 @@ def _stretched_joint(joint: Joint, factors: Floats) -> Joint:
     )
 
 
-def _keyed(parts: list[Part], key: str) -> list[Part]:
+def keyed(parts: Sequence[Part], key: str) -> list[Part]:
     """Meshes get names that are theirs alone."""
     return [
         part if part.mesh is None else replace(part, mesh=replace(part.mesh, key=f"{key}:{number}"))

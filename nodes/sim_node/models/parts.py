@@ -62,6 +62,7 @@ class Joint:
     range: tuple[float, float] | None
     closed: float | None = 0.0
     friction: float = 0.5
+    switch: bool = False
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ import mujoco
 from PIL import Image, ImageDraw, ImageFont
 
 from nodes.sim_node.models.library import Model, build
-from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import Part, bounds, moved
+from nodes.sim_node.models.variety_table import KINDS
 from nodes.sim_node.physics.build import add_part
 from nodes.sim_node.vision.raycast import raycast
 from nodes.sim_node.vision.view import FROM_THE_FRONT, overview
@@ -72,7 +72,7 @@ def main() -> None:
     """Write the sheet of all models to the file named on the command line."""
     target = Path(sys.argv[1])
     target.parent.mkdir(parents=True, exist_ok=True)
-    contact_sheet(list(MODELS)).save(target, optimize=True)
+    contact_sheet(list(KINDS)).save(target, optimize=True)
 
 
 if __name__ == "__main__":

@@ -12,9 +12,9 @@ from msgspec import structs
 
 from nodes.sim_node.models.library import ModelError, build
 from nodes.sim_node.models.model_files import SUFFIXES
-from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.sources import Models, is_one_of
 from nodes.sim_node.models.spaces import shape_of
+from nodes.sim_node.models.variety_table import KINDS, VARIETIES
 from ontology import MODEL_SHAPES_JSON
 from ontology.model_shapes import ModelShape
 
@@ -22,8 +22,11 @@ _DIGITS = 4
 
 
 def library_shapes() -> dict[str, ModelShape]:
-    """Model name to shape at its own size."""
-    return {name: shape_of(build(name, None)) for name in ("", *sorted(MODELS))}
+    """Model name to shape at its own size, and where it is a variety what it is one of."""
+    found = {name: shape_of(build(name, None)) for name in ("", *sorted(KINDS))}
+    for name, (_, of, words, only_named) in VARIETIES.items():
+        found[name] = structs.replace(found[name], of=of, words=words, only_named=only_named)
+    return found
 
 
 def own_shapes(folder: Path) -> dict[str, ModelShape]:

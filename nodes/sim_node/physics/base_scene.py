@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
 from nodes.sim_node.physics.build import FELT_GROUP, IMPEDANCE
+from nodes.sim_node.physics.ends import CLOSED_TEXT, ENDS, OFF_TEXT, Ends, said, tied
 from nodes.sim_node.vision.view import OPTICAL, View, look_at
 from schemas.entities import NAME_PATTERN
 from schemas.errors import BadFile
@@ -26,8 +27,7 @@ mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
 
 _TIMESTEP_S = 0.002
 _EXTENT_M = 10.0
-_CLASS_TEXT, _CLOSED_TEXT = "semmap:", "semmap-closed:"
-_ENDS = ("lower", "upper")
+_CLASS_TEXT = "semmap:"
 _KINDS: dict[int, Literal["hinge", "slide", "ball"]] = {
     int(mujoco.mjtJoint.mjJNT_HINGE): "hinge",
     int(mujoco.mjtJoint.mjJNT_SLIDE): "slide",
@@ -168,7 +168,9 @@ def bodies_of(
     """
     model, data = _compiled(spec)
     classes = _declared(spec)
-    closed = closed_ends(spec)
+    ends = Ends.of(spec)
+    switches = {joint for joint in range(model.njnt) if ends.is_switch(model, joint)}
+    follow = tied(model, switches)  # the burner that a knob lowers opens nothing
     records: dict[str, BodyRecord] = {}
     owner = [""] * model.nbody
     for number in range(1, model.nbody):  # wholes have lower numbers than their parts
@@ -178,7 +180,7 @@ def bodies_of(
             records[name] = _record(model, data, spec.body(name), class_, owner[whole])
         owner[number] = name if name in records else owner[whole]
         if owner[number] and model.body_jntnum[number]:
-            _give_joints(records[owner[number]], model, number, closed)
+            _give_joints(records[owner[number]], model, number, ends, switches, follow)
     return records
 
 
@@ -192,7 +194,7 @@ def _is_body(name: str, classes: Mapping[str, str], is_class: Callable[[str], bo
 
 def ignored(spec: mujoco.MjSpec) -> list[str]:
     """What texts declare in vain, each with the reason, in the order of the texts."""
-    if not any(text.name.startswith((_CLASS_TEXT, _CLOSED_TEXT)) for text in spec.texts):
+    if not any(text.name.startswith((_CLASS_TEXT, CLOSED_TEXT, OFF_TEXT)) for text in spec.texts):
         return []
     model, _ = _compiled(spec)  # to ask a large specification takes longer than to compile it
     named = {model.body(number).name for number in range(1, model.nbody)}
@@ -203,11 +205,12 @@ def ignored(spec: mujoco.MjSpec) -> list[str]:
             told.append(f"{name} (no such body)")
         elif not re.match(NAME_PATTERN, name):
             told.append(f"{name} (no entity can have this name)")
-    for name, end in _texts(spec, _CLOSED_TEXT).items():
-        if name not in joints:
-            told.append(f"{name} (no such joint)")
-        elif end not in _ENDS:
-            told.append(f"{name} (closed at '{end}'; say lower or upper)")
+    for prefix, how in ((CLOSED_TEXT, "closed"), (OFF_TEXT, "off")):
+        for name, end in said(spec, prefix):
+            if name not in joints:
+                told.append(f"{name} (no such joint)")
+            elif end not in ENDS:
+                told.append(f"{name} ({how} at '{end}'; say lower or upper)")
     return told
 
 
@@ -235,35 +238,31 @@ def names_classes(spec: mujoco.MjSpec) -> bool:
 
 def _declared(spec: mujoco.MjSpec) -> dict[str, str]:
     """The classes that the world's texts declare, by name of the body."""
-    return _texts(spec, _CLASS_TEXT)
+    return dict(said(spec, _CLASS_TEXT))
 
 
-def _texts(spec: mujoco.MjSpec, prefix: str) -> dict[str, str]:
-    """The world's texts whose names begin so, by the rest of the name."""
-    texts = ((text.name, text.data) for text in spec.texts)
-    return {name.removeprefix(prefix): data for name, data in texts if name.startswith(prefix)}
-
-
-def closed_ends(spec: mujoco.MjSpec) -> dict[str, str]:
-    """Which end of a joint is the closed one, where a text says so: `lower` or `upper`."""
-    return {name: end for name, end in _texts(spec, _CLOSED_TEXT).items() if end in _ENDS}
-
-
-def _give_joints(record: BodyRecord, model: mujoco.MjModel, body: int, closed: Mapping[str, str]) -> None:
-    """Add the joints that move a body to a record."""
+def _give_joints(
+    record: BodyRecord, model: mujoco.MjModel, body: int, ends: Ends, switches: set[int], follow: set[int]
+) -> None:
+    """Add the joints that move a body to a record; those that `follow` switches do nothing by themselves."""
     first = int(model.body_jntadr[body])
     joints = range(first, first + int(model.body_jntnum[body]))
-    names = [model.joint(joint).name for joint in joints if int(model.jnt_type[joint]) in _KINDS]
-    record.joints += tuple(_joint(model, name, closed.get(name)) for name in names)
-    record.joint_names += tuple(names)
+    numbers = [joint for joint in joints if int(model.jnt_type[joint]) in _KINDS]
+    record.joints += tuple(
+        _joint(model, number, ends.said(model.joint(number).name), number in switches, number in follow)
+        for number in numbers
+    )
+    record.joint_names += tuple(model.joint(number).name for number in numbers)
 
 
-def _joint(model: mujoco.MjModel, name: str, closed_end: str | None) -> Joint:
-    """A joint of the world as it stands at first; it opens something if it has limits.
+def _joint(
+    model: mujoco.MjModel, number: int, closed_end: str | None, is_switch: bool, follows: bool
+) -> Joint:
+    """A joint of the world as it stands at first; it opens or switches something if it has limits.
 
-    Without a word on it, it is closed at the limit that is nearest to where it stands.
+    Without a word on it, it is closed, or off, at the limit that is nearest to where it stands.
     """
-    number = model.joint(name).id
+    name = model.joint(number).name
     kind = _KINDS[int(model.jnt_type[number])]
     if kind == "ball":
         return Joint(name=name, kind=kind)
@@ -274,7 +273,14 @@ def _joint(model: mujoco.MjModel, name: str, closed_end: str | None) -> Joint:
     nearest = "lower" if initial - lower <= upper - initial else "upper"
     closed = lower if (closed_end or nearest) == "lower" else upper
     return Joint(
-        name=name, kind=kind, position=initial, lower=lower, upper=upper, closed=closed, initial=initial
+        name=name,
+        kind=kind,
+        position=initial,
+        lower=lower,
+        upper=upper,
+        closed=None if follows else closed,
+        initial=initial,
+        switch=is_switch,
     )
 
 

@@ -23,6 +23,8 @@ _GRIP = 25.0
 """How quickly it takes up speed [1/s]."""
 _SPARE = {_HINGE: 1.0, _SLIDE: 8.0}
 """What it can push beyond its own weight and friction [N m, N]."""
+_STABLE = 0.5
+"""Where a force comes after the step, it takes up so much of a speed that differs at most."""
 _STUCK_S = 0.4
 """Who has not come any nearer for so long is stopped by something."""
 
@@ -34,6 +36,24 @@ class _Drive:
     """How far it was at the nearest."""
     nearer_s: float
     """When that was."""
+    model: mujoco.MjModel | None = None
+    """In which it is braked, at this degree of freedom, that has this much damping by itself."""
+    dof: int = 0
+    damping: float = 0.0
+
+    def brake(self, model: mujoco.MjModel, dof: int, gain: float) -> None:
+        """Hold its speed by as much more damping: MuJoCo works that out within the step.
+
+        A force that is worked out after it throws what is light, like a knob, from end to end.
+        """
+        if self.model is not model:  # it was compiled anew
+            self.model, self.dof, self.damping = model, dof, float(model.dof_damping[dof])
+            model.dof_damping[dof] = self.damping + gain
+
+    def release(self) -> None:
+        """Leave its damping as it was."""
+        if self.model is not None:
+            self.model.dof_damping[self.dof] = self.damping
 
 
 class Drives:
@@ -48,13 +68,15 @@ class Drives:
 
     def begin(self, targets: Mapping[str, float], time_s: float) -> None:
         """Drive joints to these positions [rad, m], from now on."""
+        self.stop(targets)
         for name, target in targets.items():
             self._under_way[name] = _Drive(target, float("inf"), time_s)
 
     def stop(self, names: Iterable[str]) -> None:
         """Let go of these."""
         for name in names:
-            self._under_way.pop(name, None)
+            if (drive := self._under_way.pop(name, None)) is not None:
+                drive.release()
 
     def rows(self, index: BodyIndex) -> list[int]:
         """The joints that are under way, as rows of the index."""
@@ -88,8 +110,21 @@ class Drives:
             wanted = float(model.dof_M0[dof]) * _GRIP * (speed - float(data.qvel[dof]))
             friction = float(model.dof_frictionloss[dof]) * (1.0 if way > 0.0 else -1.0)
             most = float(model.dof_M0[dof]) * _GRIP * _SPEED[kind] + _SPARE[kind]
-            gain = _SPARE[kind] * (speed - float(data.qvel[dof])) / _SPEED[kind]
-            push = max(-most, min(most, wanted + gain))
-            data.qfrc_applied[dof] = push + friction + float(data.qfrc_bias[dof] - data.qfrc_gravcomp[dof])
+            gain = _SPARE[kind] / _SPEED[kind]
+            if _damps_within_the_step(model):
+                drive.brake(model, dof, gain)
+                push = max(-most, min(most, wanted + gain * speed))
+            else:
+                gain = min(gain, _STABLE * float(model.dof_M0[dof]) / (STEPS_A_PUSH * model.opt.timestep))
+                push = max(-most, min(most, wanted + gain * (speed - float(data.qvel[dof]))))
+            own = float(data.qfrc_bias[dof] - data.qfrc_gravcomp[dof] - data.qfrc_spring[dof])
+            data.qfrc_applied[dof] = push + friction + own
         self.stop(done)
         return arrived
+
+
+def _damps_within_the_step(model: mujoco.MjModel) -> bool:
+    """Is damping stable in this world, however light a joint is?"""
+    if model.opt.integrator == mujoco.mjtIntegrator.mjINT_EULER:
+        return not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_EULERDAMP)
+    return bool(model.opt.integrator != mujoco.mjtIntegrator.mjINT_RK4)

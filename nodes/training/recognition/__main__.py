@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from nodes.perception_node.recognition.perceptron import Perceptron
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, SHIPPED, UNKNOWN, VOTERS, Learnt, save
+from nodes.perception_node.recognition.shipped_votes import CLUTTER, SHIPPED, UNKNOWN, Learnt, save
 from nodes.perception_node.recognition.sides import SIZE_FEATURES
 from nodes.perception_node.recognition.vote import ballots, expected_sizes, pool, shown_to_voters, vote
 from nodes.sim_node.models.model_table import MODELS
 from nodes.training.recognition.fitting import Numbers, classifier, regressor
-from nodes.training.recognition.gathering import Gathered, gather, read, write
+from nodes.training.recognition.gathering import Gathered, gather
+from nodes.training.recognition.gradient_descent import Recipe
 from nodes.training.recognition.learn_joining import learn_joining
 from nodes.training.recognition.learn_novelty import learn_novelty
 from nodes.training.recognition.samples import NOTHING, Samples
@@ -26,11 +27,16 @@ from nodes.training.scenes.simulated_scenes import STRANGE, foreign_class
 from nodes.training.segmentation.fit import trees_of
 from nodes.training.taxonomy import class_of_models, hierarchy
 
-SURE = 0.35
+SURE = 0.4
 _HELD_OUT = 5
 _SORTS = ("geometry", "shape", "colour")
-_HIDDEN = dict(zip(VOTERS, ((96,), (96,), (64,), (128,), (128,)), strict=True))
-_SIDES_HIDDEN = (64, 32)
+_ONE_SORT = Recipe((256,), dropped=(0.1, 0.3))
+_ALL = Recipe((512, 256), dropped=(0.1, 0.3))
+_RECIPES = (_ONE_SORT, _ONE_SORT, Recipe((64,), dropped=(0.1, 0.1)), _ALL, _ALL, _ALL)
+"""How each of `VOTERS` learns."""
+
+_SIDES = Recipe((128, 64), rounds=60, decay=1e-4)
+_MOST_SIDES = 60_000  # things teach where sides are
 _FARTHEST = 1.0
 """A side that is off by more of the thing's size than this was not seen at all."""
 
@@ -54,12 +60,12 @@ def learn(gathered: Gathered, *, without: Collection[str] = (), unseen: Collecti
     held = samples.scene % _HELD_OUT == 0
     features = [getattr(samples, name) for name in _SORTS]
     voters = tuple(
-        classifier(f[~held], target[~held], len(classes), hidden, seed=seed)
-        for seed, (f, hidden) in enumerate(zip(shown_to_voters(features), _HIDDEN.values(), strict=True))
+        classifier(f[~held], target[~held], len(classes), recipe, seed=seed)
+        for seed, (f, recipe) in enumerate(zip(shown_to_voters(features), _RECIPES, strict=True))
     )
     weights = _calibrated(voters, [f[held] for f in features], target[held])
     nameable = [k for k, name in enumerate(classes) if name not in (UNKNOWN, CLUTTER)]
-    novelty = learn_novelty(features, target, held, nameable, list(_HIDDEN.values()), weights)
+    novelty = learn_novelty(features, target, held, nameable, _RECIPES, weights)
     sizes = _typical_sizes(samples, target, len(classes))
     expected = expected_sizes(vote(voters, weights, features), sizes)
     learnt = Learnt(
@@ -118,31 +124,27 @@ def _sideways(samples: Samples, target: NDArray[np.int64], count: int) -> NDArra
 
 
 def _sides(samples: Samples, expected_m: Numbers) -> Perceptron:
-    things = np.isfinite(samples.shifts[:, 0])
+    things = np.flatnonzero(np.isfinite(samples.shifts[:, 0]))
+    things = things[:: -(-len(things) // _MOST_SIDES)]
     inputs = samples.sides[things].copy()
     inputs[..., SIZE_FEATURES] += np.log(expected_m[things])[:, None]
     shifts = samples.shifts[things].ravel()
     near = np.abs(shifts) < _FARTHEST
-    return regressor(inputs.reshape(len(shifts), -1)[near], shifts[near], _SIDES_HIDDEN)
+    return regressor(inputs.reshape(len(shifts), -1)[near], shifts[near], _SIDES)
 
 
 def main() -> None:
     """Render, learn, and write what ships."""
     parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("--scenes", type=int, default=1200)
+    parser.add_argument("--scenes", type=int, default=3000)
     parser.add_argument("--heaps", type=int, default=400, help="to learn from which pieces are one thing")
     parser.add_argument("--seed", type=int, default=101)
     parser.add_argument("--foreign", type=Path, help="a folder of foreign things to learn from, too")
-    parser.add_argument("--samples", type=Path, help="keep the samples there, or take them from there")
+    parser.add_argument("--parts", type=Path, help="a folder to keep the samples in, and to resume from")
     parser.add_argument("--out", type=Path, default=SHIPPED)
     options = parser.parse_args()
     started = time.perf_counter()
-    if options.samples and options.samples.exists():
-        gathered = read(options.samples)
-    else:
-        gathered = gather(options.scenes, options.heaps, options.seed, options.foreign)
-        if options.samples:
-            write(gathered, options.samples)
+    gathered = gather(options.scenes, options.heaps, options.seed, options.foreign, options.parts)
     print(f"{len(gathered.things)} segments after {time.perf_counter() - started:.0f} s")
     learnt = learn(gathered)
     save(learnt, options.out)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import Self
 
 import numpy as np
@@ -24,3 +25,15 @@ class Table:
     def joined(cls, parts: Sequence[Self]) -> Self:
         """All rows of all parts, of which there must be one."""
         return cls(*(np.concatenate([getattr(p, field.name) for p in parts]) for field in fields(cls)))
+
+    def write(self, path: Path) -> None:
+        """Keep it in a file, which is whole or not there."""
+        beside = path.with_name(f"{path.stem}.partly.npz")
+        np.savez(beside, **{field.name: getattr(self, field.name) for field in fields(self)})
+        beside.replace(path)
+
+    @classmethod
+    def read(cls, path: Path) -> Self:
+        """Take it out of a file again."""
+        with np.load(path) as arrays:
+            return cls(*(arrays[field.name] for field in fields(cls)))

@@ -1,59 +1,50 @@
-"""Perceptrons, trained by scikit-learn."""
+"""Perceptrons that tell classes, or numbers, from features."""
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.exceptions import ConvergenceWarning
-from sklearn.neural_network import MLPClassifier, MLPRegressor
 
 from nodes.perception_node.recognition.perceptron import REACH, Perceptron
+from nodes.training.recognition.gradient_descent import Floats, Recipe, Slope, descend
 
 Numbers = NDArray[np.float64]
-_ROUNDS = 40
 _NEVER_SEEN = -12.0
 
 
 def classifier(
-    inputs: Numbers,
-    target: NDArray[np.int64],
-    classes: int,
-    hidden: tuple[int, ...],
-    *,
-    seed: int = 0,
-    rounds: int = _ROUNDS,
+    inputs: Numbers, target: NDArray[np.int64], classes: int, recipe: Recipe, *, seed: int = 0
 ) -> Perceptron:
     """Scores (N, classes) from inputs (N, D); a class that `target` (N,) never names gets a very low one."""
-    machine = MLPClassifier(
-        hidden_layer_sizes=hidden,
-        alpha=0.3,
-        batch_size=256,
-        learning_rate_init=2e-3,
-        max_iter=rounds,
-        tol=0.0,
-        random_state=seed,
-    )
-    fitted = _fit(machine, inputs, target)
-    weights, biases = np.zeros((hidden[-1], classes)), np.full(classes, _NEVER_SEEN)
-    weights[:, machine.classes_], biases[machine.classes_] = fitted.weights[-1], fitted.biases[-1]
-    return Perceptron(
-        fitted.mean, fitted.scale, (*fitted.weights[:-1], weights), (*fitted.biases[:-1], biases)
-    )
+
+    def slope(scores: Floats, rows: NDArray[np.int64]) -> Floats:
+        likely = np.exp(scores - scores.max(axis=1, keepdims=True))
+        likely /= likely.sum(axis=1, keepdims=True)
+        likely[np.arange(len(rows)), target[rows]] -= 1.0
+        return np.asarray(likely)
+
+    fitted = _fitted(inputs, classes, slope, recipe, seed)
+    never = ~np.isin(np.arange(classes), target)
+    fitted.weights[-1][:, never], fitted.biases[-1][never] = 0.0, _NEVER_SEEN
+    return fitted
 
 
-def regressor(inputs: Numbers, target: Numbers, hidden: tuple[int, ...]) -> Perceptron:
+def regressor(inputs: Numbers, target: Numbers, recipe: Recipe) -> Perceptron:
     """One number for each of inputs (N, D)."""
-    machine = MLPRegressor(
-        hidden_layer_sizes=hidden, batch_size=512, max_iter=_ROUNDS, tol=0.0, random_state=0
-    )
-    return _fit(machine, inputs, target)
+
+    def slope(scores: Floats, rows: NDArray[np.int64]) -> Floats:
+        return np.asarray(scores - target[rows, None], np.float32)
+
+    return _fitted(inputs, 1, slope, recipe, seed=0)
 
 
-def _fit(machine: MLPClassifier | MLPRegressor, inputs: Numbers, target: NDArray[np.generic]) -> Perceptron:
+def _fitted(inputs: Numbers, outputs: int, slope: Slope, recipe: Recipe, seed: int) -> Perceptron:
     mean, scale = inputs.mean(axis=0), inputs.std(axis=0) + 1e-6
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ConvergenceWarning)  # the number of rounds is what is wanted
-        machine.fit(np.clip((inputs - mean) / scale, -REACH, REACH), target)
-    return Perceptron(mean, scale, tuple(machine.coefs_), tuple(machine.intercepts_))
+    standard = np.clip((inputs - mean) / scale, -REACH, REACH).astype(np.float32)
+    layers = descend(standard, outputs, slope, recipe, seed)
+    return Perceptron(
+        mean,
+        scale,
+        tuple(weights.astype(float) for weights in layers.weights),
+        tuple(biases.astype(float) for biases in layers.biases),
+    )

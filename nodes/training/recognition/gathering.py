@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from itertools import count, repeat
 from multiprocessing import get_context
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -20,7 +21,10 @@ from nodes.training.scenes.simulated_scenes import Item, Shot, Stage
 
 _SCENES, _HEAPS = 150, 40  # a part, at most
 _COLOURLESS = 0.06  # of the scenes are seen without colours
-_SEEDS = 10  # from the first of scenes to the first of heaps
+_SEEDS = 100  # from the first of scenes to the first of heaps
+
+
+_Part = TypeVar("_Part", Samples, Pairs)
 
 
 @dataclass(frozen=True)
@@ -31,36 +35,91 @@ class Gathered:
     pairs: Pairs
 
 
-def gather(scenes: int, heaped: int, seed: int, foreign: Path | None = None) -> Gathered:
+def gather(
+    scenes: int, heaped: int, seed: int, foreign: Path | None = None, keep: Path | None = None
+) -> Gathered:
     """Things from so many simulated scenes, pairs from so many heaps, made by several processes.
 
     They are made in parts, each by a process of its own: the same whatever the machine. `foreign`: a folder
-    of foreign things that come among ours.
+    of foreign things that come among ours. `keep`: a folder in which parts are kept; those that are there
+    are not made again.
     """
     with ProcessPoolExecutor(os.cpu_count(), get_context("spawn"), max_tasks_per_child=1) as pool:
-        things = list(pool.map(_things, _shares(scenes, _SCENES), count(seed), repeat(foreign)))
-        pairs = list(pool.map(_pairs, _shares(heaped, _HEAPS), count(seed + _SEEDS), repeat(foreign)))
+        things = list(pool.map(_things, _shares(scenes, _SCENES), count(seed), repeat(foreign), repeat(keep)))
+        pairs = list(
+            pool.map(_pairs, _shares(heaped, _HEAPS), count(seed + _SEEDS), repeat(foreign), repeat(keep))
+        )
     return joined(things, pairs)
+
+
+def read(folder: Path) -> Gathered:
+    """All the parts that a folder keeps."""
+    return joined(
+        _things_in(folder),
+        [Pairs.read(part) for part in sorted(folder.glob(_file("pairs", "*", "*")), key=_in_order)],
+    )
+
+
+def read_things(folder: Path) -> Samples:
+    """The things of all the parts that a folder keeps."""
+    return _numbered(_things_in(folder))
 
 
 def joined(things: Sequence[Samples], pairs: Sequence[Pairs]) -> Gathered:
     """All of all parts."""
-    numbered = [replace(part, scene=part.scene + n * _SCENES) for n, part in enumerate(things)]
-    return Gathered(Samples.joined(numbered), Pairs.joined(pairs))
+    return Gathered(_numbered(things), Pairs.joined(pairs))
+
+
+def _things_in(folder: Path) -> list[Samples]:
+    return [Samples.read(part) for part in sorted(folder.glob(_file("things", "*", "*")), key=_in_order)]
+
+
+def _numbered(things: Sequence[Samples]) -> Samples:
+    """All of all parts, each scene with a number of its own."""
+    return Samples.joined([replace(part, scene=part.scene + n * _SCENES) for n, part in enumerate(things)])
 
 
 def _shares(total: int, most: int) -> list[int]:
     return [min(most, total - done) for done in range(0, total, most)]
 
 
-def _things(scenes: int, seed: int, foreign: Path | None) -> Samples:
+def _things(scenes: int, seed: int, foreign: Path | None, keep: Path | None) -> Samples:
+    return _kept(Samples, "things", lambda: _seen_in(scenes, seed, foreign), scenes, seed, keep)
+
+
+def _pairs(heaped: int, seed: int, foreign: Path | None, keep: Path | None) -> Pairs:
+    return _kept(Pairs, "pairs", lambda: _neighbours_in(heaped, seed, foreign), heaped, seed, keep)
+
+
+def _kept(
+    kind: type[_Part], name: str, make: Callable[[], _Part], size: int, seed: int, keep: Path | None
+) -> _Part:
+    """What a folder keeps of a part, else what is made, and kept."""
+    if keep is None:
+        return make()
+    path = keep / _file(name, seed, size)
+    if not path.exists():
+        keep.mkdir(parents=True, exist_ok=True)
+        make().write(path)
+    return kind.read(path)
+
+
+def _file(name: str, seed: int | str, size: int | str) -> str:
+    return f"{name}-{seed}-of-{size}.npz"
+
+
+def _in_order(path: Path) -> int:
+    return int(path.name.split("-")[1])
+
+
+def _seen_in(scenes: int, seed: int, foreign: Path | None) -> Samples:
     rng = np.random.default_rng(seed)
     shots = _photographed(training_scenes(scenes, _learnable(foreign), rng), rng)
     samples = (samples_of(shot, items, number) for number, (shot, items) in enumerate(shots))
     return Samples.joined([found for found in samples if found is not None])
 
 
-def _pairs(heaped: int, seed: int, foreign: Path | None) -> Pairs:
+def _neighbours_in(heaped: int, seed: int, foreign: Path | None) -> Pairs:
     rng = np.random.default_rng(seed)
     shots = _photographed(heaps(heaped, _learnable(foreign), rng), rng)
     return Pairs.joined([pairs for shot, items in shots for pairs in pairs_of(shot, items, rng)])
@@ -81,18 +140,3 @@ def _photographed(scenes: Iterable[Scene], rng: np.random.Generator) -> Iterator
         if rng.random() < _COLOURLESS:
             shot = replace(shot, clouds=tuple(replace(cloud, colors=None) for cloud in shot.clouds))
         yield shot, items
-
-
-def write(gathered: Gathered, path: Path) -> None:
-    """Keep it in a file."""
-    things = {f.name: getattr(gathered.things, f.name) for f in fields(Samples)}
-    np.savez(path, **things, **{f"pairs.{f.name}": getattr(gathered.pairs, f.name) for f in fields(Pairs)})
-
-
-def read(path: Path) -> Gathered:
-    """Take it out of a file again."""
-    with np.load(path) as arrays:
-        return Gathered(
-            Samples(**{f.name: arrays[f.name] for f in fields(Samples)}),
-            Pairs(**{f.name: arrays[f"pairs.{f.name}"] for f in fields(Pairs)}),
-        )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,15 +14,16 @@ from sklearn.linear_model import LogisticRegression
 from nodes.perception_node.recognition.novelty import Novelty, signs
 from nodes.perception_node.recognition.vote import ballots, pool, shown_to_voters
 from nodes.training.recognition.fitting import Numbers, classifier
+from nodes.training.recognition.gradient_descent import Recipe
 
 _FOLDS = 4
 _LEFT_OUT = 0.12
-_ROUNDS = 12
-_ENOUGH = 0.5
+_ROUNDS = 6
+_ENOUGH = 0.25
 """The share of the samples that the voters of a fold learn from: signs need no more."""
 
 _AXES = 30
-_SHARE = 0.05
+_SHARE = 0.1
 """How many of the things that are met are of no class that was learnt; nobody knows, so it is a guess."""
 
 
@@ -43,7 +46,7 @@ def learn_novelty(
     target: NDArray[np.int64],
     held: NDArray[np.bool_],
     nameable: Sequence[int],
-    hidden: Sequence[tuple[int, ...]],
+    recipes: Sequence[Recipe],
     weights: Numbers,
 ) -> Novelty:
     """Some classes are left out at a time; the regression tells their held-out things from the others'.
@@ -58,8 +61,8 @@ def learn_novelty(
         out = np.isin(target, order[fold * size : (fold + 1) * size])
         known = ~held & ~out & (rng.random(len(target)) < _ENOUGH)
         voters = [
-            classifier(f[known], target[known], classes, h, seed=seed, rounds=_ROUNDS)
-            for seed, (f, h) in enumerate(zip(shown_to_voters(features), hidden, strict=True))
+            classifier(f[known], target[known], classes, replace(recipe, rounds=_ROUNDS), seed=seed)
+            for seed, (f, recipe) in enumerate(zip(shown_to_voters(features), recipes, strict=True))
         ]
         judged = held & np.isin(target, nameable)
         seen = [f[judged] for f in features]
@@ -69,10 +72,8 @@ def learn_novelty(
         news.append(out[judged])
     told, new = np.concatenate(rows), np.concatenate(news)
     scale = told.std(axis=0)
-    share = new.mean()
-    regression = LogisticRegression(
-        class_weight={True: _SHARE / share, False: (1.0 - _SHARE) / (1.0 - share)}, max_iter=1000
-    ).fit(told / scale, new)
+    regression = LogisticRegression(class_weight="balanced", max_iter=1000).fit(told / scale, new)
+    constant = regression.intercept_ + math.log(_SHARE / (1.0 - _SHARE))
     whole = space([f[~held] for f in features], target[~held], classes)
-    fitted = np.append(regression.coef_[0] / scale, regression.intercept_)
+    fitted = np.append(regression.coef_[0] / scale, constant)
     return Novelty(whole.mean, whole.axes, whole.centres, fitted)

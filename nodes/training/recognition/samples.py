@@ -28,6 +28,8 @@ from schemas.scenes import Body
 _PURE, _WHOLE = 0.7, 0.5
 _FEWEST = 40
 _CARRIER_M = 0.45
+_THIN_M, _OF_THIN_M = 0.035, 0.002
+"""What is no higher is cut out of its support as a whole, but for so much."""
 _UNIT = np.ones(3)
 NOTHING = ""
 
@@ -89,8 +91,10 @@ def _truly(cloud: Cloud, owner: NDArray[np.int32], bodies: Sequence[Body]) -> Si
     pose = np.eye(4) if cloud.map_from_camera is None else cloud.map_from_camera
     points, depth = map_points(cloud, pose), cloud.points_camera[..., 2]
     bottoms = np.array([0.0, *(body.pose.position_m[2] for body in bodies)], np.float32)
+    thin = np.array([False, *(body.size_m[2] < _THIN_M for body in bodies)])
     with np.errstate(invalid="ignore"):
-        out = points[..., 2] - bottoms[owner] > np.maximum(LOWEST_M, 0.006 * depth**2)
+        noise_m = np.where(thin[owner], _OF_THIN_M, np.maximum(LOWEST_M, 0.006 * depth**2))
+        out = points[..., 2] - bottoms[owner] > noise_m
     labels = np.where(out, owner, 0).astype(np.int32)
     labels[(np.bincount(labels.ravel(), minlength=len(bodies) + 1) < _FEWEST)[labels]] = 0
     carriers = frozenset(n for n, body in enumerate(bodies, 1) if max(body.size_m[:2]) > _CARRIER_M)

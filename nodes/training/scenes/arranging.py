@@ -17,6 +17,7 @@ from nodes.training.scenes.placements import Rectangle, spread
 from nodes.training.scenes.simulated_scenes import Item
 
 _HEAPED = 0.8
+_DISTANCES_M = (0.8, 2.2)
 _USUAL = 0.6  # of the tables are about as high as tables are, and desks as desks
 
 CARRIERS = ("table", "table", "desk", "counter", "cabinet")
@@ -89,7 +90,7 @@ def training_scenes(count: int, foreign: Sequence[ForeignThing], rng: np.random.
     for number in range(count):
         if number % 5 < 4:
             items = table_scene([small() for _ in range(rng.integers(8, 19))], rng)
-            yield items, views((0.0, 0.0, items[0].size_m[2]), (0.9, 1.8), rng)
+            yield items, views((0.0, 0.0, items[0].size_m[2]), _DISTANCES_M, rng)
         else:
             things = [next(large) for _ in range(4)] + [small() for _ in range(3)]
             yield floor_scene(things, rng), views((0.0, 0.0, 0.3), (2.0, 4.0), rng)
@@ -102,4 +103,4 @@ def heaps(count: int, foreign: Sequence[ForeignThing], rng: np.random.Generator)
         few = [small() for _ in range(rng.integers(3, 12))]
         things = [few[int(n)] for n in rng.integers(len(few), size=rng.integers(6, 14))]
         items = table_scene(things, rng, crowded_share=_HEAPED)
-        yield items, views((0.0, 0.0, items[0].size_m[2]), (0.9, 1.8), rng)
+        yield items, views((0.0, 0.0, items[0].size_m[2]), _DISTANCES_M, rng)

@@ -29,7 +29,8 @@ LARGE = tuple(k for k, kind in MODELS.items() if max(kind.size_m) > SMALL_M and 
 
 _SHARES = (0.5, 0.25, 0.12, 0.13)
 """Of the small things: our models, varieties, foreign, strange ones."""
-_FOREIGN_SIZES = (0.88, 1.0, 1.0, 1.14)
+_FOREIGN_LARGER, _FOREIGN_STOUTER = 0.2, 0.06
+"""By which factors e^x foreign things are larger or smaller, at most, and each extent of them beside."""
 
 Lot = Callable[[], Item]
 """The next thing, which has no place yet."""
@@ -87,8 +88,9 @@ def _foreign(things: Sequence[ForeignThing], rng: np.random.Generator) -> Iterat
     while things:
         for number in rng.permutation(len(things)):
             thing = things[number]
-            factor = float(rng.choice(_FOREIGN_SIZES))
-            x, y, z = (factor * extent for extent in thing.size_m)
+            larger = rng.uniform(-_FOREIGN_LARGER, _FOREIGN_LARGER)
+            factors = np.exp(larger + rng.normal(0.0, _FOREIGN_STOUTER, 3))
+            x, y, z = (factors * thing.size_m).tolist()
             grey = float(rng.uniform(0.1, 0.9))
             drawn = _thing("foreign", (x, y, z), (grey, grey, grey), rng)
             yield replace(

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
-from nodes.sim_node.models.model_files import read_model
-from nodes.sim_node.models.parts import Colour, Parts, Vec3
+from nodes.sim_node.models.model_files import keyed, read_model, stretched
+from nodes.sim_node.models.parts import Colour, Part, Parts, Vec3
 
 _LEARN = "train"
 
@@ -49,4 +51,10 @@ def foreign_things(folder: Path) -> list[ForeignThing]:
 
 def parts_of(thing: ForeignThing, size_m: Vec3, colour: Colour) -> Parts:
     """Its parts at a size, all of one colour."""
-    return [replace(part, colour=colour) for part in read_model(thing.mesh, size_m, 0).parts]
+    parts = stretched([replace(part, colour=colour) for part in _read(thing.mesh)], size_m)
+    return keyed(parts, f"{thing.mesh}:{size_m}")
+
+
+@lru_cache
+def _read(mesh: Path) -> Sequence[Part]:
+    return read_model(mesh, None, 0).parts

@@ -45,6 +45,16 @@ def any_paint(rng: np.random.Generator) -> Paint:
     return Paint(_PATTERNS[kind](rng))
 
 
+def black(_: np.random.Generator) -> Paint:
+    """All of it, as dark things are under a light."""
+    return Paint(_plain(np.full(3, 0.06, np.float32)))
+
+
+def one_colour(rng: np.random.Generator) -> Paint:
+    """Any one colour."""
+    return Paint(_plain(_colour(rng)))
+
+
 def painted(colours: Bytes, points: Floats, paint: Paint) -> Bytes:
     """(N, 3) rgb of a thing's pixels, painted; `points`: (N, 3) where these lie, see `Pattern`."""
     if paint.pattern is None:

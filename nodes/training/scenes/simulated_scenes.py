@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from types import MappingProxyType
 
 import mujoco
@@ -77,6 +78,7 @@ class Shot:
     bodies: tuple[Body, ...]
 
 
+@lru_cache(maxsize=64)
 def tinted(item: Item) -> Model:
     """The item's model at its size, in its colour."""
     kind = MODELS.get(item.kind)

@@ -6,15 +6,23 @@ box of cereals, a carton of milk or a book would be.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from nodes.sim_node.models.forms import column, shade, shifted, slab, turned
+from nodes.sim_node.models.catalogue.other_forms import (
+    drink_can,
+    flat_bottle,
+    skillet,
+    spray_bottle,
+    teapot,
+    tumbler,
+    wine_glass,
+)
+from nodes.sim_node.models.forms import shade, slab
 from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.parts import ALONG_X, Colour, Parts, Vec3, about, ball, box, felt, pill, rod, seen
+from nodes.sim_node.models.parts import Colour, Parts, Vec3, box, seen
 
 Form = Callable[[float, float, float, Colour], Parts]
 """Builds a thing of given depth, width and height [m]."""
@@ -44,116 +52,6 @@ def carton(x: float, y: float, z: float, colour: Colour) -> Parts:
     return [
         slab(x, y, 0.0, z, colour),
         *seen(box((0.97 * x, 0.97 * y, 0.001), (0.0, 0.0, z), shade(colour, 0.9))),
-    ]
-
-
-def flat_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """Of shampoo, mustard or oil: a flat body with rounded sides, shoulders, a cap."""
-    body, cap = 0.72 * z, min(x, y) * 0.28
-    rounded = min(x, y) / 2
-    sides = max(x, y) - 2 * rounded
-    along = (1.0, 0.0) if x > y else (0.0, 1.0)
-    ends = [
-        shifted([column(rounded, 0.0, body, colour)], x=s * sides / 2 * along[0], y=s * sides / 2 * along[1])
-        for s in (-1, 1)
-    ]
-    middle = (
-        max(sides * along[0], x - 2 * rounded * along[0]),
-        max(sides * along[1], y - 2 * rounded * along[1]),
-    )
-    return [
-        slab(*middle, 0.0, body, colour),
-        *(part for end in ends for part in end),
-        *seen(ball((0.9 * x, 0.9 * y, 0.34 * z), (0.0, 0.0, 0.70 * z), colour)),
-        column(cap, body, z, shade(colour, 0.5)),
-    ]
-
-
-def spray_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A body that narrows, and a head with a nozzle and a trigger towards +x."""
-    radius = min(0.8 * x, y) / 2
-    neck, dark = 0.35 * radius, shade(colour, 0.4)
-    return shifted(
-        [
-            column(radius, 0.0, 0.55 * z, colour),
-            *turned([(radius, 0.55 * z), (neck, 0.78 * z)], colour, steps=6),
-            *felt(column(neck, 0.55 * z, 0.8 * z, colour)),
-            column(neck, 0.76 * z, 0.86 * z, dark),
-            *seen(box((x - 0.6 * radius, 0.7 * neck, 0.12 * z), (x / 2 - radius / 2, 0.0, 0.93 * z), dark)),
-            *seen(
-                box(
-                    (0.2 * radius, 0.5 * neck, 0.16 * z),
-                    (0.9 * radius, 0.0, 0.80 * z),
-                    dark,
-                    about("y", -0.4),
-                )
-            ),
-        ],
-        x=radius - x / 2,
-    )
-
-
-def drink_can(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """Narrower at both ends."""
-    radius = min(x, y) / 2
-    return [
-        column(radius, 0.06 * z, 0.9 * z, colour),
-        *turned([(0.8 * radius, 0.0), (radius, 0.06 * z)], colour, steps=3),
-        *turned([(radius, 0.9 * z), (0.8 * radius, z)], colour, steps=3),
-        *felt(column(0.9 * radius, 0.0, z, colour)),
-    ]
-
-
-def tumbler(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A cup without a handle, wider at the top, with a floor."""
-    radius, wall = min(x, y) / 2, 0.07 * min(x, y) / 2
-    shell = MODELS["glass"].parts(x, y, z, colour)
-    return [*shell, *seen(column(0.76 * radius, 0.0, 2 * wall, shade(colour, 0.8)))]
-
-
-def wine_glass(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A foot, a stem and a bowl."""
-    radius = min(x, y) / 2
-    bowl = [(0.1 * radius, 0.46 * z), (0.8 * radius, 0.6 * z), (radius, 0.75 * z), (0.8 * radius, z)]
-    return [
-        column(0.9 * radius, 0.0, 0.02 * z, colour),
-        column(0.1 * radius, 0.0, 0.5 * z, colour),
-        *turned(bowl, colour, steps=6),
-        *felt(column(0.9 * radius, 0.5 * z, z, colour)),
-    ]
-
-
-def teapot(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A round body with a spout towards +y, a handle and a lid."""
-    radius = min(x, 0.62 * y) / 2
-    body = (2 * radius, 2 * radius, 0.82 * z)
-    return [
-        ball(body, (0.0, 0.0, 0.41 * z), colour),
-        *seen(pill(0.16 * radius, 0.24 * y, (0.0, 0.5 * y - 0.1 * y, 0.55 * z), colour, about("x", -0.7))),
-        *seen(pill(0.12 * radius, 0.45 * z, (0.0, 0.1 * radius - 0.5 * y, 0.5 * z), colour)),
-        *seen(rod(0.1 * radius, 0.2 * y, (0.0, -0.38 * y, 0.66 * z), colour, about("x", math.pi / 2))),
-        *seen(rod(0.1 * radius, 0.2 * y, (0.0, -0.38 * y, 0.32 * z), colour, about("x", math.pi / 2))),
-        *seen(column(0.5 * radius, 0.75 * z, 0.88 * z, shade(colour, 0.9))),
-        *seen(ball((0.3 * radius, 0.3 * radius, 0.14 * z), (0.0, 0.0, 0.93 * z), colour)),
-    ]
-
-
-def skillet(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A pan with low walls and one long handle towards +x."""
-    radius = min(0.31 * x, y / 2)
-    side = radius - x / 2
-    return [
-        *shifted([column(0.9 * radius, 0.0, 0.12 * z, colour)], x=side),
-        *shifted(turned([(0.86 * radius, 0.1 * z), (radius, 0.85 * z)], shade(colour, 1.2), steps=4), x=side),
-        *seen(
-            pill(
-                0.09 * radius,
-                x - 2 * radius,
-                (radius + (x - 2 * radius) / 2 + side, 0.0, 0.8 * z),
-                colour,
-                ALONG_X,
-            )
-        ),
     ]
 
 

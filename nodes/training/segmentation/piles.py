@@ -50,11 +50,11 @@ class Pile(NamedTuple):
 
 def pile(rng: np.random.Generator, eye: Eye) -> Pile:
     """A table with 2 to 14 things on it; in some a long one is hidden in its middle by another."""
-    paint = _paint(rng)
-    models = [_thing(paint, rng) for _ in range(int(rng.integers(2, 15)))]
+    tints = _tints(rng)
+    models = [_thing(tints, rng) for _ in range(int(rng.integers(2, 15)))]
     screened = rng.random() < _SCREENED
     if screened:
-        models[:2] = _long_and_narrow(paint, rng)
+        models[:2] = _long_and_narrow(tints, rng)
     x, y = rng.uniform(*_HALF_TABLE_M, 2).tolist()
     scene = Tabletop(models, (x, y))
     view = _view(rng)
@@ -75,11 +75,11 @@ def pile(rng: np.random.Generator, eye: Eye) -> Pile:
     return Pile(cloud, np.where(depth_m > 0, body, 0).astype(np.int32))
 
 
-Paint = Callable[[], Colour | None]
+Tints = Callable[[], Colour | None]
 """The colour of the next thing; None for the library's."""
 
 
-def _paint(rng: np.random.Generator) -> Paint:
+def _tints(rng: np.random.Generator) -> Tints:
     if rng.random() < _ALIKE:
         shared = _any_colour(rng)
         return lambda: shared
@@ -99,30 +99,30 @@ def _photographed(rgb: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[n
     return np.clip(rgb * rng.uniform(0.6, 1.2) * rng.uniform(0.85, 1.15, 3) + noise, 0, 255).astype(np.uint8)
 
 
-def _thing(paint: Paint, rng: np.random.Generator) -> Model:
+def _thing(tints: Tints, rng: np.random.Generator) -> Model:
     """A thing of the library at some size, or a plain box or cylinder."""
     if rng.random() < _PLAIN:
         x, y, z = np.exp(rng.uniform(np.log(0.03), np.log(0.26), 3)).tolist()
-        return _plain((x, y, z), paint, rng)
+        return _plain((x, y, z), tints, rng)
     kind = MODELS[name := str(rng.choice(_KINDS))]
     size = np.array(kind.size_m) * rng.uniform(0.7, 1.25) * rng.uniform(0.85, 1.15, 3)
     x, y, z = np.clip(size, 0.005, 0.6).tolist()
-    return assemble(name, kind.parts(x, y, z, paint() or kind.colour), kind.mass_kg)
+    return assemble(name, kind.parts(x, y, z, tints() or kind.colour), kind.mass_kg)
 
 
-def _long_and_narrow(paint: Paint, rng: np.random.Generator) -> tuple[Model, Model]:
+def _long_and_narrow(tints: Tints, rng: np.random.Generator) -> tuple[Model, Model]:
     """A plain thing that lies along x, and one to stand in front of it."""
     length = rng.uniform(0.14, 0.36)
     side, height = rng.uniform(0.04, 0.12, 2)
     narrow = rng.uniform(0.03, 0.4 * length)
     tall = rng.uniform(0.6, 1.5) * height + 0.04
-    return _plain((length, side, height), paint, rng), _plain((narrow, narrow, tall), paint, rng)
+    return _plain((length, side, height), tints, rng), _plain((narrow, narrow, tall), tints, rng)
 
 
-def _plain(size_m: Vec3, paint: Paint, rng: np.random.Generator) -> Model:
+def _plain(size_m: Vec3, tints: Tints, rng: np.random.Generator) -> Model:
     """A packet or a tin; printed ones have a lower half of another colour."""
     x, y, z = size_m
-    colour = paint() or _any_colour(rng)
+    colour = tints() or _any_colour(rng)
     lower = _any_colour(rng) if rng.random() < _BANDED else colour
     round_ = rng.random() < 0.4
     lying = x > z

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from nodes.coordinator.scene.reconcile import Actions, order
-from nodes.coordinator.scene.settled import Settled, statements
+from nodes.coordinator.scene.settled import Settled, doing, statements
 from schemas.entities import Entity
 from schemas.joints import Joint, openness
 from schemas.scenes import Body
@@ -127,3 +127,59 @@ def test_a_reset_puts_joints_where_the_map_says(share):
 
     wanted = joint_order(fridge(2, openness=share), standing(0.25))
     assert wanted.positions == {"door": pytest.approx(1.6 * share)}
+
+
+KNOB = Joint(name="knob", kind="hinge", lower=-1.5, upper=0.0, closed=0.0, switch=True)
+
+
+def stove(share: float, door: float = 0.0, *, joint_commit: int = 1) -> Body:
+    known = standing(door, joint_commit=joint_commit)
+    return structs.replace(
+        known, joints=(*known.joints, structs.replace(KNOB, position=KNOB.position_at(share)))
+    )
+
+
+def switched(commit: int = 2, source: str = "operator", **said) -> Entity:
+    known = entity("chair1", at(0.0))
+    return structs.replace(known, properties=said, switch_provenance=provenance(commit, source))
+
+
+def test_the_map_follows_a_switch_that_somebody_turned():
+    assert look([fridge()], [stove(1.0)]).opened == ("chair1",)
+    said = switched(1, isSwitchedOn=False)
+    assert look([said], [stove(0.6)]).opened == ("chair1",)
+    assert look([said], [stove(0.4)]) == Actions()
+    assert look([said], [stove(0.0, door=0.5)]).opened == ("chair1",)
+
+
+def test_what_is_said_of_a_switch_is_done_and_doors_stay():
+    (wanted,) = look([switched(isSwitchedOn=True)], [stove(0.0)]).joints
+    assert (wanted.positions, wanted.commit) == ({"door": 0.0, "knob": -1.5}, 2)
+    exact = switched(isSwitchedOn=True, switchPositions="knob=-0.9", isOpen=True)
+    (wanted,) = look([exact], [stove(0.0)]).joints
+    assert wanted.positions == {"door": 1.6, "knob": -0.9}
+
+
+def test_how_switches_stand_is_stated_apart_from_doors():
+    said = {one.property: one.values[0] for one in statements(stove(0.6, door=0.5).joints)}
+    assert said == {
+        "isOpen": "true",
+        "openness": "0.5",
+        "jointPositions": "door=0.8",
+        "isSwitchedOn": "true",
+        "switchPositions": "knob=-0.9",
+    }
+
+
+@pytest.mark.parametrize(
+    ("share", "door", "before", "told"),
+    [
+        (1.0, 0.0, {}, "was switched on"),
+        (0.0, 0.0, {"isSwitchedOn": True}, "was switched off"),
+        (0.8, 0.0, {"isSwitchedOn": True}, "has knob=-1.2"),
+        (0.0, 0.5, {}, "was opened to 50%"),
+        (1.0, 0.5, {"isOpen": False}, "was opened to 50% and was switched on"),
+    ],
+)
+def test_only_of_what_is_new_something_is_told(share, door, before, told):
+    assert doing(stove(share, door).joints, before) == told

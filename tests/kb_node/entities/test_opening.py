@@ -26,3 +26,11 @@ def test_what_is_said_together_stays():
 def test_what_says_nothing_new_changes_nothing():
     assert implied({v.IS_OPEN: [TRUE]}, OPEN) == {}
     assert implied({v.dm("hasColor"): [v.dm("color_red")]}, OPEN) == {}
+
+
+def test_switches_and_doors_do_not_concern_one_another():
+    said = {**OPEN, v.IS_SWITCHED_ON: [TRUE], v.SWITCH_POSITIONS: [v.literal("knob=1")]}
+    assert implied({v.IS_SWITCHED_ON: [FALSE]}, said) == {v.SWITCH_POSITIONS: []}
+    assert implied({v.IS_OPEN: [FALSE]}, said) == {v.OPENNESS: [], v.JOINT_POSITIONS: []}
+    both = {v.IS_OPEN: [FALSE], v.IS_SWITCHED_ON: [FALSE]}
+    assert implied(both, said) == {v.OPENNESS: [], v.JOINT_POSITIONS: [], v.SWITCH_POSITIONS: []}

@@ -20,9 +20,9 @@ from schemas.entities import Entity, Pose, Provenance
 
 DIGESTS = {
     "rules": "866c583d92a0dbe7",
-    "layouts": "9edb28dfd8277fbd",
+    "layouts": "4b9f0fd61df3924d",
     "closure": "543217405dc297c7",
-    "entities": "fcc629104ec36663",
+    "entities": "1600f749a51e3eda",
     "columns": "5be64fedcc6339af",
 }
 """Those of the format. When one of them is another: add 1 to FORMAT, and write down the new ones."""
@@ -79,7 +79,7 @@ def test_the_format_grows_with_what_is_concluded_and_how_it_is_kept():
         "entities": digest(entities),
         "columns": digest(sorted(map(_unlabelled, stored(reasoner.columns())))),
     }
-    assert (FORMAT, found) == (5, DIGESTS), "add 1 to FORMAT, and write the digests down here"
+    assert (FORMAT, found) == (6, DIGESTS), "add 1 to FORMAT, and write the digests down here"
 
 
 def _unlabelled(text):

@@ -456,6 +456,25 @@ def test_a_moving_camera_looks_longer_before_it_takes_one_thing_for_another(conf
     assert table.taken_for == ("cup1",)
 
 
+@pytest.mark.parametrize(("config", "names"), [(CONFIG, ["object1"]), (CONFIG.on_the_move, ["object2"])])
+def test_to_a_moving_camera_a_chair_two_metres_from_one_that_has_gone_is_another(config, names):
+    chair_m = (0.45, 0.45, 0.9)
+    table = Table([seen("Object", at(1, 1, 0.0), chair_m)], config=config)
+    table.looks(8)
+    table.things = [seen("Object", at(3, 1, 0.0), chair_m)]
+    table.looks(20)
+    assert list(table.entities) == names
+
+
+def test_what_is_pushed_along_keeps_its_name_even_to_a_moving_camera():
+    chair_m = (0.45, 0.45, 0.9)
+    table = Table([seen("Object", at(1, 1, 0.0), chair_m)], config=CONFIG.on_the_move)
+    table.looks(8)
+    table.things = [seen("Object", at(1.5, 1, 0.0), chair_m)]
+    table.looks(20)
+    assert list(table.entities) == ["object1"]
+
+
 def test_a_part_becomes_an_entity_later_and_is_put_right_when_the_whole_is_seen():
     table = Table([seen("Book", at(1, 1), (0.16, 0.2, 0.03), whole=False)], config=CONFIG.on_the_move)
     assert table.looks(CONFIG.on_the_move.part_looks - 1) == []
@@ -486,3 +505,74 @@ def test_a_leg_of_a_known_thing_is_no_new_entity(x, added):
     leg = seen("Cup", at(x, x, 0.0), (0.04, 0.04, 0.16))
     table = Table([leg], hidden=True).told([entity("chair1", "Object", at(1, 1, 0.0), (0.45, 0.45, 0.9))])
     assert any(isinstance(command, Add) for command in table.looks(CONFIG.confirm_looks)) is added
+
+
+def test_a_thing_has_not_moved_where_its_place_is_still_filled():
+    """Next to a counter stands another of one height: what was seen now is a part of both."""
+    table = Table([seen("Object", at(1, 1, 0.0), (1.4, 0.6, 0.9))])
+    table.looks(5)
+    rest = seen("Bottle", at(0.5, 1, 0.0), (0.4, 0.6, 0.9))
+    table.things = [seen("Object", at(1.4, 1, 0.0), (1.4, 0.6, 0.9)), rest]
+    told = table.looks(table.config.kept_looks - 2)
+    assert [c for c in told if isinstance(c, Update)] == []
+    assert table.entities["object1"].pose == at(1, 1, 0.0)
+
+
+def test_a_thing_that_was_pushed_along_has_moved():
+    table = Table([seen("Object", at(1, 1, 0.0), (1.4, 0.6, 0.9))])
+    table.looks(5)
+    table.things = [seen("Object", at(1.4, 1, 0.0), (1.4, 0.6, 0.9))]
+    (update,) = table.looks(10)
+    assert update.at == pytest.approx((1.4, 1.0, 0.0))
+
+
+def test_what_is_like_nothing_known_from_near_is_an_object():
+    table = Table([structs.replace(seen("Bottle", at(1, 1), SIZES["Cup"]), points=100)])
+    table.looks(5)
+    table.things = [structs.replace(seen("Object", at(1, 1), SIZES["Cup"]), points=9000)]
+    (update,) = table.looks(30)
+    assert (update.name, update.class_) == ("bottle1", "Object")
+    assert table.entities["bottle1"].class_ == "Object"
+
+
+def test_what_turns_out_to_be_a_leg_is_no_entity_any_more():
+    table = Table([seen("Cup", at(1.21, 1.21, 0.0), (0.04, 0.04, 0.16))], hidden=True)
+    table.looks(5)
+    assert set(table.entities) == {"cup1"}
+    table.told([entity("chair1", "Object", at(1, 1, 0.0), (0.45, 0.45, 0.9))])
+    (remove,) = table.looks(10)
+    assert (remove.names, remove.reason) == (("cup1",), "cup1 is a leg of chair1")
+    my_cup = entity("my_cup", "Cup", at(1.21, 1.21, 0.0), (0.04, 0.04, 0.16))
+    assert table.told([my_cup]).looks(10) == []
+
+
+def test_a_class_is_withdrawn_for_one_above_it_that_looks_tell_from_it():
+    classes = replace(CLASSES, ancestors=CLASSES.ancestors | {"Mug": CLASSES.ancestors["Cup"] | {"Cup"}})
+    mug = entity("mug1", "Mug", at(1, 1), SIZES["Cup"], source="perception", confidence=0.6)
+    entities, tracks, told = {"mug1": mug}, Tracks(), []
+    for _ in range(40):
+        found = associate(entities, tracks, [seen("Cup", at(1, 1))], lambda *_: "free", classes, CONFIG)
+        tracks = found.tracks
+        told += found.commands
+        if told:
+            break
+    assert [(command.name, command.class_) for command in told] == [("mug1", "Cup")]
+
+
+def test_a_plate_that_was_measured_five_times_too_high_keeps_its_name():
+    table = Table([seen("Object", at(1, 1), (0.28, 0.29, 0.12))])
+    table.looks(4)
+    table.things = [seen("Object", at(1.01, 1.01), (0.25, 0.27, 0.018))]
+    (resized,) = table.looks(CONFIG.odd_looks + 2 * CONFIG.nudge_looks)
+    assert (resized.name, resized.size) == ("object1", (0.25, 0.27, 0.018))
+    assert table.looks(2 * CONFIG.odd_looks) == []
+    assert table.taken_for == ("object1",)
+
+
+def test_a_narrower_thing_in_the_place_of_another_is_another():
+    table = Table([seen("Object", at(1, 1), (0.28, 0.29, 0.12))])
+    table.looks(4)
+    table.things = [seen("Object", at(1.01, 1.01), (0.16, 0.17, 0.018))]
+    remove, add = table.looks(CONFIG.odd_looks + 2 * CONFIG.nudge_looks)
+    assert isinstance(remove, Remove)
+    assert add.name == "object2"

@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, share
+from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, left_behind, share
 from tests.perception_node.things import at
 
 CUP = (0.08, 0.08, 0.1)
@@ -38,3 +38,20 @@ def test_a_part_is_of_one_with_the_whole_but_a_cup_is_not_of_the_chair_it_stands
     chair = OrientedBox(at(0, 0, 0.0), (0.5, 0.5, 0.9))
     assert not are_of_one(chair, OrientedBox(at(0, 0, 0.45), CUP))
     assert not are_of_one(whole, OrientedBox(at(0.12, 0), (0.1, 0.1, 0.3)))
+
+
+def test_what_a_thing_leaves_behind_is_what_of_its_box_is_beyond_its_new_one():
+    before = OrientedBox(at(1, 1, 0.0, yaw=1.5707963), (1.4, 0.6, 0.9))  # long along y
+    (slab,) = left_behind(before, OrientedBox(at(1, 1.5, 0.0, yaw=1.5707963), (1.4, 0.6, 0.9)))
+    assert slab.pose.position_m == pytest.approx((1.0, 0.55, 0.0), abs=1e-6)
+    assert slab.size_m == pytest.approx((0.5, 0.6, 0.9))
+    (below,) = left_behind(before, OrientedBox(at(1, 1, 0.4), (0.6, 1.4, 0.5)))
+    assert below.pose.position_m == pytest.approx((1.0, 1.0, 0.0), abs=1e-6)
+    assert below.size_m == pytest.approx((1.4, 0.6, 0.4))
+
+
+@given(st.floats(-3, 3), st.floats(-0.09, 0.09))
+def test_nothing_is_left_behind_by_what_hardly_moves_or_grows(yaw, aside):
+    before = OrientedBox(at(0, 0, yaw=yaw), (1.0, 0.5, 0.5))
+    assert left_behind(before, OrientedBox(at(aside / 2, aside / 2, yaw=yaw), (1.0, 0.5, 0.5))) == []
+    assert left_behind(before, OrientedBox(at(0, 0, yaw=yaw), (1.5, 0.6, 0.7))) == []

@@ -42,3 +42,9 @@ def test_a_class_has_no_more_of_the_votes_than_one_above_it(said):
     shares = [votes.share(name, CLASSES) for name in ("Cup", "Tableware", "Object")]
     assert shares == sorted(shares)
     assert 0.0 <= shares[0] <= shares[-1] <= 1.0 + 1e-9
+
+
+def test_a_look_that_is_worth_more_outweighs_others():
+    votes = cast(*[("Cup", 0.9)] * 4).cast("Bottle", 0.9, 8.0)
+    assert votes.belief(CLASSES) == "Bottle"
+    assert cast(*[("Cup", 0.9)] * 4).cast("Bottle", 0.9).belief(CLASSES) == "Cup"

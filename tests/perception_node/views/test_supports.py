@@ -35,3 +35,9 @@ def test_a_table_does_not_stand_on_the_seats_around_it():
     assert around.area_m2 == pytest.approx(0.375**2)
     assert height((0.4, 0.4, 0.46), (2.0, 2.0, 0.8), FLOOR, around) == 0.0
     assert height((0.1, 0.1, 0.46), (0.3, 0.3, 0.6), FLOOR, around) == pytest.approx(0.45)
+
+
+def test_a_few_stray_points_do_not_widen_a_support():
+    points, where = seats((0,), (0,))
+    points[1, 1] = (30.0, -40.0, 0.45)
+    assert height((20.0, -30.0, 0.46), (20.1, -29.9, 0.5), FLOOR, support_of(points, where)) == 0.0

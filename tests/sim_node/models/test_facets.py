@@ -5,8 +5,8 @@ import pytest
 
 from nodes.sim_node.models.facets import facets, surface_of
 from nodes.sim_node.models.library import build
-from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import Mesh, Part, Shape, about, ball, box, pill, rod
+from nodes.sim_node.models.variety_table import KINDS
 
 RED = (1.0, 0.0, 0.0)
 TILTED = about("x", 0.7)
@@ -46,7 +46,7 @@ def test_a_surface_is_where_its_part_is(name):
     assert (points.max(axis=0) - points.min(axis=0)) / 2 == pytest.approx(part.reach(), rel=0.06)
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", KINDS)
 def test_every_model_has_a_surface_of_its_size(name):
     model = build(name, None)
     surface = surface_of(model)

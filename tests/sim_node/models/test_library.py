@@ -5,38 +5,38 @@ import numpy as np
 import pytest
 
 from nodes.sim_node.models.library import ModelError, build
-from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import Role, bounds
+from nodes.sim_node.models.variety_table import KINDS
 
 HOUSEHOLD = Path(__file__).parents[3] / "ontology" / "household.ttl"
 
 
 def test_every_model_that_the_tbox_names_is_there():
     named = set(re.findall(r'dm:model "([^"]+)"', HOUSEHOLD.read_text()))
-    assert named - MODELS.keys() == set()
+    assert named - KINDS.keys() == set()
 
 
 def test_there_are_sixty_models_and_no_two_are_built_alike():
-    shapes = {name: tuple((p.shape, p.role) for p in build(name, None).parts) for name in MODELS}
+    shapes = {name: tuple((p.shape, p.role) for p in build(name, None).parts) for name in KINDS}
     assert len(set(shapes.values())) >= 60
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", KINDS)
 def test_a_model_fills_its_size_from_the_bottom_centre_up(name):
-    wanted = MODELS[name].size_m
+    wanted = KINDS[name].size_m
     model = build(name, None)
     low, high = bounds(model.parts)
     assert low[2] == pytest.approx(0.0, abs=1e-9)
     assert low[:2] == pytest.approx(-high[:2])
     for have, want in zip(model.size_m, wanted, strict=True):
         assert abs(have - want) <= max(0.15 * want, 0.012)
-    assert model.mass_kg == pytest.approx(MODELS[name].mass_kg, rel=0.5)
+    assert model.mass_kg == pytest.approx(KINDS[name].mass_kg, rel=0.5)
     a, b, c = sorted(model.inertial.moments)
     assert a > 0.0
     assert c <= a + b + 1e-6
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", KINDS)
 def test_what_is_felt_is_no_bigger_than_what_is_seen(name):
     parts = build(name, None).parts
     felt = [part for part in parts if part.role is not Role.SEEN]

@@ -3,8 +3,8 @@ import json
 import pytest
 
 from nodes.sim_node.models.library import build
-from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.spaces import shape_of
+from nodes.sim_node.models.variety_table import KINDS
 from nodes.sim_node.models.write_shapes import as_json, library_shapes
 from ontology import MODEL_SHAPES_JSON
 
@@ -20,7 +20,7 @@ def test_the_file_is_what_the_models_say():
 
 def test_the_file_is_what_some_models_of_each_kind_say():
     text = MODEL_SHAPES_JSON.read_text()
-    assert json.loads(text).keys() == {"", *MODELS}
+    assert json.loads(text).keys() == {"", *KINDS}
     for name in ("", "table", "bookshelf", "fridge", "chair", "bowl", "cup", "apple", "door", "clock"):
         (row,) = as_json({name: shape_of(build(name, None))}).splitlines()[1:-1]
         assert row in text, "make shapes"

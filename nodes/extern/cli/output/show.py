@@ -100,6 +100,7 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "class and size set": provenance_text(e.shape_provenance),
         "reference set": provenance_text(e.reference_provenance),
         **({"joints set": provenance_text(e.joint_provenance)} if e.joint_provenance is not None else {}),
+        **({"switches set": provenance_text(e.switch_provenance)} if e.switch_provenance is not None else {}),
     }
     return card(rows)
 
@@ -279,4 +280,5 @@ def _grow(tree: Tree, parent: str, children: dict[str, list[str]], by_name: dict
 
 
 def _model(e: Entity) -> str:
-    return (e.body.model if e.body is not None else "") or e.model or "a box"
+    model = (e.body.model if e.body is not None else "") or e.model or "a box"
+    return f"{model} (as stated)" if "model" in e.properties else model

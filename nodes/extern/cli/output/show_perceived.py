@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 _COLUMNS = ("object", "class", "probability", "points", "x", "y", "z", "yaw", "size [m]")
 
+_UPRIGHT = 0.7
+
 
 def counts(sight: Sight) -> dict[int, int]:
     """How many points each label has."""
@@ -57,6 +59,6 @@ def _cells(label: int, points: int, seen: Observation | SeenInFrame | None) -> l
     return [
         *(str(label), seen.class_, f"{seen.probability:.2f}", str(points)),
         *(f"{value:.3f}" for value in seen.pose.position_m),
-        f"{math.degrees(seen.pose.yaw_rad):.0f}°",
+        f"{math.degrees(seen.pose.yaw_rad):.0f}°" + ("" if seen.pose.upright > _UPRIGHT else " lying"),
         " x ".join(f"{side:.3f}" for side in seen.size_m),
     ]

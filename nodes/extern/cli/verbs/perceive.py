@@ -5,9 +5,9 @@ from __future__ import annotations
 import io
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -22,6 +22,7 @@ from schemas.perception import FrameRow
 
 if TYPE_CHECKING:
     from nodes.perception_node.detector import Detector
+    from nodes.perception_node.recognition.shipped_votes import Learnt
 
 _SAY_S = 5.0
 """After this time it is told again how far a dataset is."""
@@ -31,46 +32,38 @@ _FRAMES = {
 }
 
 
+def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[Any], Any]:
+    """An option that names a file or a folder."""
+    return click.option(name, *also, metavar=metavar, type=click.Path(path_type=Path), help=help)
+
+
 @click.command()
 @click.argument("files", metavar="[FILE...]", nargs=-1, type=click.Path(path_type=Path))
-@click.option(
-    "--frames",
-    metavar="DIR",
-    type=click.Path(path_type=Path),
-    help="A dataset instead: each folder in it has rgb.png, depth.png [mm] and camera.json.",
+@_path_option(
+    "--frames", "DIR", "A dataset instead: each folder in it has rgb.png, depth.png [mm] and camera.json."
 )
-@click.option(
+@_path_option(
     "--labels",
-    metavar="OUT",
-    type=click.Path(path_type=Path),
-    help="Write the object label of each point to this .npy file, or of each frame into this folder.",
+    "OUT",
+    "Write the object label of each point to this .npy file, or of each frame into this folder.",
 )
-@click.option(
-    "--json",
-    "rows",
-    metavar="OUT",
-    type=click.Path(path_type=Path),
-    help="With --frames: write a row for each frame to this file.",
-)
-@click.option(
+@_path_option("--json", "OUT", "With --frames: write a row for each frame to this file.", "rows")
+@_path_option(
     "--intrinsics",
-    metavar="FILE.json",
-    type=click.Path(path_type=Path),
-    help="JSON file with fx, fy, cx, cy [pixel] and, optionally, depth_scale [m] and map_from_camera.",
+    "FILE.json",
+    "JSON file with fx, fy, cx, cy [pixel] and, optionally, depth_scale [m] and map_from_camera.",
 )
-@click.option(
+@_path_option(
     "--masks",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Masks of a detector: COCO's JSON or a label image; with --frames, their name in each folder.",
+    "FILE",
+    "Masks of a detector: COCO's JSON or a label image; with --frames, their name in each folder.",
 )
-@click.option(
-    "--label-map",
-    metavar="FILE.json",
-    type=click.Path(path_type=Path),
-    help='With --masks: what its labels are called here, {"coffee mug": "Cup"}.',
+@_path_option(
+    "--label-map", "FILE.json", 'With --masks: what its labels are called here, {"coffee mug": "Cup"}.'
 )
 @click.option("--masks-only", is_flag=True, help="With --masks: find nothing but what they show.")
+@click.option("--fit", is_flag=True, help="Fit the models of classes to what is found: full poses (Open3D).")
+@_path_option("--data", "DIR", "Know also what was shown: the data folder of semmap learn --data.")
 @click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
 def perceive(
     files: tuple[Path, ...],
@@ -81,22 +74,26 @@ def perceive(
     masks: Path | None,
     label_map: Path | None,
     masks_only: bool,
+    fit: bool,
+    data: Path | None,
     format: str,
 ) -> None:
     """Find the objects in point clouds, depth images or datasets.
 
-    Clouds are PCD or PLY files; images are one in colour and one of depth (PNG). Labels are integers in the
-    cloud's own shape, (height, width), or (1, points) when it is not organised: 0 for background, 1 to n
-    for the objects.
+    Clouds are PCD or PLY files, with Open3D .xyz, .xyzrgb and .pts, too; images are one in colour and one of
+    depth (PNG). Labels are integers in the cloud's own shape, (height, width), or (1, points) when it is not
+    organised: 0 for background, 1 to n for the objects.
     """
     extras.require("semmap perceive", "perception")
+    if fit:
+        _require_open3d()
     detector = _detector(masks, label_map, masks_only=masks_only)
     if frames is not None:
         if files or intrinsics is not None:
             raise errors.BadRequest(
                 "--frames takes neither files nor --intrinsics; each frame has its own camera.json"
             )
-        _dataset(frames, labels, rows, detector, format)
+        _dataset(frames, labels, rows, detector, _learnt(data), format, fit=fit)
         return
     if rows is not None:
         raise errors.BadRequest("--json goes with --frames; for files use --format json")
@@ -108,11 +105,14 @@ def perceive(
         )
     import numpy as np  # half of what the command line would take to start
 
+    from nodes.perception_node.fitting.model_surfaces import shipped as surfaces
+    from nodes.perception_node.fitting.things import fitted_in_sight
     from nodes.perception_node.input.files.cloud_files import read_frames
-    from nodes.perception_node.pipeline import one_by_one, shipped
+    from nodes.perception_node.pipeline import one_by_one
     from nodes.perception_node.views.masked import with_masks
     from nodes.perception_node.views.segmented_view import see
 
+    learnt = _learnt(data)
     clouds = list(read_frames(files, intrinsics))
     for option, given in (("--labels", labels), ("--masks", masks)):
         if given is not None and len(clouds) != 1:
@@ -125,7 +125,9 @@ def perceive(
             if unknown_here := detector.labels.unknown([masks_found]):
                 complain(wording.unknown_labels(unknown_here))
             sight = with_masks(sight, masks_found)
-        told = one_by_one(sight, shipped(), None if detector is None else detector.labels)
+        told = one_by_one(sight, learnt, None if detector is None else detector.labels)
+        if fit:
+            told = fitted_in_sight(sight, told, surfaces())
         frame = "plane" if cloud.map_from_camera is None else "map"
         if format == "json":
             records.append({"file": str(file), "frame": frame, "objects": as_records(sight, told)})
@@ -143,6 +145,30 @@ def perceive(
         print_json(records)
 
 
+def _require_open3d() -> None:
+    from nodes.perception_node.fitting.fit import available
+
+    if not available():
+        raise errors.BadRequest(
+            "--fit needs Open3D, which is not installed (semmap's extra `perception` brings it for"
+            " Python up to 3.12); go without it for boxes"
+        )
+
+
+def _learnt(data: Path | None) -> Learnt:
+    """What ships with perception, and what a data folder has of what was shown."""
+    from nodes.perception_node.lesson_book import FILENAME, LessonBook
+    from nodes.perception_node.recognition.shipped_votes import shipped
+
+    if data is None:
+        return shipped()
+    if not (data / FILENAME).exists():
+        raise errors.BadFile(
+            f"nothing was shown to {data}; first: semmap learn CLASS --frames DIR --data {data}"
+        )
+    return LessonBook(data / FILENAME, shipped()).learnt
+
+
 def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -> Detector | None:
     """What a detector of one's own has found."""
     if masks is None:
@@ -154,28 +180,41 @@ def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -
     from nodes.perception_node.recognition.told_names import Labels
 
     classes = read_label_map(label_map) if label_map is not None else {}
-    return Detector(masks, Labels(shipped(), classes), masks_only)
+    labels = Labels(shipped(), classes)
+    if strange := sorted({name for name in classes.values() if not labels.is_learnt(name)}):
+        hint = errors.did_you_mean(strange[0], shipped().ancestors)
+        complain(f"classes of the label map that perception never learnt: {wording.few(strange)}{hint}")
+    return Detector(masks, labels, masks_only)
 
 
 def _dataset(
-    folder: Path, labels: Path | None, out: Path | None, detector: Detector | None, format: str
+    folder: Path,
+    labels: Path | None,
+    out: Path | None,
+    detector: Detector | None,
+    learnt: Learnt,
+    format: str,
+    *,
+    fit: bool,
 ) -> None:
     """What each frame of a dataset shows; what is wrong with one is told in its row, and the others go on."""
     import msgspec
     import numpy as np
 
     from nodes.perception_node.datasets import perceived
+    from nodes.perception_node.fitting.model_surfaces import shipped as surfaces
     from nodes.perception_node.input.files.frame_folders import frames_in
-    from nodes.perception_node.recognition.shipped_votes import shipped
 
     folders = frames_in(folder)
+    if out is not None and (out.is_dir() or not out.absolute().parent.is_dir()):
+        raise errors.BadFile(f"{out} cannot be written: it is a folder, or in one that is not there")
     if labels is not None:
         try:
             labels.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise errors.BadFile(f"{labels} cannot be made a folder of labels: {error.strerror}") from None
     rows, unknown, said, began_s = [], set[str](), 0.0, time.monotonic()
-    for told in perceived(folders, shipped(), detector):
+    for told in perceived(folders, learnt, detector, surfaces() if fit else None):
         rows.append(told.row)
         unknown.update(told.unknown_labels)
         if labels is not None and told.labels is not None:

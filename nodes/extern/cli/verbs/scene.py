@@ -68,7 +68,7 @@ def detach(client: Client, name: str, dry_run: bool) -> None:
 
 
 _WAIT = click.option("--wait", is_flag=True, help="Wait until it stands and the map has followed.")
-_JOINT = click.option("--joint", metavar="JOINT", help="Only this one of its doors or drawers.")
+_JOINT = click.option("--joint", metavar="JOINT", help="Only this one of its doors, drawers or switches.")
 
 
 @click.command("open")

@@ -35,6 +35,7 @@ _ONLY_OF: Final = {
     v.TBOX + "openness": "Openable_Thing",
     v.TBOX + "jointPositions": "Openable_Thing",
     v.TBOX + "isSwitchedOn": "Switchable_Thing",
+    v.TBOX + "switchPositions": "Switchable_Thing",
 }
 """Who is offered a property, by its IRI: its domain is wider, and so is what `set` takes."""
 

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
-from nodes.perception_node.input.files import image_files, pcd, ply
+from nodes.perception_node.input.files import image_files, open3d_clouds, pcd, ply
+from nodes.perception_node.input.files.columns import OtherVariant
 from schemas.errors import BadFile, BadRequest
 from schemas.wording import counted
 
@@ -34,19 +35,27 @@ def read_frames(files: Sequence[Path], camera: Path | None = None) -> Iterator[t
 
 
 def read_cloud(path: Path) -> Cloud:
-    """The cloud in a PCD or PLY file. Raises BadFile."""
-    decode = _DECODERS.get(path.suffix.lower())
-    if decode is None:
-        raise BadFile(
-            f"{path} is not a supported cloud; supported are {', '.join(_DECODERS)} and images as .png"
-        )
+    """The cloud in a file; what is neither PCD nor PLY as we know it is read by Open3D. Raises BadFile."""
+    suffix = path.suffix.lower()
+    if suffix not in (*_DECODERS, *open3d_clouds.SUFFIXES):
+        supported = ", ".join((*_DECODERS, *open3d_clouds.SUFFIXES))
+        raise BadFile(f"{path} is not a supported cloud; supported are {supported} and images as .png")
     try:
-        cloud = decode(path.read_bytes())
+        cloud = _decoded(path, suffix)
     except OSError as error:
         raise BadFile(f"{path} cannot be read: {error.strerror}") from None
     except ValueError as error:
         raise BadFile(f"{path} is not a valid cloud: {error}") from None
     return checked(cloud, path)
+
+
+def _decoded(path: Path, suffix: str) -> Cloud:
+    if suffix not in _DECODERS:
+        return open3d_clouds.read(path)
+    try:
+        return _DECODERS[suffix](path.read_bytes())
+    except OtherVariant as error:
+        return open3d_clouds.read(path, str(error))
 
 
 def checked(cloud: Cloud, path: Path) -> Cloud:

@@ -16,7 +16,7 @@ from nodes.perception_node.input.files.image_files import opened
 from nodes.perception_node.input.projection import cloud_of, fits, is_pose, thinned, thinning
 from schemas import codec
 from schemas.errors import BadFile
-from schemas.wording import sentence
+from schemas.wording import few, sentence
 
 COLOUR, DEPTH, CAMERA = "rgb.png", "depth.png", "camera.json"
 _FILES = (COLOUR, DEPTH, CAMERA)
@@ -51,11 +51,20 @@ class FileFrame:
 
 
 def frames_in(folder: Path) -> list[Path]:
-    """The folders of a dataset's frames, in the order of their names. Raises BadFile when there are none."""
+    """The folders of a dataset's frames, in the order of their names; hidden ones are none.
+
+    Raises BadFile when there are none.
+    """
     try:
-        found = sorted(path for path in folder.iterdir() if path.is_dir())
+        found = sorted(p for p in folder.iterdir() if p.is_dir() and not p.name.startswith("."))
+    except NotADirectoryError:
+        raise BadFile(
+            f"{folder} is no folder; of a recording make one first: semmap frames {folder} DIR"
+        ) from None
     except OSError as error:
         raise BadFile(f"{folder} cannot be read: {error.strerror}") from None
+    if {path.name for path in found} >= {"rgb", "depth"}:
+        raise BadFile(f"{folder} is a recording; first make it folders of frames: semmap frames {folder} DIR")
     if not found:
         raise BadFile(f"{folder} has no folders of frames; each holds {COLOUR}, {DEPTH} and {CAMERA}")
     return found
@@ -65,7 +74,7 @@ def read_frame(folder: Path) -> FileFrame:
     """The frame in a folder. Raises BadFile saying what is wrong with it."""
     missing = [name for name in _FILES if not (folder / name).exists()]
     if missing:
-        raise BadFile(f"{folder.name} lacks {' and '.join(missing)}")
+        raise BadFile(f"{folder.name} lacks {few(missing)}")
     of = CAMERA
     try:
         camera = _camera(folder / CAMERA)
@@ -75,12 +84,21 @@ def read_frame(folder: Path) -> FileFrame:
         of = DEPTH
         with opened(folder / DEPTH) as image:
             numbers = np.asarray(image) if image.mode in ("I;16", "I;16B", "I;16L", "I") else None
+            is_float = image.mode == "F"
+        if is_float:
+            raise ValueError("its numbers are floats; it must have whole ones of 16 bits: metres times 1000")
         if numbers is None:
             raise ValueError("it must have 16 bits in a single channel: millimetres, 0 for nothing seen")
         if 0 < numbers.max(initial=0) < _FEWEST_MM:
             raise ValueError(
-                f"its largest number is {numbers.max()}, as if it were in metres; it must be in millimetres"
+                f"its largest number is {numbers.max()}, as if it were in metres; it must be in"
+                " millimetres, metres times 1000"
             )
+        if rgb.shape[:2] != numbers.shape:
+            (height, width), (rows, columns) = rgb.shape[:2], numbers.shape
+            raise ValueError(f"colour is {width} x {height} pixels, depth {columns} x {rows}")
+        if not numbers.any():
+            raise ValueError("it has no depth anywhere: all of its numbers are 0")
         of = CAMERA
         return _put_together(rgb, (numbers * np.float32(0.001)).astype(np.float32), camera)
     except OSError as error:
@@ -98,8 +116,6 @@ def _camera(path: Path) -> FrameCamera:
 
 def _put_together(rgb: NDArray[np.uint8], depth_m: Floats, camera: FrameCamera) -> FileFrame:
     height, width = depth_m.shape
-    if rgb.shape[:2] != depth_m.shape:
-        raise ValueError(f"colour is {rgb.shape[1]} x {rgb.shape[0]} pixels, depth {width} x {height}")
     intrinsics = np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]])
     said = (camera.width or width, camera.height or height)
     if said != (width, height) or not fits(intrinsics, width, height):

@@ -7,21 +7,26 @@ from pathlib import Path
 import msgspec
 import numpy as np
 from msgspec import Struct
+from numpy.typing import NDArray
 from PIL import Image
 
-from nodes.perception_node.input.cloud import Cloud
+from nodes.perception_node.input.cloud import FARTHEST_M, Cloud
 from nodes.perception_node.input.projection import cloud_of, fits, is_pose
 from schemas import codec
 from schemas.wording import sentence
 
 _DEPTH_MODES = ("I;16", "I;16B", "I", "F")
 _MOST_PIXELS = 50_000_000
+_MM_M = 0.001
+_FEWEST_MM = 100
+"""A depth picture whose largest number is less is in metres, or of nothing."""
 
 
 class PinholeCamera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A pinhole camera [pixel], the middle of the first pixel at 0.
 
-    `depth_scale` makes metres of a depth picture's numbers.
+    `depth_scale` makes metres of a depth picture's numbers; where nobody says, whole numbers are millimetres
+    and floats metres.
     `map_from_camera` is the (4, 4) pose of the camera row by row, where somebody knows it.
     """
 
@@ -29,7 +34,7 @@ class PinholeCamera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     fy: float
     cx: float
     cy: float
-    depth_scale: float = 0.001
+    depth_scale: float | None = None
     map_from_camera: tuple[float, ...] | None = None
 
 
@@ -39,7 +44,7 @@ def read_camera(path: Path) -> PinholeCamera:
         camera = msgspec.json.decode(path.read_bytes(), type=codec.prepared(PinholeCamera))
     except msgspec.DecodeError as error:
         raise ValueError(f"invalid intrinsics: {sentence(error, PinholeCamera)}") from None
-    if not (camera.fx > 0 and camera.fy > 0 and camera.depth_scale > 0):
+    if not (camera.fx > 0 and camera.fy > 0 and (camera.depth_scale is None or camera.depth_scale > 0)):
         raise ValueError("invalid intrinsics: fx, fy and depth_scale must be positive")
     if camera.map_from_camera is not None:
         numbers = np.array(camera.map_from_camera)
@@ -58,8 +63,7 @@ def is_depth(path: Path) -> bool:
 
 def read_pictures(depth: Path, color: Path | None, camera: PinholeCamera) -> Cloud:
     """The frame of a depth picture and one of colour. Raises ValueError saying what is wrong, and OSError."""
-    with opened(depth) as image:
-        depth_m = np.asarray(image, dtype=np.float32) * np.float32(camera.depth_scale)
+    depth_m = _depth_m(depth, camera)
     colors = None
     if color is not None:
         with opened(color) as image:
@@ -74,6 +78,26 @@ def read_pictures(depth: Path, color: Path | None, camera: PinholeCamera) -> Clo
         raise ValueError(f"the intrinsics {said} do not fit a picture of {width} x {height} pixels")
     pose = None if camera.map_from_camera is None else np.reshape(camera.map_from_camera, (4, 4))
     return cloud_of(depth_m, colors, intrinsics, pose)
+
+
+def _depth_m(path: Path, camera: PinholeCamera) -> NDArray[np.float32]:
+    """(H, W) [m]. Raises ValueError for numbers that look like those of another unit, and OSError."""
+    with opened(path) as image:
+        numbers, is_float = np.asarray(image, dtype=np.float32), image.mode == "F"
+    if camera.depth_scale is not None:
+        return np.asarray(numbers * np.float32(camera.depth_scale), np.float32)
+    seen = numbers[np.isfinite(numbers) & (numbers > 0)]
+    if is_float and len(seen) and np.median(seen) > FARTHEST_M:
+        raise ValueError(
+            f"half of its numbers are more than {np.median(seen):.0f}, as if they were millimetres; say"
+            ' "depth_scale": 0.001 in the intrinsics'
+        )
+    if not is_float and len(seen) and seen.max() < _FEWEST_MM:
+        raise ValueError(
+            f'its largest number is {seen.max():.0f}, as if it were in metres; say "depth_scale": 1 in the'
+            " intrinsics"
+        )
+    return numbers if is_float else np.asarray(numbers * np.float32(_MM_M), np.float32)
 
 
 def opened(path: Path) -> Image.Image:

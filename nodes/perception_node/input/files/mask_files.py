@@ -13,6 +13,7 @@ from nodes.perception_node.input.files.image_files import opened
 from nodes.perception_node.input.masks import Masks, of_numbers, of_runs
 from schemas.errors import BadFile
 from schemas.perception import MaskRun
+from schemas.wording import sentence
 
 _WANTED = (
     "a list of masks as COCO writes results, a dataset with annotations and categories, or a label image"
@@ -29,18 +30,19 @@ def read_masks(path: Path, height: int, width: int) -> Masks:
                 with opened(path) as image:
                     numbers = np.asarray(image)
             case ".npy":
-                numbers = np.load(io.BytesIO(path.read_bytes()), allow_pickle=False)
+                numbers = np.lib.format.read_array(io.BytesIO(path.read_bytes()), allow_pickle=False)
             case other:
                 raise ValueError(f"masks are .json, .png or .npy files, not '{other}'")
         if numbers.shape != (height, width) or numbers.dtype.kind not in "iu":
+            across_first = (*numbers.shape[1::-1], *numbers.shape[2:])
             raise ValueError(
-                f"a label image for this picture has {width} x {height} whole numbers; this one is of shape"
-                f" {' x '.join(map(str, numbers.shape[::-1]))} with {numbers.dtype}"
+                f"a label image for this picture has {width} x {height} whole numbers; this one has"
+                f" {' x '.join(map(str, across_first))} of {numbers.dtype}"
             )
         return of_numbers(numbers)
     except OSError as error:
         raise BadFile(f"{path} cannot be read: {error.strerror}") from None
-    except (ValueError, msgspec.DecodeError) as error:
+    except ValueError as error:
         raise BadFile(f"{path}: {error}") from None
 
 
@@ -50,31 +52,40 @@ def _runs(data: bytes) -> list[MaskRun]:
         found = msgspec.json.decode(data)
     except msgspec.DecodeError as error:
         raise ValueError(f"not JSON: {error}") from None
-    names: dict[Any, str] = {}
+    names: dict[str, str] = {}
     if isinstance(found, dict):
-        names = {told.get("id"): str(told.get("name", "")) for told in found.get("categories", ())}
+        listed = found.get("categories") or []
+        if not isinstance(listed, list) or not all(isinstance(told, dict) for told in listed):
+            raise ValueError('categories are a list such as [{"id": 1, "name": "cup"}]')
+        names = {str(told.get("id")): str(told.get("name", "")) for told in listed}
         found = found.get("annotations")
     if not isinstance(found, list):
         raise ValueError(f"expected {_WANTED}")
+    pictures = {str(told["image_id"]) for told in found if isinstance(told, dict) and "image_id" in told}
+    if len(pictures) > 1:
+        raise ValueError(
+            f"it has masks of {len(pictures)} pictures (image_id); each picture needs its own file"
+        )
     return [_run(told, names) for told in found]
 
 
-def _run(told: Any, names: dict[Any, str]) -> MaskRun:
+def _run(told: Any, names: dict[str, str]) -> MaskRun:
     if not isinstance(told, dict) or not isinstance(told.get("segmentation"), dict):
         raise ValueError(
             "each mask needs a segmentation with size and counts (RLE); polygons are not supported"
         )
     category = told.get("category_id")
-    label = told.get("category") or told.get("label") or names.get(category) or ""
+    label = told.get("category") or told.get("label") or names.get(str(category)) or ""
     if not label and category is not None:
         label = str(category)
     code = told["segmentation"]
-    return msgspec.convert(
-        {
-            "size": code.get("size"),
-            "counts": code.get("counts"),
-            "label": label,
-            "score": told.get("score", 1.0),
-        },
-        MaskRun,
-    )
+    mask = {
+        "size": code.get("size"),
+        "counts": code.get("counts"),
+        "label": label,
+        "score": told.get("score", 1.0),
+    }
+    try:
+        return msgspec.convert(mask, MaskRun)
+    except msgspec.ValidationError as error:
+        raise ValueError(f"a mask's {sentence(error, MaskRun)}") from None

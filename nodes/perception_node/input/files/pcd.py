@@ -9,7 +9,14 @@ import numpy as np
 
 from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.input.files import lzf
-from nodes.perception_node.input.files.columns import MAX_POINTS, Column, Field, cloud_of, columns_of_text
+from nodes.perception_node.input.files.columns import (
+    MAX_POINTS,
+    Column,
+    Field,
+    OtherVariant,
+    cloud_of,
+    columns_of_text,
+)
 
 _KINDS = {"F": "f", "U": "u", "I": "i"}
 _LONGEST_HEADER = 4096
@@ -37,13 +44,15 @@ def decode(data: bytes) -> Cloud:
 
 
 def read_header(data: bytes) -> tuple[Header, int]:
-    """The header, and where the points begin. Raises ValueError."""
+    """The header, and where the points begin. Raises ValueError, OtherVariant for one of an old version."""
     mark = data.find(b"\nDATA ", 0, _LONGEST_HEADER)
     end = data.find(b"\n", mark + 1)
     if mark < 0 or end < 0:
         raise ValueError("no DATA line in its header")
     lines = data[:end].decode("ascii", errors="replace").splitlines()
     said = {words[0]: words[1:] for words in map(str.split, lines) if words and not words[0].startswith("#")}
+    if "COLUMNS" in said or ("FIELDS" in said and "WIDTH" not in said):  # as it was before version .6
+        raise OtherVariant("its header is of an old version")
     try:
         names, sizes, kinds = said["FIELDS"], said["SIZE"], said["TYPE"]
         counts = [int(count) for count in said.get("COUNT", ["1"] * len(names))]

@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.files.columns import MAX_POINTS, Column, cloud_of, columns_of_text
+from nodes.perception_node.input.files.columns import (
+    MAX_POINTS,
+    Column,
+    OtherVariant,
+    cloud_of,
+    columns_of_text,
+)
 
 _TYPES = {
     **{"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1"},
@@ -18,7 +24,10 @@ _LONGEST_HEADER = 16384
 
 
 def decode(data: bytes) -> Cloud:
-    """The vertices in a PLY file's bytes, in a single row. Raises ValueError saying what is wrong."""
+    """The vertices in a PLY file's bytes, in a single row.
+
+    Raises ValueError saying what is wrong; OtherVariant where the vertices do not come first or have lists.
+    """
     encoding, count, properties, start = _read_header(data)
     body = data[start:]
     if encoding == "ascii":
@@ -40,12 +49,12 @@ def _read_header(data: bytes) -> tuple[str, int, list[tuple[str, str]], int]:
             case ["format", said, *_]:
                 encoding = said
             case ["element", name, _] if not properties and name != "vertex":
-                raise ValueError(f"its first element is '{name}', not vertex")
+                raise OtherVariant(f"its first element is '{name}', not vertex")
             case ["element", name, number]:
                 element = name
                 count = int(number) if name == "vertex" else count
             case ["property", "list", *_] if element == "vertex":
-                raise ValueError("its vertices have list properties")
+                raise OtherVariant("its vertices have list properties")
             case ["property", kind, name] if element == "vertex":
                 if kind not in _TYPES:
                     raise ValueError(f"its property {name} is of the unknown type '{kind}'")

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from nodes.extern.cli.app import execute
+from nodes.perception_node.fitting import fit
 from tests.perception_node.files.made import header
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.test_patches import SCENES
@@ -143,6 +144,12 @@ def test_masks_cut_a_frame_up_and_a_label_that_nobody_knows_is_told(tmp_path, ca
     assert execute([*words, "yolo.json", "--label-map", str(tmp_path / "map.json")]) == 0
     ((found,),) = [row["objects"] for row in json.loads(out.read_text())]
     assert found["class"] == "Box"
+    (tmp_path / "map.json").write_text('{"spork": "Boxx"}')  # of an ontology of one's own, or misspelt
+    capsys.readouterr()
+    assert execute([*words, "yolo.json", "--label-map", str(tmp_path / "map.json")]) == 0
+    assert "that perception never learnt: Boxx; did you mean Box" in capsys.readouterr().err
+    ((found,),) = [row["objects"] for row in json.loads(out.read_text())]
+    assert (found["class"], found["probability"]) == ("Boxx", 0.9)
 
 
 @pytest.mark.parametrize(
@@ -151,7 +158,7 @@ def test_masks_cut_a_frame_up_and_a_label_that_nobody_knows_is_told(tmp_path, ca
         (["boxes.pcd", "--label-map", "map.json"], "go with --masks"),
         (["boxes.pcd", "--masks-only"], "go with --masks"),
         (["boxes.pcd", "--masks", "missing.npy"], "missing.npy cannot be read"),
-        (["boxes.pcd", "--masks", "small.npy"], "this one is of shape 4 x 3"),
+        (["boxes.pcd", "--masks", "small.npy"], "this one has 4 x 3 of int64"),
         (["boxes.pcd", "--masks", "small.npy", "--label-map", "small.npy"], "no map of labels"),
     ],
 )
@@ -163,3 +170,28 @@ def test_what_is_wrong_with_masks_is_told_in_one_line(tmp_path, capsys, monkeypa
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1
+
+
+def test_without_open3d_models_are_not_fitted(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(fit, "find_spec", lambda module: None)
+    assert execute(["perceive", write_cloud(tmp_path / "boxes.pcd"), "--fit"]) == 2
+    error = capsys.readouterr().err
+    assert "--fit needs Open3D, which is not installed" in error
+    assert error.count("\n") == 1
+
+
+@pytest.mark.skipif(not fit.available(), reason="Open3D is not installed")
+def test_models_are_fitted_where_it_is_asked_for(tmp_path, capsys):
+    cloud = write_cloud(tmp_path / "boxes.pcd")
+    write_frame(tmp_path / "frames" / "one")
+    assert execute(["perceive", cloud, "--fit", "--format", "json"]) == 0
+    (frame,) = json.loads(capsys.readouterr().out)
+    dataset = ["perceive", "--frames", str(tmp_path / "frames"), "--json", str(tmp_path / "rows.json")]
+    assert execute([*dataset, "--fit"]) == 0
+    (row,) = json.loads((tmp_path / "rows.json").read_text())
+    seen = [*(thing["observation"] for thing in frame["objects"]), *row["objects"]]
+    assert len(seen) > 2
+    for thing in seen:
+        score = thing.get("fit")
+        assert score is None or 0.0 <= score <= 1.0
+        assert np.linalg.norm(thing["pose"]["orientation_wxyz"]) == pytest.approx(1.0)

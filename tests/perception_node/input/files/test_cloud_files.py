@@ -81,6 +81,25 @@ def test_pictures_need_intrinsics_and_depth(tmp_path):
         list(read_frames((rgb, rgb), camera))
 
 
+@pytest.mark.parametrize(
+    ("numbers", "said"),
+    [
+        (np.full((6, 8), 2.0, np.float32), None),
+        (np.full((6, 8), 2000.0, np.float32), 'millimetres; say "depth_scale": 0.001'),
+        (np.full((6, 8), 2, np.uint16), 'in metres; say "depth_scale": 1 in'),
+    ],
+)
+def test_depth_in_floats_is_in_metres_and_another_unit_is_told(tmp_path, numbers, said):
+    _, depth, camera = write_pictures(tmp_path)
+    Image.fromarray(numbers).save(depth, "TIFF")
+    if said is None:
+        [(_, cloud)] = read_frames((depth,), camera)
+        assert (cloud.points_camera[..., 2] == 2.0).all()
+        return
+    with pytest.raises(BadFile, match=said):
+        list(read_frames((depth,), camera))
+
+
 SCALED = [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]
 
 
@@ -162,6 +181,26 @@ def written(tmp_path, points):
 def test_a_cloud_whose_z_points_backwards_is_turned(tmp_path):
     turned = read_cloud(written(tmp_path, POINTS * [1, -1, -1]))
     np.testing.assert_array_equal(turned.points_camera, POINTS[None])
+
+
+@pytest.mark.parametrize(
+    ("order", "signs"),
+    [
+        pytest.param((2, 0, 1), (1, -1, -1), id="x forward, y left, z up"),
+        pytest.param((0, 2, 1), (1, 1, -1), id="x right, y forward, z up"),
+    ],
+)
+def test_a_cloud_with_the_axes_of_a_robot_is_turned(tmp_path, order, signs):
+    around = POINTS + np.float32([-0.55, -0.7, 0.0])  # above, below, left and right of the optical axis
+    around[::2, 1] *= -1
+    turned = read_cloud(written(tmp_path, around[:, order] * np.float32(signs)))
+    np.testing.assert_array_equal(turned.points_camera, around[None])
+
+
+def test_a_cloud_that_is_all_around_its_camera_is_refused(tmp_path):
+    around = np.random.default_rng(1).normal(size=(200, 3)).astype(np.float32)
+    with pytest.raises(BadFile, match=r"\d+% of its points lie behind .* x to the right, y down, z forward"):
+        read_cloud(written(tmp_path, around))
 
 
 def test_a_point_behind_the_camera_turns_nothing(tmp_path):

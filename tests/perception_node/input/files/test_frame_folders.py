@@ -57,6 +57,7 @@ def test_a_large_picture_is_thinned(tmp_path):
         ({"width": 640, "height": 480}, "pictures of 640 x 480; these have 64 x 48 pixels"),
         ({"cx": 320.0, "cy": 240.0, "fx": 600.0, "fy": 600.0}, "pictures of another size"),
         ({"map_from_camera": [[1, 2], [3]]}, "4 x 4 pose matrix"),
+        ({"cx": 16.0, "cy": 12.0, "fx": 30.0, "fy": 30.0}, "pictures of another size"),
         ({"fx": "wide"}, "fx"),
     ],
 )
@@ -67,9 +68,16 @@ def test_what_is_wrong_is_said_with_the_frame_and_its_file(tmp_path, made, said)
 
 
 def test_half_a_frame_is_told_what_it_lacks(tmp_path):
-    (write_frame(tmp_path / "table7") / "depth.png").unlink()
-    with pytest.raises(BadFile, match=r"table7 lacks depth\.png"):
-        read_frame(tmp_path / "table7")
+    folder = write_frame(tmp_path / "table7")
+    for name, lacks in (
+        ("depth.png", "depth.png"),
+        ("camera.json", "depth.png and camera.json"),
+        ("rgb.png", "rgb.png, depth.png and camera.json"),
+    ):
+        (folder / name).unlink()
+        with pytest.raises(BadFile) as error:
+            read_frame(folder)
+        assert error.value.text == f"table7 lacks {lacks}"
 
 
 def test_a_truncated_picture_is_said_to_be_one(tmp_path):
@@ -91,3 +99,25 @@ def test_a_folder_without_frames_is_refused(tmp_path):
         frames_in(tmp_path)
     with pytest.raises(BadFile, match="cannot be read"):
         frames_in(tmp_path / "missing")
+
+
+def test_depth_in_floats_is_told_with_the_factor(tmp_path):
+    folder = write_frame(tmp_path / "table7")
+    Image.fromarray(np.full((48, 64), 1.5, np.float32)).save(folder / "depth.png", "TIFF")
+    with pytest.raises(BadFile, match=r"its numbers are floats; .* metres times 1000"):
+        read_frame(folder)
+
+
+def test_a_recording_is_told_what_to_do_with_it(tmp_path):
+    (tmp_path / "desk" / "rgb").mkdir(parents=True)
+    (tmp_path / "desk" / "depth").mkdir()
+    (tmp_path / "desk.bag").touch()
+    for name in ("desk", "desk.bag"):
+        with pytest.raises(BadFile, match=r"semmap frames .*desk"):
+            frames_in(tmp_path / name)
+
+
+def test_a_hidden_folder_is_no_frame(tmp_path):
+    (tmp_path / ".unfinished").mkdir()
+    (tmp_path / "a").mkdir()
+    assert frames_in(tmp_path) == [tmp_path / "a"]

@@ -1,0 +1,117 @@
+"""Messages in rosbags and MCAP files of ROS 1 and 2, whichever tool wrote them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+from mcap.reader import make_reader
+from mcap.records import Schema
+from rosbags.highlevel import AnyReader
+from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+
+from nodes.extern.ros.types import store
+from schemas.errors import BadFile
+
+SUFFIXES: Final = (".bag", ".db3", ".mcap")
+_PARSERS: Final[dict[str, Callable[[str, str], Any]]] = {
+    "ros1msg": get_types_from_msg,
+    "ros2msg": get_types_from_msg,
+    "ros2idl": lambda text, _: get_types_from_idl(text),
+}
+Message = tuple[str, Any]
+"""A topic, and what was said on it."""
+Reader = Callable[[Collection[str]], Iterator[Message]]
+"""The messages of topics."""
+
+
+class Bag:
+    """A recording of topics. Made by `opened`."""
+
+    def __init__(self, path: Path, types: dict[str, str], messages: Reader) -> None:
+        """`types`: of each topic, as `sensor_msgs/msg/Image`."""
+        self.types = types
+        self._path, self._messages = path, messages
+
+    def messages(self, topics: Collection[str]) -> Iterator[Message]:
+        """Those of some topics, in the order in which they were recorded. Raises BadFile."""
+        with _readable(self._path):
+            yield from self._messages(topics)
+
+
+def is_bag(path: Path) -> bool:
+    """Whether it is called so, or is a folder of rosbag2."""
+    return path.suffix.lower() in SUFFIXES or (path / "metadata.yaml").exists()
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[Bag]:
+    """A recording to read from. Raises BadFile for one that is none, that is damaged, or was never closed."""
+    with ExitStack() as stack:
+        with _readable(path):
+            bag = _mcap(path, stack) if path.suffix.lower() == ".mcap" else _rosbag(path, stack)
+        yield bag
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except BadFile:
+        raise
+    except OSError as error:
+        raise BadFile(f"{path} cannot be read: {error.strerror or error}") from None
+    except Exception as error:  # of rosbags, mcap or what these read with: it is no whole recording
+        said = " ".join(str(error).split()) or type(error).__name__
+        raise BadFile(f"{path} is damaged, cut off, or was not closed by its recorder: {said}") from None
+
+
+def _rosbag(path: Path, stack: ExitStack) -> Bag:
+    reader = stack.enter_context(AnyReader([path], default_typestore=store()))
+
+    def messages(topics: Collection[str]) -> Iterator[Message]:
+        wanted = [connection for connection in reader.connections if connection.topic in topics]
+        if not wanted:  # to the reader that would be all
+            return
+        for connection, _, raw in reader.messages(wanted):
+            yield connection.topic, reader.deserialize(raw, connection.msgtype)
+
+    types = {connection.topic: connection.msgtype for connection in reader.connections}
+    return Bag(path, types, messages)
+
+
+def _mcap(path: Path, stack: ExitStack) -> Bag:
+    reader = make_reader(stack.enter_context(path.open("rb")))
+    summary = reader.get_summary()
+    if summary is None:
+        raise BadFile(f"{path} is cut off, or was not closed by its recorder: it has no summary")
+    types = get_typestore(Stores.EMPTY)
+    for schema in summary.schemas.values():
+        if schema.encoding in _PARSERS:
+            types.register(_PARSERS[schema.encoding](schema.data.decode(), _type(schema)))
+
+    def messages(topics: Collection[str]) -> Iterator[Message]:
+        for schema, channel, message in reader.iter_messages(topics=list(topics)):
+            if schema is not None and schema.encoding in _PARSERS:
+                decode = (
+                    types.deserialize_ros1 if channel.message_encoding == "ros1" else types.deserialize_cdr
+                )
+                yield channel.topic, decode(message.data, _type(schema))
+
+    return Bag(
+        path,
+        {
+            channel.topic: _type(summary.schemas[channel.schema_id])
+            for channel in summary.channels.values()
+            if channel.schema_id in summary.schemas
+        },
+        messages,
+    )
+
+
+def _type(schema: Schema) -> str:
+    """ROS 1 leaves the middle out."""
+    package, *_, name = schema.name.split("/")
+    return f"{package}/msg/{name}" if package != name else name

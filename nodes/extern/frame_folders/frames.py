@@ -1,0 +1,108 @@
+"""A frame of a recording, and its folder."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from nodes.perception_node.input.cloud import FARTHEST_M
+from schemas.errors import BadFile, BadRequest, SemmapError
+
+_MM = 1000.0
+_FARTHEST_MM = 65_535
+_LEAST_M = 0.1
+"""Something in a picture is farther away."""
+_DIGITS = 9
+"""Of the seconds in a folder's name: in the order of names frames are in the order of time."""
+
+
+@dataclass(frozen=True)
+class RecordedFrame:
+    """What a camera saw at one moment, its depth aligned to its colour.
+
+    `rgb`: (H, W, 3). `depth_m`: (H, W) along the optical axis [m], 0 for nothing. `intrinsics`: (3, 3)
+    [pixel], the corner of the picture at 0. `map_from_camera`: (4, 4) of the optical frame [m], where known.
+    """
+
+    stamp_ns: int
+    rgb: NDArray[np.uint8]
+    depth_m: NDArray[np.float32]
+    intrinsics: NDArray[np.float64]
+    map_from_camera: NDArray[np.float64] | None = None
+
+    @property
+    def name(self) -> str:
+        """What its folder is called: when it was taken [s]."""
+        seconds, rest = divmod(self.stamp_ns, 1_000_000_000)
+        return f"{seconds:010d}.{rest:0{_DIGITS}d}"
+
+
+@dataclass(frozen=True)
+class Recording:
+    """The frames of a recording, or what is wrong with one; `notes` are for whoever wants them."""
+
+    count: int
+    frames: Iterator[RecordedFrame | SemmapError]
+    notes: Sequence[str] = ()
+
+
+def check_unit(depth_m: NDArray[np.float32]) -> None:
+    """Raises BadFile for depth (H, W) [m] that no camera measures: its numbers are in another unit."""
+    seen = depth_m[np.isfinite(depth_m) & (depth_m > 0)]
+    if not len(seen):
+        return
+    if np.median(seen) > FARTHEST_M:
+        what, unit, scale = f"half of its depth is beyond {np.median(seen):.0f} m", "millimetres", 0.001
+    elif seen.max() < _LEAST_M:
+        what, unit, scale = f"its depth ends at {seen.max():.3f} m", "metres", 1
+    else:
+        return
+    raise BadFile(
+        f"{what}, as if its numbers were {unit}: say so by --intrinsics FILE.json with fx, fy, cx, cy and"
+        f' "depth_scale": {scale}'
+    )
+
+
+def check_free(folder: Path) -> None:
+    """Raises BadRequest for a folder with something in it, and BadFile for what can be none."""
+    try:
+        if folder.exists() and any(folder.iterdir()):
+            raise BadRequest(f"{folder} is not empty; name a new folder for the frames")
+    except OSError as error:
+        raise BadFile(f"{folder} cannot be a folder of frames: {error.strerror}") from None
+
+
+def make(folder: Path) -> None:
+    """Make a folder for frames. Raises BadFile."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BadFile(f"{folder} cannot be made: {error.strerror}") from None
+
+
+def write(frame: RecordedFrame, dataset: Path) -> None:
+    """Write a frame's folder into `dataset`, whole or not at all. Raises BadFile."""
+    height, width = frame.depth_m.shape
+    depth_mm = np.round(np.nan_to_num(frame.depth_m, posinf=0.0, neginf=0.0) * _MM)
+    depth_mm[(depth_mm < 0) | (depth_mm > _FARTHEST_MM)] = 0
+    (fx, _, cx), (_, fy, cy), _ = frame.intrinsics.tolist()
+    camera = {"fx": fx, "fy": fy, "cx": cx, "cy": cy, "width": width, "height": height}
+    if frame.map_from_camera is not None:
+        camera["map_from_camera"] = frame.map_from_camera.tolist()
+    unfinished = dataset / f".{frame.name}"
+    try:
+        unfinished.mkdir()
+        Image.fromarray(frame.rgb).save(unfinished / "rgb.png", compress_level=1)
+        Image.fromarray(depth_mm.astype(np.uint16)).save(unfinished / "depth.png", compress_level=1)
+        (unfinished / "camera.json").write_text(json.dumps(camera))
+        unfinished.rename(dataset / frame.name)
+    except OSError as error:
+        shutil.rmtree(unfinished, ignore_errors=True)
+        raise BadFile(f"{dataset / frame.name} cannot be written: {error.strerror}") from None

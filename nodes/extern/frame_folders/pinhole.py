@@ -1,0 +1,62 @@
+"""The pinhole of a recorded camera [pixel], the corner of the picture at 0."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.input.files.image_files import PinholeCamera, read_camera
+from nodes.perception_node.input.projection import fits
+from schemas.errors import BadFile
+
+_SAME_SHAPE = 0.02
+
+
+def read_pinhole(path: Path) -> PinholeCamera:
+    """The camera in a JSON file, as `semmap perceive --intrinsics` takes it. Raises BadFile."""
+    try:
+        return read_camera(path)
+    except OSError as error:
+        raise BadFile(f"{path} cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise BadFile(f"{path}: {error}") from None
+
+
+def of_centres(fx: float, fy: float, cx: float, cy: float) -> NDArray[np.float64]:
+    """(3, 3) from numbers that count from the first pixel's middle, as ROS and OpenCV do."""
+    return np.array([[fx, 0.0, cx + 0.5], [0.0, fy, cy + 0.5], [0.0, 0.0, 1.0]])
+
+
+def of_info(info: Any, *, rectified: bool) -> NDArray[np.float64]:
+    """(3, 3) of a `sensor_msgs/CameraInfo` of ROS 1 or 2; of a rectified picture its projection's."""
+    k = np.asarray(info.k if hasattr(info, "k") else info.K, float)
+    p = np.asarray(info.p if hasattr(info, "p") else info.P, float)
+    if rectified and p[0] > 0 and p[5] > 0:
+        return of_centres(p[0], p[5], p[2], p[6])
+    return of_centres(k[0], k[4], k[2], k[5])
+
+
+def scaled(intrinsics: NDArray[np.float64], of: tuple[int, int], to: tuple[int, int]) -> NDArray[np.float64]:
+    """Intrinsics for pictures of (width, height) `of`, for the same pictures at the size `to`.
+
+    Raises ValueError where these are of another shape, or the intrinsics those of no camera.
+    """
+    width, height = to
+    if min(of) < 1:
+        of = to
+    across, down = width / of[0], height / of[1]
+    if abs(across / down - 1.0) > _SAME_SHAPE:
+        raise ValueError(
+            f"the intrinsics are those of pictures of {of[0]} x {of[1]}; these have {width} x {height} pixels"
+        )
+    found = intrinsics * np.array([[across], [down], [1.0]])
+    if not fits(found, width, height):
+        numbers = " ".join(
+            f"{name} {n:g}"
+            for name, n in zip(("fx", "fy", "cx", "cy"), found[[0, 1, 0, 1], [0, 1, 2, 2]], strict=True)
+        )
+        raise ValueError(f"the intrinsics {numbers} do not fit a picture of {width} x {height} pixels")
+    return np.asarray(found)

@@ -1,0 +1,123 @@
+"""Where a frame was at each moment of a recording."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.extern.ros.frames import Transform, placed
+
+_GAP_NS: Final = 1_000_000_000
+"""Between two poses so far apart in time nobody knows."""
+_EDGE_NS: Final = 100_000_000
+"""So long before and after a pose that has no neighbour there, it holds."""
+_DEEPEST: Final = 100
+MAPS: Final = ("map", "world", "odom")
+"""Frames in which z is up, as they are called; the first that there is counts."""
+
+
+class Trajectory:
+    """Poses of one frame in another, by time."""
+
+    def __init__(self) -> None:
+        self._poses: dict[int, NDArray[np.float64]] = {}
+        self._order: list[int] = []
+
+    def add(self, stamp_ns: int, position_m: tuple[float, ...], wxyz: tuple[float, ...]) -> None:
+        """A pose; what is none is passed over."""
+        if placed(position_m, wxyz) is not None:
+            self._poses[stamp_ns] = np.array([*position_m, *wxyz])
+
+    def at(self, stamp_ns: int) -> Transform | None:
+        """The pose (4, 4) then, between those before and after; None where there are none near enough."""
+        if len(self._order) != len(self._poses):
+            self._order = sorted(self._poses)
+        if stamp_ns in self._poses:
+            return _matrix(self._poses[stamp_ns])
+        after = bisect_left(self._order, stamp_ns)
+        neighbours = self._order[max(after - 1, 0) : after + 1]
+        if len(neighbours) == 2 and neighbours[1] - neighbours[0] <= _GAP_NS:
+            first, then = neighbours
+            share = (stamp_ns - first) / (then - first)
+            return _matrix(_between(self._poses[first], self._poses[then], share))
+        nearest = min(neighbours, key=lambda at: abs(at - stamp_ns), default=None)
+        if nearest is None or abs(nearest - stamp_ns) > _EDGE_NS:
+            return None
+        return _matrix(self._poses[nearest])
+
+
+class Tree:
+    """All of /tf and /tf_static of a recording."""
+
+    def __init__(self) -> None:
+        self._parents: dict[str, str] = {}
+        self._moving: dict[str, Trajectory] = {}
+        self._still: dict[str, Transform] = {}
+
+    def take(self, message: Any, *, static: bool) -> None:
+        """A `tf2_msgs/TFMessage`; what is no transform is passed over."""
+        for said in message.transforms:
+            child, parent = plain(said.child_frame_id), plain(said.header.frame_id)
+            t, r = said.transform.translation, said.transform.rotation
+            pose = placed((t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
+            if pose is None or not child or not parent or child == parent:
+                continue
+            self._parents[child] = parent
+            if static:
+                self._still[child] = pose
+            else:
+                track = self._moving.setdefault(child, Trajectory())
+                track.add(stamp_ns_of(said.header.stamp), (t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
+
+    def above(self, frame: str) -> list[str]:
+        """A frame and those that it is in, outwards."""
+        found = [plain(frame)]
+        while (parent := self._parents.get(found[-1])) and parent not in found and len(found) < _DEEPEST:
+            found.append(parent)
+        return found
+
+    def pose(self, frame: str, base: str, stamp_ns: int) -> Transform | None:
+        """Where `frame` is in `base`, one that is above it; None where nobody said so then."""
+        pose = np.eye(4)
+        for link in self.above(frame):
+            if link == plain(base):
+                return pose
+            track = self._moving.get(link)
+            step = self._still.get(link) if track is None else track.at(stamp_ns)
+            if step is None:
+                return None
+            pose = step @ pose
+        return None
+
+    def between(self, one: str, other: str, stamp_ns: int) -> Transform | None:
+        """Where `one` is in `other`, if some frame is above both."""
+        shared = next((base for base in self.above(one) if base in self.above(other)), None)
+        if shared is None:
+            return None
+        poses = [self.pose(frame, shared, stamp_ns) for frame in (one, other)]
+        if poses[0] is None or poses[1] is None:
+            return None
+        return np.asarray(np.linalg.inv(poses[1]) @ poses[0])
+
+
+def plain(frame: str) -> str:
+    """A frame's name without the slash that ROS 1 began it with."""
+    return frame.lstrip("/")
+
+
+def stamp_ns_of(stamp: Any) -> int:
+    """A time of ROS."""
+    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
+
+
+def _between(one: NDArray[np.float64], other: NDArray[np.float64], share: float) -> NDArray[np.float64]:
+    """Position and quaternion in between; neighbours are near enough to go straight."""
+    turned = -1.0 if one[3:] @ other[3:] < 0 else 1.0
+    return np.asarray(one * (1.0 - share) + np.r_[other[:3], turned * other[3:]] * share)
+
+
+def _matrix(pose: NDArray[np.float64]) -> Transform | None:
+    return placed(tuple(pose[:3]), tuple(pose[3:]))

@@ -1,0 +1,80 @@
+"""Which topics of a recording are those of its camera."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Final, NamedTuple
+
+from nodes.extern.frame_folders.pictures import is_colour, is_depth
+from schemas.errors import BadFile, BadRequest
+from schemas.wording import few
+
+IMAGE: Final = "sensor_msgs/msg/Image"
+COMPRESSED: Final = "sensor_msgs/msg/CompressedImage"
+INFO: Final = "sensor_msgs/msg/CameraInfo"
+TRANSFORMS: Final = "tf2_msgs/msg/TFMessage", "tf/msg/tfMessage"
+_ALIGNED = re.compile(r"aligned|registered|hw_registered")
+_INFRARED = re.compile(r"(^|[/_])(ir|infra\d?|infrared)([/_]|$)")
+_TRANSPORT = re.compile(r"/(compressed|compressedDepth)$")
+
+
+class Chosen(NamedTuple):
+    """The topics of a camera; `infos` of its depth and of its colour, where there are any."""
+
+    colour: str
+    depth: str
+    infos: tuple[str | None, str | None]
+
+
+def choose(
+    encodings: Mapping[str, str], infos: Iterable[str], colour: str | None, depth: str | None
+) -> Chosen:
+    """From each picture's topic to its encoding, and the topics of camera_info; some may be told.
+
+    Raises BadFile where there is no such topic, and BadRequest where there are several.
+    """
+    for option, said in (("--rgb-topic", colour), ("--depth-topic", depth)):
+        if said is not None and said not in encodings:
+            raise BadRequest(f"{option}: no pictures on {said}; there are some on {few(sorted(encodings))}")
+    seen = {topic: said for topic, said in encodings.items() if not _INFRARED.search(topic)}
+    depths = [topic for topic, said in seen.items() if is_depth(said)]
+    colours = [topic for topic, said in seen.items() if is_colour(said) and topic not in depths]
+    colours = [topic for topic in colours if "mono8" not in seen[topic]] or colours
+    aligned = [topic for topic in depths if _ALIGNED.search(topic)]
+    depth = depth or _only("depth", "--depth-topic", aligned or depths, encodings)
+    colour = colour or _only("colour", "--rgb-topic", colours, encodings)
+    known = list(infos)
+    return Chosen(colour, depth, (_nearest(depth, known), _nearest(colour, known)))
+
+
+def _only(kind: str, option: str, topics: Sequence[str], encodings: Mapping[str, str]) -> str:
+    """Of the same pictures as they are and compressed, those as they are."""
+    plain = [topic for topic in topics if _TRANSPORT.sub("", topic) == topic]
+    rest = [topic for topic in topics if _TRANSPORT.sub("", topic) not in plain]
+    found = sorted({*plain, *rest})
+    if not found:
+        there = few([f"{topic} ({said})" for topic, said in sorted(encodings.items())])
+        raise BadFile(f"it has no {kind} pictures; its pictures: {there}")
+    if len(found) > 1:
+        raise BadRequest(f"it has {kind} pictures on {few(found)}; name one with {option}")
+    return found[0]
+
+
+def _nearest(topic: str, infos: Sequence[str]) -> str | None:
+    """The camera_info beside a topic: the one that shares most of its path, if no other does."""
+    parts = topic.split("/")
+
+    def shared(info: str) -> int:
+        count = 0
+        for one, other in zip(parts, info.split("/"), strict=False):
+            if one != other:
+                break
+            count += 1
+        return count
+
+    if not infos:
+        return None
+    best = max(map(shared, infos))
+    nearest = [info for info in infos if shared(info) == best]
+    return nearest[0] if len(nearest) == 1 else None

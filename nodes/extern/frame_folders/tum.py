@@ -1,0 +1,173 @@
+"""Folders of PNGs as TUM's tools write them: rgb.txt and depth.txt, and maybe groundtruth.txt."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.extern.frame_folders.frames import RecordedFrame, Recording, check_unit
+from nodes.extern.frame_folders.pairs import pairs
+from nodes.extern.frame_folders.pinhole import of_centres, read_pinhole, scaled
+from nodes.extern.frame_folders.poses import Trajectory
+from nodes.perception_node.input.files.image_files import is_depth, opened
+from schemas.errors import BadFile, BadRequest, SemmapError
+
+_COLOUR, _DEPTH, _POSES = "rgb", "depth", "groundtruth.txt"
+_SCALE_M: Final = 1.0 / 5000.0
+"""TUM's depth pictures have 5000 for a metre."""
+_CALIBRATED: Final = {
+    "1": (517.3, 516.5, 318.6, 255.3),
+    "2": (520.9, 521.0, 325.1, 249.7),
+    "3": (535.4, 539.2, 320.1, 247.6),
+}
+"""The cameras of TUM's own recordings, `freiburg1` to 3: fx, fy, cx, cy."""
+_SIZE: Final = (640, 480)
+_PICTURES: Final = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
+
+Listed = list[tuple[int, Path]]
+"""Pictures with their stamps [ns]."""
+
+
+def read(folder: Path, *, within_s: float, every_s: float, intrinsics: Path | None) -> Recording:
+    """The frames of such a folder. Raises BadFile and BadRequest where there can be none."""
+    colours, depths = (_listed(folder, kind) for kind in (_COLOUR, _DEPTH))
+    pinhole, scale_m, note = _camera(folder, intrinsics)
+    found = pairs([at for at, _ in colours], [at for at, _ in depths], within_s, every_s)
+    if not found.taken:
+        raise BadFile(
+            f"{folder} has no colour and depth pictures within {within_s:g} s of one another; --within takes"
+            " more"
+        )
+    poses = _poses(folder / _POSES)
+    notes = [*found.notes, note]
+    if poses is None:
+        notes.append(f"no camera poses: there is no {_POSES}")
+
+    def frames() -> Iterator[RecordedFrame | SemmapError]:
+        for colour, depth in found.taken:
+            (stamp_ns, of), (_, of_depth) = colours[colour], depths[depth]
+            try:
+                rgb, depth_m = _colour(of), _depth_m(of_depth, scale_m)
+                if rgb.shape[:2] != depth_m.shape:
+                    raise BadFile(
+                        f"{of.name} is {rgb.shape[1]} x {rgb.shape[0]} pixels,"
+                        f" {of_depth.name} {depth_m.shape[1]} x {depth_m.shape[0]}"
+                    )
+                check_unit(depth_m)
+                pose = None if poses is None else poses.at(stamp_ns)
+                size = (depth_m.shape[1], depth_m.shape[0])
+                yield RecordedFrame(stamp_ns, rgb, depth_m, pinhole(size), pose)
+            except SemmapError as error:
+                yield error
+
+    return Recording(len(found.taken), frames(), notes)
+
+
+def _listed(folder: Path, kind: str) -> Listed:
+    """The pictures that `rgb.txt` or `depth.txt` lists, or else those in the folder of that name."""
+    index = folder / f"{kind}.txt"
+    try:
+        if index.exists():
+            rows = [row.split() for row in index.read_text(errors="replace").splitlines()]
+            found = [
+                (_stamp_ns(row[0], index), folder / row[1])
+                for row in rows
+                if len(row) > 1 and not row[0].startswith("#")
+            ]
+        else:
+            pictures = sorted(path for path in (folder / kind).iterdir() if path.suffix in _PICTURES)
+            found = [(_stamp_ns(path.stem, folder / kind), path) for path in pictures]
+    except OSError:
+        raise BadFile(
+            f"{folder} has no {kind}.txt and no folder {kind}; a recording is a .bag, .db3 or .mcap file, a"
+            " rosbag2 folder, or a folder with rgb, depth, rgb.txt and depth.txt"
+        ) from None
+    if not found:
+        raise BadFile(f"{folder} lists no {kind} pictures")
+    return found
+
+
+def _stamp_ns(text: str, of: Path) -> int:
+    """Seconds as a picture is listed or named by. Raises BadFile."""
+    if not re.fullmatch(r"\d+(\.\d+)?", text):
+        raise BadFile(
+            f"{of} has '{text}' for a time; pictures are listed, or named, by seconds: 1305031102.1753"
+        )
+    seconds, _, rest = text.partition(".")
+    return int(seconds) * 1_000_000_000 + int(rest[:9].ljust(9, "0"))
+
+
+def _camera(
+    folder: Path, intrinsics: Path | None
+) -> tuple[Callable[[tuple[int, int]], NDArray[np.float64]], float, str]:
+    """From (width, height) to intrinsics, metres of a depth picture's 1, and what to say of both."""
+    told = re.search(r"freiburg([123])", folder.resolve().name)
+    if intrinsics is None and told is None:
+        raise BadRequest(
+            f"{folder} does not say what its camera is like; add --intrinsics FILE.json with fx, fy, cx, cy"
+            " and, unless 1 m is 5000 in its depth pictures, depth_scale"
+        )
+    if intrinsics is not None:
+        camera = read_pinhole(intrinsics)
+        matrix, scale_m = (
+            of_centres(camera.fx, camera.fy, camera.cx, camera.cy),
+            camera.depth_scale or _SCALE_M,
+        )
+        whence = str(intrinsics)
+    else:
+        assert told is not None
+        matrix, scale_m, whence = of_centres(*_CALIBRATED[told[1]]), _SCALE_M, f"TUM's freiburg{told[1]}"
+
+    def of(size: tuple[int, int]) -> NDArray[np.float64]:
+        try:
+            return scaled(matrix, size if intrinsics is not None else _SIZE, size)
+        except ValueError as error:
+            raise BadFile(f"{whence}: {error}") from None
+
+    return of, scale_m, f"camera of {whence}, 1 m is {1 / scale_m:g} in depth pictures"
+
+
+def _poses(path: Path) -> Trajectory | None:
+    """`time x y z qx qy qz qw` a line; None without such a file. Raises BadFile."""
+    if not path.exists():
+        return None
+    found = Trajectory()
+    for number, row in enumerate(path.read_text(errors="replace").splitlines(), 1):
+        words = row.split()
+        if not words or words[0].startswith("#"):
+            continue
+        try:
+            x, y, z, qx, qy, qz, qw = map(float, words[1:])
+        except ValueError:
+            raise BadFile(f"{path}: line {number} is no pose: time x y z qx qy qz qw") from None
+        found.add(_stamp_ns(words[0], path), (x, y, z), (qw, qx, qy, qz))
+    return found
+
+
+def _colour(path: Path) -> NDArray[np.uint8]:
+    try:
+        with opened(path) as image:
+            return np.asarray(image.convert("RGB"))
+    except OSError as error:
+        raise BadFile(f"{path} cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise BadFile(f"{path}: {error}") from None
+
+
+def _depth_m(path: Path, scale_m: float) -> NDArray[np.float32]:
+    """(H, W) [m]; a picture of floats is in metres."""
+    try:
+        if not is_depth(path):
+            raise BadFile(f"{path}: it must have 16 bits in a single channel")
+        with opened(path) as image:
+            numbers = np.asarray(image, np.float32)
+            return numbers if image.mode == "F" else numbers * np.float32(scale_m)
+    except OSError as error:
+        raise BadFile(f"{path} cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise BadFile(f"{path}: {error}") from None

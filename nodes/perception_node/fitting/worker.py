@@ -1,0 +1,90 @@
+"""The thread that fits models, one thing at a time, beside that of the frames."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from nodes.perception_node.fitting.fit import Fit
+from nodes.perception_node.input.cloud import Cloud
+from nodes.perception_node.pipeline import Look
+from schemas.entities import Pose
+from schemas.perception import Observation
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Request:
+    """An entity to be fitted: `seen` is the `number`-th observation (from 1) of a look at `clouds`.
+
+    `box` is where its track had it then.
+    """
+
+    name: str
+    box: Pose
+    seen: Observation
+    number: int
+    clouds: Sequence[Cloud]
+    found: Look
+
+
+FitTo = Callable[[Request], Fit | None]
+
+
+class FitWorker:
+    """Fits what it is asked for. Who asks while it is busy is told so, and asks again with a newer look."""
+
+    def __init__(
+        self, fit: FitTo, on_fit: Callable[[Request, Fit | None], None], complain: Callable[[str], None]
+    ) -> None:
+        """`on_fit` and `complain` are called on the worker's thread; `complain(text)` says what is wrong."""
+        self._fit = fit
+        self._on_fit = on_fit
+        self._complain = complain
+        self._request: Request | None = None
+        self._stopping = False
+        self._changed = threading.Condition()
+        self._thread = threading.Thread(target=self._run, name="fits", daemon=True)
+        self._thread.start()
+
+    @property
+    def busy(self) -> bool:
+        """Whether a fit is under way, or asked for."""
+        with self._changed:
+            return self._request is not None
+
+    def ask(self, request: Request) -> None:
+        """Have this fitted; nothing happens while it is busy."""
+        with self._changed:
+            if self._request is None:
+                self._request = request
+                self._changed.notify()
+
+    def close(self) -> None:
+        """Let the fit in hand be finished, and no other be begun."""
+        with self._changed:
+            self._stopping = True
+            self._changed.notify()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                while self._request is None and not self._stopping:
+                    self._changed.wait()
+                if self._stopping:
+                    return
+                request = self._request
+            assert request is not None
+            found = None
+            try:
+                found = self._fit(request)
+            except Exception as error:
+                log.exception("fitting a model failed")
+                self._complain(f"fitting a model failed: {type(error).__name__}: {error}")
+            self._on_fit(request, found)
+            with self._changed:
+                self._request = None

@@ -1,0 +1,192 @@
+"""Other forms of things that the catalogue has in one form: bottles, cans, cups, glasses, cartons, books.
+
+Depth x, width y, height z [m]; round ones fit the smaller of x and y. Perception learns from scenes with some
+of these: a change of what is seen of them is a change of its samples.
+"""
+
+from __future__ import annotations
+
+import math
+
+from nodes.sim_node.models.catalogue.tableware import glass
+from nodes.sim_node.models.forms import PAPER, column, hollow_box, shade, shifted, slab, turned
+from nodes.sim_node.models.openings import GAP_M, SIDES
+from nodes.sim_node.models.parts import (
+    ALONG_X,
+    Colour,
+    Joint,
+    Parts,
+    about,
+    ball,
+    box,
+    felt,
+    moving,
+    pill,
+    rod,
+    seen,
+)
+
+
+def packet(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A carton as goods are sold in: printed on all sides, with two flaps.
+
+    Two, because one lid that is thrown open tips a light box over.
+    """
+    wall = min(0.004, 0.1 * min(x, y, z))
+    body, wide = z - wall - GAP_M, y / 2 - GAP_M
+    dark, thin = shade(colour, 0.7), 0.001
+    flaps: Parts = []
+    for side, name in SIDES:
+        joint = Joint(
+            name=name,
+            kind="hinge",
+            anchor=(0.0, side * y / 2, z - wall / 2),
+            axis=(-float(side), 0.0, 0.0),
+            range=(0.0, math.pi),
+            friction=0.01,
+        )
+        middle = side * (y / 4 + GAP_M / 2)
+        board = box((x, wide, wall), (0.0, middle, z - wall / 2), shade(colour, 0.9))
+        flaps += moving(joint, [board, *seen(box((0.6 * x, 0.6 * wide, thin), (0.0, middle, z), PAPER))])
+    return [
+        *hollow_box(x, y, body, wall, colour),
+        *seen(box((thin, 0.9 * y, 0.3 * body), (s * x / 2, 0.0, 0.68 * body), PAPER) for s in (-1, 1)),
+        *seen(box((thin, 0.9 * y, 0.12 * body), (s * x / 2, 0.0, 0.2 * body), dark) for s in (-1, 1)),
+        *seen(box((0.7 * x, thin, 0.4 * body), (0.0, s * y / 2, 0.5 * body), dark) for s in (-1, 1)),
+        *flaps,
+    ]
+
+
+def standing_book(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """Upright, its spine with a title in front."""
+    board = min(0.003, 0.15 * y)
+    return [
+        *seen(box((x, board, z), (0.0, s * (y - board) / 2, z / 2), colour) for s in (-1, 1)),
+        *seen(box((0.96 * x, y - 2 * board, 0.97 * z), (0.0, 0.0, z / 2), PAPER)),
+        *seen(box((0.05 * x, y, z), (0.475 * x, 0.0, z / 2), colour)),
+        *seen(box((0.001, 0.6 * y, 0.4 * z), (x / 2, 0.0, 0.6 * z), shade(colour, 1.8))),
+        *felt(slab(x, y, 0.0, z, colour)),
+    ]
+
+
+def plain_ball(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """With a seam around it."""
+    return [
+        ball((x, y, z), (0.0, 0.0, z / 2), colour),
+        *seen(rod(0.503 * min(x, y), 0.02 * z, (0.0, 0.0, z / 2), shade(colour, 0.6), about("x", 0.6))),
+    ]
+
+
+def flat_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """Of shampoo, mustard or oil: a flat body with rounded sides, shoulders, a cap."""
+    body, cap = 0.72 * z, min(x, y) * 0.28
+    rounded = min(x, y) / 2
+    sides = max(x, y) - 2 * rounded
+    along = (1.0, 0.0) if x > y else (0.0, 1.0)
+    ends = [
+        shifted([column(rounded, 0.0, body, colour)], x=s * sides / 2 * along[0], y=s * sides / 2 * along[1])
+        for s in (-1, 1)
+    ]
+    middle = (
+        max(sides * along[0], x - 2 * rounded * along[0]),
+        max(sides * along[1], y - 2 * rounded * along[1]),
+    )
+    return [
+        slab(*middle, 0.0, body, colour),
+        *(part for end in ends for part in end),
+        *seen(ball((0.9 * x, 0.9 * y, 0.34 * z), (0.0, 0.0, 0.70 * z), colour)),
+        column(cap, body, z, shade(colour, 0.5)),
+    ]
+
+
+def spray_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A body that narrows, and a head with a nozzle and a trigger towards +x."""
+    radius = min(0.8 * x, y) / 2
+    neck, dark = 0.35 * radius, shade(colour, 0.4)
+    return shifted(
+        [
+            column(radius, 0.0, 0.55 * z, colour),
+            *turned([(radius, 0.55 * z), (neck, 0.78 * z)], colour, steps=6),
+            *felt(column(neck, 0.55 * z, 0.8 * z, colour)),
+            column(neck, 0.76 * z, 0.86 * z, dark),
+            *seen(box((x - 0.6 * radius, 0.7 * neck, 0.12 * z), (x / 2 - radius / 2, 0.0, 0.93 * z), dark)),
+            *seen(
+                box(
+                    (0.2 * radius, 0.5 * neck, 0.16 * z),
+                    (0.9 * radius, 0.0, 0.80 * z),
+                    dark,
+                    about("y", -0.4),
+                )
+            ),
+        ],
+        x=radius - x / 2,
+    )
+
+
+def drink_can(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """Narrower at both ends."""
+    radius = min(x, y) / 2
+    return [
+        column(radius, 0.06 * z, 0.9 * z, colour),
+        *turned([(0.8 * radius, 0.0), (radius, 0.06 * z)], colour, steps=3),
+        *turned([(radius, 0.9 * z), (0.8 * radius, z)], colour, steps=3),
+        *felt(column(0.9 * radius, 0.0, z, colour)),
+    ]
+
+
+def tumbler(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A cup without a handle, wider at the top, with a floor."""
+    radius, wall = min(x, y) / 2, 0.07 * min(x, y) / 2
+    shell = glass(x, y, z, colour)
+    return [*shell, *seen(column(0.76 * radius, 0.0, 2 * wall, shade(colour, 0.8)))]
+
+
+def wine_glass(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A foot, a stem and a bowl."""
+    radius = min(x, y) / 2
+    bowl = [(0.1 * radius, 0.46 * z), (0.8 * radius, 0.6 * z), (radius, 0.75 * z), (0.8 * radius, z)]
+    return [
+        column(0.9 * radius, 0.0, 0.02 * z, colour),
+        column(0.1 * radius, 0.0, 0.5 * z, colour),
+        *turned(bowl, colour, steps=6),
+        *felt(column(0.9 * radius, 0.5 * z, z, colour)),
+    ]
+
+
+def teapot(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A round body with a spout towards +y, a handle and a lid."""
+    radius = min(x, 0.62 * y) / 2
+    body = (2 * radius, 2 * radius, 0.82 * z)
+    return [
+        ball(body, (0.0, 0.0, 0.41 * z), colour),
+        *seen(pill(0.16 * radius, 0.24 * y, (0.0, 0.5 * y - 0.1 * y, 0.55 * z), colour, about("x", -0.7))),
+        *seen(pill(0.12 * radius, 0.45 * z, (0.0, 0.1 * radius - 0.5 * y, 0.5 * z), colour)),
+        *seen(rod(0.1 * radius, 0.2 * y, (0.0, -0.38 * y, 0.66 * z), colour, about("x", math.pi / 2))),
+        *seen(rod(0.1 * radius, 0.2 * y, (0.0, -0.38 * y, 0.32 * z), colour, about("x", math.pi / 2))),
+        *seen(column(0.5 * radius, 0.75 * z, 0.88 * z, shade(colour, 0.9))),
+        *seen(ball((0.3 * radius, 0.3 * radius, 0.14 * z), (0.0, 0.0, 0.93 * z), colour)),
+    ]
+
+
+def skillet(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A pan with low walls and one long handle towards +x."""
+    radius = min(0.31 * x, y / 2)
+    side = radius - x / 2
+    return [
+        *shifted([column(0.9 * radius, 0.0, 0.12 * z, colour)], x=side),
+        *shifted(turned([(0.86 * radius, 0.1 * z), (radius, 0.85 * z)], shade(colour, 1.2), steps=4), x=side),
+        *seen(
+            pill(
+                0.09 * radius,
+                x - 2 * radius,
+                (radius + (x - 2 * radius) / 2 + side, 0.0, 0.8 * z),
+                colour,
+                ALONG_X,
+            )
+        ),
+    ]
+
+
+def steady_teapot(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A teapot that stands on a foot, which is felt and not seen."""
+    return [*teapot(x, y, z, colour), *felt(column(0.25 * min(x, 0.62 * y), 0.0, 0.2 * z, colour))]

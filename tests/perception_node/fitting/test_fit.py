@@ -1,0 +1,108 @@
+"""Models fitted to what one camera sees of them."""
+
+from __future__ import annotations
+
+import math
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+
+from nodes.perception_node.fitting.fit import angle_between, fitted, quaternion
+from nodes.perception_node.fitting.model_surfaces import shipped
+from nodes.sim_node.models.parts import rotation_matrix
+from tests.perception_node.fitting.seen import EYE, TOP_M, box, model, rotation, shown
+
+pytestmark = pytest.mark.skipif(find_spec("open3d") is None, reason="Open3D is not installed")
+
+
+def fit(class_, yaw, said_yaw, said_class=None):
+    surface = model(class_)
+    pose, size_m = box(surface, said_yaw)
+    said = said_class or class_
+    return fitted(said, [model(said)], shown(surface, yaw), pose, size_m, [])
+
+
+def off_deg(found, yaw):
+    said = np.asarray(rotation_matrix(found.pose.orientation_wxyz))
+    return math.degrees(angle_between(said, rotation(yaw), found.fold))
+
+
+@pytest.mark.parametrize(("class_", "yaw"), [("Laptop", 2.2), ("Iron", -0.5), ("Shoes", 0.9)])
+@pytest.mark.parametrize("said", [0.05, math.pi])
+def test_a_front_is_found_whichever_way_the_box_was_taken(class_, yaw, said):
+    found = fit(class_, yaw, yaw + said)
+    assert off_deg(found, yaw) < 3.0
+    assert found.clear
+    assert found.turned
+    assert found.score > 0.6
+    np.testing.assert_allclose(found.pose.position_m, [0.1, 0.2, TOP_M], atol=0.006)
+
+
+def test_what_has_an_axis_is_turned_by_half_a_turn_at_will():
+    found = fit("Cereals", 0.7, 0.75)
+    assert found.fold == 2
+    assert found.clear
+    assert off_deg(found, 0.7) < 2.0
+
+
+def test_what_is_round_has_no_orientation():
+    found = fit("Bottle", 1.0, 0.0)
+    assert found.fold == 0
+    assert not found.turned
+    assert found.score > 0.6
+
+
+def of_all_forms(shape, yaw):
+    pose, size_m = box(shape, yaw + 0.1)
+    points = shown(shape, yaw)
+    return fitted("Bottle", shipped()["Bottle"], points, pose, size_m, [])
+
+
+def test_a_thing_is_fitted_with_the_form_that_fits_it():
+    usual, _, spray, _ = shipped()["Bottle"]
+    found = of_all_forms(spray, 0.6)
+    pose, size_m = box(spray, 0.7)
+    assert found.score > 1.1 * fitted("Bottle", [usual], shown(spray, 0.6), pose, size_m, []).score
+    assert found.turned
+    assert off_deg(found, 0.6) < 4.0
+    assert not of_all_forms(usual, 0.6).turned
+
+
+def test_a_thing_of_quite_another_form_does_not_bear_its_name_out():
+    laptop = model("Laptop")
+    pose, size_m = box(laptop, 0.0)
+    wall = np.random.default_rng(0).uniform([-0.2, -0.1, 0.7], [0.4, 0.5, 1.3], (400, 3))
+    found = fitted("Laptop", [laptop], wall, pose, size_m, [])
+    assert not found.bears_out
+    assert not found.turned
+    assert fit("Laptop", 0.0, 0.0).bears_out
+
+
+def test_a_lying_bottle_lies():
+    bottle = model("Bottle")
+    laid = bottle.rotated(np.array([[0, 0, 1.0], [0, 1.0, 0], [-1.0, 0, 0]]))  # its top to +x
+    yaw = 0.6
+    points = laid.points @ rotation(yaw).T + [0.1, 0.2, TOP_M]
+    facing = ((EYE - points) * (laid.normals @ rotation(yaw).T)).sum(axis=1) > 0.0
+    pose, size_m = box(laid, yaw)
+    found = fitted("Bottle", [bottle], points[facing], pose, size_m, [])
+    assert found.lying
+    axis = np.asarray(rotation_matrix(found.pose.orientation_wxyz))[:, 2]
+    assert axis @ [math.cos(yaw), math.sin(yaw), 0.0] > math.cos(math.radians(5.0))
+    foot = np.array([0.1, 0.2, TOP_M + laid.size_m[2] / 2]) - laid.size_m[0] / 2 * axis
+    np.testing.assert_allclose(found.pose.position_m, foot, atol=0.015)
+
+
+def test_too_little_is_not_fitted():
+    cup = model("Cup")
+    pose, size_m = box(cup, 0.0)
+    assert fitted("Cup", [cup], shown(cup, 0.0)[:20], pose, size_m, []) is None
+    assert fitted("Cup", [cup], np.full((500, 3), np.nan), pose, size_m, []) is None
+
+
+@pytest.mark.parametrize("yaw", [0.0, 1.3, math.pi, -3.0])
+def test_rotations_are_quaternions(yaw):
+    w, x, y, z = quaternion(rotation(yaw))
+    assert (x, y) == pytest.approx((0.0, 0.0))
+    assert math.remainder(2.0 * math.atan2(z, w) - yaw, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)

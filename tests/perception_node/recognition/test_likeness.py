@@ -1,0 +1,67 @@
+"""Whether two views show the same thing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from nodes.perception_node.pipeline import parts_in
+from nodes.perception_node.recognition import likeness
+from nodes.perception_node.recognition.features import features_of
+from nodes.perception_node.recognition.likeness import COLOUR, GEOMETRY, SHAPE, WIDTH
+from nodes.perception_node.views.segmented_view import see
+from nodes.training.recognition.samples import shared_pixels
+from schemas.errors import BadFile
+from tests.perception_node.scenes import KINDS, shot
+
+
+@pytest.fixture(scope="module")
+def seen():
+    """Of each camera: the kind of each thing and its view; and all things."""
+    found, things = [], []
+    for camera, cloud in enumerate(shot().clouds):
+        parts = parts_in([see(cloud)])
+        owner = shared_pixels(parts, shot(), [camera])[1:].argmax(axis=1)
+        names = [shot().bodies[n - 1].name if n else "" for n in owner]
+        views = np.concatenate(features_of(parts.things), axis=1)
+        largest_last = sorted(range(len(names)), key=lambda n: parts.things[n].count)
+        found.append({names[n]: views[n] for n in largest_last if names[n] in KINDS})
+        things += parts.things
+    return found, things
+
+
+def test_the_columns_are_those_of_the_features(seen):
+    things = seen[1]
+    features = features_of(things)
+    assert [part.stop - part.start for part in (GEOMETRY, SHAPE, COLOUR)] == [f.shape[1] for f in features]
+    views = np.concatenate(features, axis=1)
+    assert views.shape[1] == WIDTH
+    assert views[:, likeness._HEIGHT] == pytest.approx([np.log(t.box.size_m[2]) for t in things])
+    assert views[:, likeness._MEAN] == pytest.approx(np.array([t.colors.mean(axis=0) for t in things]))
+    assert views[:, likeness._LEVELS].sum(axis=1) == pytest.approx(1.0)
+    assert views[:, likeness._DISTANCES].sum(axis=1) == pytest.approx(1.0)
+    grey = views[:, likeness._HUES].sum(axis=1) + views[:, likeness._GREYS].sum(axis=1)
+    assert grey == pytest.approx(1.0)
+
+
+def test_a_thing_is_like_itself_from_elsewhere_and_unlike_others(seen):
+    (one, other), _ = seen
+    kinds = sorted(one.keys() & other.keys())
+    assert len(kinds) >= 3
+    like = likeness.shipped()(np.array([one[k] for k in kinds]), np.array([other[k] for k in kinds]))
+    assert (like.argmax(axis=1) == np.arange(len(kinds))).all()
+    assert np.diag(like).min() > 0.5
+    assert like[~np.eye(len(kinds), dtype=bool)].max() < 0.3
+
+
+def test_it_is_read_as_it_was_written(tmp_path, seen):
+    views = np.array(list(seen[0][0].values()))
+    likeness.save(likeness.shipped(), tmp_path / "same.npz")
+    again = likeness.load(tmp_path / "same.npz")
+    assert (again(views, views) == likeness.shipped()(views, views)).all()
+
+
+def test_a_file_of_something_else_is_told(tmp_path):
+    (tmp_path / "none.npz").write_bytes(b"nothing")
+    with pytest.raises(BadFile, match="does not hold what likeness learnt"):
+        likeness.load(tmp_path / "none.npz")

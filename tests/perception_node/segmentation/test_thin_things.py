@@ -1,0 +1,63 @@
+"""Thin things on planes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from nodes.perception_node.segmentation import segment
+from nodes.perception_node.segmentation.planes import find_planes
+from nodes.perception_node.segmentation.thin_things import thin_things
+from nodes.perception_node.segmentation.working_picture import grid_of
+from nodes.perception_node.views.segmented_view import see
+from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
+
+TABLE = ((-0.6, -0.5, 0.70), (0.6, 0.5, 0.75))
+FLOOR = ((-3, -3, -0.1), (3, 3, 0.0))
+FAR = {"pose": camera_pose(eye=(0.0, -1.5, 1.9), target=(0.0, 0.0, 0.75)), "posed": True, "table": FLOOR}
+RULER = ((-0.15, -0.02, 0.75), (0.15, 0.02, 0.765))
+TALL = ((0.25, -0.1, 0.75), (0.4, 0.1, 1.0))
+
+
+def found(*things):
+    seen = boxes_on_table(TABLE, *things, **FAR)
+    grid = grid_of(seen.cloud)
+    planes, of_plane = find_planes(grid.points, seen.cloud.map_from_camera, np.random.default_rng(0))
+    return thin_things(grid.points, planes, of_plane), seen.truth[:: grid.step, :: grid.step]
+
+
+def test_what_is_thinner_than_a_planes_noise_is_found_from_two_metres():
+    thin, truth = found(RULER)
+    assert thin.max() == 1
+    assert ((thin == 1) & (truth == 2)).sum() > 0.7 * ((thin == 1) | (truth == 2)).sum()
+
+
+def test_nothing_is_found_on_a_bare_table():
+    assert found()[0].max() == 0
+
+
+def test_the_foot_of_something_tall_is_no_thin_thing():
+    thin, truth = found(TALL, RULER)
+    assert thin.max() == 1
+    assert (thin[truth == 3] == 1).mean() > 0.7
+    assert (truth[thin == 1] == 2).mean() < 0.05
+
+
+def test_a_plane_that_a_camera_bends_has_no_things_on_it():
+    seen = boxes_on_table(TABLE, **FAR)
+    grid = grid_of(seen.cloud)
+    across = np.linspace(-1, 1, grid.points.shape[2], dtype=np.float32)
+    points = grid.points * (1 + 0.005 * np.sin(3 * across))
+    planes, of_plane = find_planes(points, seen.cloud.map_from_camera, np.random.default_rng(0))
+    assert thin_things(points, planes, of_plane).max() == 0
+
+
+@pytest.mark.parametrize("thing", [pytest.param(RULER, id="ruler"), pytest.param(TALL, id="box")])
+def test_a_thing_on_a_top_is_one_segment_and_no_part_of_the_top(thing):
+    seen = boxes_on_table(TABLE, thing, **FAR)
+    labels = segment(seen.cloud).labels
+    own = labels[seen.truth == 2]
+    assert (own == np.bincount(own[own > 0]).argmax()).mean() > 0.7
+    sight = see(seen.cloud)
+    label = np.bincount(sight.labels[seen.truth == 2]).argmax()
+    assert label not in sight.carriers

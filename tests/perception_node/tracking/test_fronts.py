@@ -1,0 +1,52 @@
+"""An oven between others: from before it nobody sees how deep it is."""
+
+from __future__ import annotations
+
+import pytest
+
+from nodes.perception_node.tracking.fronts import is_front
+from nodes.perception_node.tracking.overlap import OrientedBox
+from schemas.commands import Update
+from tests.perception_node.things import CONFIG, Table, at, seen
+
+OVEN = OrientedBox(at(1.0, 1.0, 0.0), (0.6, 0.6, 0.9))
+FRONT = OrientedBox(at(1.0, 1.2, 0.0), (0.58, 0.2, 0.92))
+
+
+def test_the_front_of_a_thing_is_as_wide_and_high_as_the_thing():
+    assert is_front(FRONT, OVEN)
+    assert not is_front(OVEN, FRONT)
+
+
+@pytest.mark.parametrize(
+    "piece",
+    [
+        pytest.param(OrientedBox(at(1.0, 1.2, 0.0), (0.3, 0.2, 0.9)), id="half as wide"),
+        pytest.param(OrientedBox(at(1.0, 1.2, 0.0), (0.58, 0.2, 0.5)), id="half as high"),
+        pytest.param(OrientedBox(at(1.0, 1.5, 0.0), (0.58, 0.2, 0.9)), id="before it"),
+        pytest.param(OrientedBox(at(1.0, 1.0, 0.0), (0.58, 0.5, 0.9)), id="nearly as deep"),
+    ],
+)
+def test_other_pieces_are_no_fronts(piece):
+    assert not is_front(piece, OVEN)
+
+
+def test_two_things_side_by_side_are_not_one_of_which_a_front_was_seen():
+    chair = OrientedBox(at(1.0, 1.0, 0.0), (0.45, 0.45, 0.9))
+    assert not is_front(chair, OrientedBox(at(1.22, 1.0, 0.0), (0.9, 0.45, 0.9)))
+    table = OrientedBox(at(1.0, 1.0, 0.0), (1.15, 0.8, 0.8))
+    assert not is_front(table, OrientedBox(at(1.0, 1.2, 0.0), (1.25, 1.2, 0.85)))
+    book = OrientedBox(at(1.0, 1.2), (0.2, 0.03, 0.25))
+    assert not is_front(book, OrientedBox(at(1.0, 1.15), (0.2, 0.14, 0.25)))
+
+
+def test_when_all_of_it_is_seen_the_map_is_put_right_and_the_front_changes_nothing_any_more():
+    table = Table([seen("Object", *FRONT)], config=CONFIG.on_the_move)
+    table.looks(5)
+    table.things = [seen("Object", *OVEN, whole=False)]
+    (update,) = table.looks(3)
+    assert isinstance(update, Update)
+    assert update.at == pytest.approx((1.0, 1.0, 0.0), abs=0.01)
+    assert update.size == pytest.approx(OVEN.size_m)
+    table.things = [seen("Object", *FRONT)]
+    assert table.looks(20) == []
