@@ -54,7 +54,7 @@ def test_it_fits_a_phone(open_tab, web):
     tab = open_tab(web, width=390, height=800)
     assert tab.evaluate("document.documentElement.scrollWidth") <= 390
     tab.get_by_role("tab", name="Scene").wait_for()
-    assert not tab.get_by_role("tab", name="Entities").is_visible()
+    tab.get_by_role("tab", name="Entities").wait_for(state="hidden")  # the page has learned how wide it is
     tab.get_by_role("button", name="Show or hide the lists").click()
     tab.get_by_role("tab", name="Entities").wait_for()
 
