@@ -9,8 +9,8 @@ import numpy as np
 
 from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import Colour, Parts, Vec3
-from nodes.training.scenes.foreign_things import ForeignThing, parts_of
-from nodes.training.scenes.paint import any_paint
+from nodes.training.scenes.foreign_things import ForeignThing, parts_of, texture_of
+from nodes.training.scenes.paint import Paint, any_paint
 from nodes.training.scenes.simulated_scenes import STRANGE, Item, foreign_label
 from nodes.training.scenes.strange_things import size_of, strange_parts
 from nodes.training.scenes.varieties import VARIETIES, Form, any_size, is_like_another
@@ -29,6 +29,9 @@ LARGE = tuple(k for k, kind in MODELS.items() if max(kind.size_m) > SMALL_M and 
 
 _SHARES = (0.5, 0.25, 0.12, 0.13)
 """Of the small things: our models, varieties, foreign, strange ones."""
+_OWN_COLOURS, _COLOURS_OF_A_MODEL, _OWN_TEXTURE = 0.5, 0.25, 0.5
+"""How many of our models, varieties and foreign things keep their own colours."""
+
 _FOREIGN_LARGER, _FOREIGN_STOUTER = 0.2, 0.06
 """By which factors e^x foreign things are larger or smaller, at most, and each extent of them beside."""
 
@@ -58,7 +61,8 @@ def own_things(kinds: Sequence[str], rng: np.random.Generator) -> Iterator[Item]
 
 def of_model(kind: str, rng: np.random.Generator) -> Item:
     """One of our models."""
-    return _thing(kind, varied_size(kind, rng), varied_colour(kind, rng), rng)
+    paint = any_paint(rng, _OWN_COLOURS)
+    return _thing(kind, varied_size(kind, rng), varied_colour(kind, rng), paint)
 
 
 def varied_size(kind: str, rng: np.random.Generator) -> Vec3:
@@ -80,7 +84,8 @@ def _varieties(rng: np.random.Generator) -> Iterator[Item]:
             size = any_size(variety, rng)
             while is_like_another(variety, size):
                 size = any_size(variety, rng)
-            thing = _thing(variety.model, size, varied_colour(variety.model, rng), rng)
+            paint = any_paint(rng, _COLOURS_OF_A_MODEL)
+            thing = _thing(variety.model, size, varied_colour(variety.model, rng), paint)
             yield replace(thing, form=variety.form)
 
 
@@ -92,7 +97,8 @@ def _foreign(things: Sequence[ForeignThing], rng: np.random.Generator) -> Iterat
             factors = np.exp(larger + rng.normal(0.0, _FOREIGN_STOUTER, 3))
             x, y, z = (factors * thing.size_m).tolist()
             grey = float(rng.uniform(0.1, 0.9))
-            drawn = _thing("foreign", (x, y, z), (grey, grey, grey), rng)
+            paint = any_paint(rng, _OWN_TEXTURE, texture_of(thing.mesh))
+            drawn = _thing("foreign", (x, y, z), (grey, grey, grey), paint)
             yield replace(
                 drawn, form=_form_of(thing), said=foreign_label(thing.name, thing.classes[0], new=thing.new)
             )
@@ -106,7 +112,8 @@ def _strange(rng: np.random.Generator) -> Iterator[Item]:
     while True:
         red, green, blue = rng.uniform(0.05, 0.95, 3).tolist()
         parts = strange_parts(rng, (red, green, blue))
-        thing = _thing(STRANGE, size_of(parts), (red, green, blue), rng)
+        paint = any_paint(rng, _COLOURS_OF_A_MODEL)
+        thing = _thing(STRANGE, size_of(parts), (red, green, blue), paint)
         yield replace(thing, form=_ready(parts), said=STRANGE)
 
 
@@ -114,8 +121,8 @@ def _ready(parts: Parts) -> Form:
     return lambda _x, _y, _z, _colour: parts
 
 
-def _thing(kind: str, size_m: Vec3, colour: Colour, rng: np.random.Generator) -> Item:
-    return Item("", kind, size_m, colour, (0.0, 0.0, 0.0), 0.0, paint=any_paint(rng))
+def _thing(kind: str, size_m: Vec3, colour: Colour, paint: Paint) -> Item:
+    return Item("", kind, size_m, colour, (0.0, 0.0, 0.0), 0.0, paint=paint)
 
 
 def _deck(kinds: Sequence[str], rng: np.random.Generator) -> Iterator[str]:

@@ -8,8 +8,11 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
+import numpy as np
+
 from nodes.sim_node.models.model_files import keyed, read_model, stretched
 from nodes.sim_node.models.parts import Colour, Part, Parts, Vec3
+from nodes.training.scenes.paint import Pattern, printed_on
 
 _LEARN = "train"
 
@@ -58,3 +61,21 @@ def parts_of(thing: ForeignThing, size_m: Vec3, colour: Colour) -> Parts:
 @lru_cache
 def _read(mesh: Path) -> Sequence[Part]:
     return read_model(mesh, None, 0).parts
+
+
+@lru_cache(maxsize=64)
+def texture_of(mesh: Path) -> Pattern | None:
+    """The colours that a thing has by its texture; None where it has none."""
+    import trimesh  # takes a second
+
+    vertices, colours = [], []
+    for part in trimesh.load_scene(mesh).dump():
+        if getattr(part.visual, "uv", None) is None:
+            return None
+        vertices.append(np.asarray(part.vertices, np.float32))
+        colours.append(np.asarray(part.visual.to_color().vertex_colors[:, :3], np.float32) / 255.0)
+    if not vertices:
+        return None
+    points = np.concatenate(vertices)
+    low, high = points.min(axis=0), points.max(axis=0)
+    return printed_on(2.0 * (points - low) / (high - low) - 1.0, np.concatenate(colours))

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 Bytes = NDArray[np.uint8]
 Floats = NDArray[np.float32]
@@ -18,30 +19,29 @@ Pattern = Callable[[Floats], Floats]
 """From (N, 3) points in a thing's own coordinates, -1 to 1 along each side, to (N, 3) colours in [0, 1]."""
 
 _LEAST_LIGHT, _MOST_LIGHT = 0.35, 1.5
-_SHARES = {
-    "own": 0.3,
-    "plain": 0.25,
-    "dark": 0.1,
-    "light": 0.08,
-    "halves": 0.09,
-    "print": 0.12,
-    "patches": 0.06,
-}
+_SHARES = {"plain": 0.36, "dark": 0.14, "light": 0.11, "halves": 0.13, "print": 0.17, "patches": 0.09}
+_TEXTURE_LIGHT = (0.45, 0.9)
+"""How bright a texture is under a camera's light."""
 
 
 @dataclass(frozen=True)
 class Paint:
-    """What one thing is painted with; None leaves its own colours, `glow` times as bright."""
+    """What one thing is painted with, `glow` times as bright; None leaves its own colours."""
 
     pattern: Pattern | None
     glow: float = 1.0
 
 
-def any_paint(rng: np.random.Generator) -> Paint:
-    """Own colours under other light, one colour, black, white, two halves, a print, or patches."""
-    kind = str(rng.choice(list(_SHARES), p=list(_SHARES.values())))
-    if kind == "own":
+def any_paint(rng: np.random.Generator, own: float, texture: Pattern | None = None) -> Paint:
+    """Its own colours under other light by this chance, else one, black, white, two, a print, or patches.
+
+    `texture`: its own colours, if the pictures of it do not show them.
+    """
+    if rng.random() < own:
+        if texture is not None:
+            return Paint(texture, float(rng.uniform(*_TEXTURE_LIGHT)))
         return Paint(None, float(np.exp(rng.normal(0.0, 0.15))))
+    kind = str(rng.choice(list(_SHARES), p=list(_SHARES.values())))
     return Paint(_PATTERNS[kind](rng))
 
 
@@ -61,7 +61,14 @@ def painted(colours: Bytes, points: Floats, paint: Paint) -> Bytes:
         return np.asarray(np.clip(colours * np.float32(paint.glow), 0, 255), np.uint8)
     grey = colours.mean(axis=1, dtype=np.float32) + 1.0
     light = np.clip(grey / np.median(grey), _LEAST_LIGHT, _MOST_LIGHT)
-    return np.asarray(np.clip(255.0 * paint.pattern(points) * light[:, None], 0, 255), np.uint8)
+    lit = 255.0 * paint.glow * paint.pattern(points) * light[:, None]
+    return np.asarray(np.clip(lit, 0, 255), np.uint8)
+
+
+def printed_on(vertices: Floats, colours: Floats) -> Pattern:
+    """What has these colours (V, 3) at its vertices (V, 3), in the coordinates of `Pattern`."""
+    tree = KDTree(vertices)
+    return lambda points: colours[tree.query(points)[1]]
 
 
 def _colour(rng: np.random.Generator) -> Floats:

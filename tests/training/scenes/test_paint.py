@@ -21,7 +21,7 @@ def test_paint_keeps_light_and_shade_and_nothing_of_the_old_hue():
 
 def test_all_cameras_see_the_same_paint():
     for seed in range(40):
-        paint = any_paint(np.random.default_rng(seed))
+        paint = any_paint(np.random.default_rng(seed), 0.3)
         if paint.pattern is not None:
             order = np.random.default_rng(seed).permutation(500)
             np.testing.assert_array_equal(paint.pattern(POINTS[order]), paint.pattern(POINTS)[order])
@@ -29,7 +29,7 @@ def test_all_cameras_see_the_same_paint():
 
 def test_paints_are_of_every_sort():
     rng = np.random.default_rng(1)
-    found = [painted(SHADED, POINTS, any_paint(rng)) for _ in range(200)]
+    found = [painted(SHADED, POINTS, any_paint(rng, 0.3)) for _ in range(200)]
     brightness = np.array([one.mean() for one in found])
     assert (brightness < 50).sum() > 5
     assert (brightness > 150).sum() > 5
