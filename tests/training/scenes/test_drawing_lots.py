@@ -4,11 +4,12 @@ from collections import Counter
 import numpy as np
 import pytest
 import trimesh
+from PIL import Image
 
 from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import bounds
 from nodes.training.scenes.drawing_lots import SMALL, small_things
-from nodes.training.scenes.foreign_things import foreign_things
+from nodes.training.scenes.foreign_things import foreign_things, texture_of
 from nodes.training.scenes.simulated_scenes import STRANGE, foreign_class, tinted
 from nodes.training.scenes.strange_things import size_of, strange_parts
 from nodes.training.scenes.varieties import VARIETIES, any_size, carton, is_like_another
@@ -56,6 +57,26 @@ def test_there_are_things_of_all_sorts_and_each_can_be_built(folder):
         assert tinted(thing).parts
 
 
+def test_a_texture_has_the_colours_of_the_picture_where_they_are(tmp_path):
+    image = np.zeros((8, 8, 3), np.uint8)
+    image[:4], image[4:] = (250, 10, 10), (10, 10, 250)  # red above, blue below
+    ball = trimesh.creation.icosphere(subdivisions=2, radius=0.05)
+    up = (ball.vertices[:, 2] / 0.05 + 1.0) / 2.0
+    material = trimesh.visual.material.SimpleMaterial(image=Image.fromarray(image))
+    ball.visual = trimesh.visual.TextureVisuals(uv=np.column_stack([up * 0.0 + 0.5, up]), material=material)
+    ball.export(tmp_path / "ball.obj")
+    pattern = texture_of(tmp_path / "ball.obj")
+    assert pattern is not None
+    above, below = pattern(np.array([[0.0, 0.0, 0.9], [0.0, 0.0, -0.9]], np.float32))
+    assert above[0] > 0.9 > 0.1 > above[2]
+    assert below[2] > 0.9 > 0.1 > below[0]
+
+
+def test_a_thing_without_a_texture_keeps_none(folder):
+    mine, _ = foreign_things(folder)
+    assert texture_of(mine.mesh) is None
+
+
 def test_without_a_folder_nothing_is_foreign():
     lot = small_things([], np.random.default_rng(0))
     assert all(foreign_class(lot().label) is None for _ in range(100))
@@ -89,6 +110,23 @@ def test_strange_things_stand_on_the_ground_and_hang_together():
         assert low[2] == pytest.approx(0.0, abs=1e-9)
         assert low[:2] + high[:2] == pytest.approx([0.0, 0.0], abs=1e-9)
         assert max(size_of(parts)) < 1.0
+
+
+def test_strange_things_are_lumps_too_and_often_alike_on_both_sides():
+    rng = np.random.default_rng(1)
+    found = [strange_parts(rng, (0.5, 0.5, 0.5)) for _ in range(200)]
+    lumps = [parts for parts in found if len(parts) == 1]
+    assert 15 < len(lumps) < 50
+    assert all(part.mesh is not None and part.mesh.key for (part,) in lumps)
+    assert len({part.mesh.key for (part,) in lumps if part.mesh}) == len(lumps)
+    assert sum(_alike(parts) for parts in found) > 30
+
+
+def _alike(parts):
+    middles = sorted(
+        np.round([(abs(part.centre[0] + 1e-12), *part.centre[1:]) for part in parts], 9).tolist()
+    )
+    return len(parts) % 2 == 0 and len(parts) > 2 and middles[::2] == middles[1::2]
 
 
 def test_a_foreign_label_tells_thing_and_class():

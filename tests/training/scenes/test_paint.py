@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nodes.training.scenes.paint import Paint, any_paint, painted
+from nodes.training.scenes.paint import Paint, any_paint, painted, printed_on
 
 POINTS = np.random.default_rng(0).uniform(-1.0, 1.0, (500, 3)).astype(np.float32)
 SHADED = (np.linspace(60, 180, 500)[:, None] * [1.0, 0.2, 0.2]).astype(np.uint8)
@@ -34,3 +34,24 @@ def test_paints_are_of_every_sort():
     assert (brightness < 50).sum() > 5
     assert (brightness > 150).sum() > 5
     assert sum(len(np.unique(one // 64, axis=0)) > 3 for one in found) > 30
+
+
+def test_so_many_keep_their_own_colours():
+    rng = np.random.default_rng(2)
+    texture = printed_on(POINTS, POINTS)
+    kept = [any_paint(rng, 0.3, texture) for _ in range(1000)]
+    assert 250 < sum(paint.pattern is texture for paint in kept) < 350
+    assert all(paint.pattern is texture for paint in (any_paint(rng, 1.0, texture) for _ in range(20)))
+    assert all(paint.pattern is not None for paint in (any_paint(rng, 0.0) for _ in range(20)))
+
+
+def test_a_texture_gives_each_point_the_colour_of_the_vertex_next_to_it():
+    red_below, blue_above = (
+        np.array([[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]]),
+        np.array([[1.0, 0, 0], [0, 0, 1.0]]),
+    )
+    pattern = printed_on(red_below.astype(np.float32), blue_above.astype(np.float32))
+    assert (pattern(POINTS) == np.where(POINTS[:, 2:] > 0.0, [0, 0, 1.0], [1.0, 0, 0])).all()
+    grey = np.full((500, 3), 120, np.uint8)
+    half = painted(grey, POINTS, Paint(pattern, 0.5)).max(axis=1)
+    assert set(half.tolist()) == {127}
