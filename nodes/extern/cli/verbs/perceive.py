@@ -233,8 +233,10 @@ def _dataset(
         complain(wording.unknown_labels(sorted(unknown)))
     if out is None and format == "json":
         print_json(rows)
-        return
-    say(_summary(rows, time.monotonic() - began_s, [path for path in (out, labels) if path is not None]))
+    else:
+        say(_summary(rows, time.monotonic() - began_s, [path for path in (out, labels) if path is not None]))
+    if all(row.error for row in rows):
+        raise errors.BadFile(f"{folder} holds no frame that can be used, so there is nothing to tell of it")
 
 
 def _summary(rows: Sequence[FrameRow], took_s: float, written: Sequence[Path]) -> str:

@@ -107,6 +107,14 @@ def test_a_dataset_has_a_row_for_each_frame_and_goes_on_after_a_bad_one(tmp_path
     assert "1 frame could not be used" in said
 
 
+def test_a_dataset_without_any_frame_that_can_be_used_is_an_error(tmp_path, capsys):
+    (tmp_path / "frames" / "half").mkdir(parents=True)
+    out = tmp_path / "out.json"
+    assert execute(["perceive", "--frames", str(tmp_path / "frames"), "--json", str(out)]) == 2
+    assert "no frame that can be used" in capsys.readouterr().err
+    assert [bool(row["error"]) for row in json.loads(out.read_text())] == [True]
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
