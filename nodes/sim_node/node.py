@@ -72,7 +72,10 @@ class Simulator:
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
         models = Models(config.models, config.data)
-        self._world = open_world(config.world, models, node.tick, self._classes(config), config.robot)
+        classes = self._classes(config)
+        if config.world is not None:
+            node.describe(f"compiling the world {config.world.name}")
+        self._world = open_world(config.world, models, node.tick, classes, config.robot)
         self._paused = config.still
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)

@@ -74,7 +74,7 @@ class World:
         self.ignored = base_scene.ignored(ground)
         """What the world declares in vain, each with the reason."""
         self._engine = Engine(ground, meanwhile, is_class)
-        self.left_out = base_scene.left_out(ground, self._engine.records)
+        self.left_out = self._engine.left_out
         """The bodies of the world that are only parts of others, each by name or by what it is part of."""
         self._settling = Settling(self._engine)
         self._models, self._meanwhile = models, meanwhile

@@ -15,6 +15,7 @@ from nodes.sim_node.config import RobotConfig
 from nodes.sim_node.models.parts import rotation_matrix
 from nodes.sim_node.orders import ModelSource
 from nodes.sim_node.physics import base_scene
+from nodes.sim_node.physics.build import aside
 from nodes.sim_node.robots.robot import put
 from nodes.sim_node.vision.view import View, look_at, pinhole
 from nodes.sim_node.world import World
@@ -39,6 +40,14 @@ def names_classes(path: Path | None) -> bool:
     return is_scene(path) or base_scene.names_classes(base_scene.read_mjcf(path, compiles=False))
 
 
+def require_world(path: Path, models: ModelSource, robot: RobotConfig | None = None) -> None:
+    """Raises BadFile, as `open_world` does; of an MJCF scene by itself only that it compiles is looked at."""
+    if robot is not None or is_scene(path):
+        open_world(path, models, robot=robot)
+    else:
+        base_scene.read_mjcf(path)
+
+
 def open_world(
     path: Path | None,
     models: ModelSource,
@@ -56,7 +65,7 @@ def open_world(
     if path is None:
         return _world(base_scene.bare_floor(), robot, models=models, meanwhile=meanwhile)
     if not is_scene(path):
-        ground = base_scene.read_mjcf(path)
+        ground = aside(lambda: base_scene.read_mjcf(path), meanwhile)
         known = classes or ClassNames()
         how = {"name": path.name, "models": models, "meanwhile": meanwhile, "is_class": known.has}
         return _world(ground, robot, **how)

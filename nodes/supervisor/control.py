@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 import xmlrpc.client
+from collections.abc import Callable
 from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 from typing import Any
@@ -38,6 +39,8 @@ _STOP_WAITS_S = {"kb_node": 30}
 """Longer for those who may be writing: a checkpoint of a million entities takes some time."""
 LONGEST_STOP_S = max(_STOP_WAITS_S.values()) + _STOP_WAIT_S
 """Until supervisord itself has ended."""
+SILENT_S = 10.0
+"""For no longer is nothing said of what takes long."""
 _WONT_MEND = "0,1,2"
 """Exit statuses after which a restart would fail the same way: stopped, refused, bad request."""
 
@@ -92,21 +95,33 @@ class Supervisor:
                 umask=UMASK,
             )
 
-    def seed(self, settings: Settings) -> str:
-        """Make the journal; what was done, in words. Raises the reason why it could not be made."""
+    def seed(self, settings: Settings, waiting: Callable[[float], None] = lambda since_s: None) -> str:
+        """Make the journal; what was done, in words. Raises the reason why it could not be made.
+
+        While that takes long, `waiting` is told now and then for how long it has taken.
+        """
         try:
             make_private(self.data)
             self._settings_path.write_bytes(codec.encode_json(settings))
         except OSError as error:
             raise errors.BadFile(f"cannot store data in {self.data}: {error.strerror}") from None
         command = [sys.executable, "-P", "-m", "nodes.supervisor.launch", "seed", str(self._settings_path)]
-        run = subprocess.run(command, capture_output=True, text=True, umask=UMASK)
+        pipe = subprocess.PIPE
+        with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, umask=UMASK) as run:
+            begun_s = time.monotonic()
+            while True:
+                try:
+                    made, said = run.communicate(timeout=SILENT_S)
+                    break
+                except subprocess.TimeoutExpired:
+                    waiting(time.monotonic() - begun_s)
+                except BaseException:
+                    run.kill()
+                    raise
         if run.returncode != 0:
-            reason = (
-                run.stderr.strip().removeprefix("seed: ") or f"seeding failed with status {run.returncode}"
-            )
+            reason = said.strip().removeprefix("seed: ") or f"seeding failed with status {run.returncode}"
             raise (errors.BadFile if run.returncode == 2 else errors.Refused)(reason)
-        return run.stdout.strip()
+        return made.strip()
 
     def is_running(self) -> bool:
         """Does it answer?"""

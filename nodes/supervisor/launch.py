@@ -47,10 +47,10 @@ def seed(settings: Settings) -> None:
 
     if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
         from nodes.sim_node.models.sources import Models
-        from nodes.sim_node.world_file import open_world
+        from nodes.sim_node.world_file import require_world
 
         models = Models(Path(settings.models) if settings.models else None, Path(settings.data))
-        open_world(Path(settings.world), models, robot=_robot(settings))
+        require_world(Path(settings.world), models, _robot(settings))
     elif settings.sim and settings.robot is not None:
         from nodes.sim_node.robots.robot import read
 

@@ -22,10 +22,11 @@ from nodes import bus
 from nodes.identity import SUPERVISOR, Identity
 from nodes.runtime.web_token import new_token
 from nodes.supervisor import presence, registry
-from nodes.supervisor.control import LONGEST_STOP_S, Supervisor
+from nodes.supervisor.control import LONGEST_STOP_S, SILENT_S, Supervisor
 from nodes.supervisor.notices import Notices
 from nodes.supervisor.settings import Replay, Settings
 from nodes.supervisor.watchdog import Watchdog
+from ontology import EMPTY_WORLD, FLAT_WORLD
 from ontology.model_shapes import varieties_of
 from schemas import errors, keys
 from schemas.calls import reply_type
@@ -64,7 +65,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
         if settings.web:
             settings = structs.replace(settings, web_port=_web_port(settings.web_port))
         with presence.announced(settings.reachable):
-            if seeded := supervisor.seed(settings):
+            if seeded := supervisor.seed(settings, lambda since_s: say(_being_made(settings, since_s))):
                 say(f"{'map':<{_COLUMN}} {seeded}")
             notices = Notices(supervisor.notices)
             process = supervisor.start(settings, web_token=token)
@@ -135,6 +136,7 @@ class _Foreground:
         self._waits: set[tuple[str, str]] = set()
         """What was said of a node that waits."""
         self._is_replayed = False
+        self._begun_s = self._told_s = time.monotonic()
 
     def run(self) -> None:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -167,6 +169,7 @@ class _Foreground:
         if health.state == "starting":  # a large map takes its time, and tells so
             self._deadline_s = time.monotonic() + _START_TIMEOUT_S
             self._tell_of_waiting(health)
+            self._tell_what_takes_long(health)
         if health.node == "kb_node" and self._settings.replay is not None:
             self._tell_of_replay(self._settings.replay, health)
         if health.state == "ready" and self._pids.get(health.node) != health.pid:
@@ -194,6 +197,13 @@ class _Foreground:
         ):
             self._waits.add(said)
             self._say(f"{health.node:<{_COLUMN}} {health.detail}")
+
+    def _tell_what_takes_long(self, health: Health) -> None:
+        """Say now and then what a node does that is not ready yet."""
+        now_s = time.monotonic()
+        if health.detail and now_s - self._told_s > SILENT_S:
+            self._told_s = now_s
+            self._say(f"{health.node:<{_COLUMN}} {health.detail} ({now_s - self._begun_s:.0f} s)")
 
     def _look(self) -> None:
         """See which processes there are.
@@ -323,6 +333,15 @@ class _Foreground:
         self._say("")
         for what, value in lines.items():
             self._say(f"{what:<{_COLUMN}} {value}")
+
+
+def _being_made(settings: Settings, since_s: float) -> str:
+    """What is done before any node runs, and for how long it has been."""
+    world = Path(settings.world)
+    doing = "reading the map"
+    if settings.sim and world not in (FLAT_WORLD, EMPTY_WORLD):
+        doing = f"compiling the world {world.name}, and reading the map"
+    return f"{'map':<{_COLUMN}} {doing} ({since_s:.0f} s)"
 
 
 def _require_free(endpoint: str) -> None:

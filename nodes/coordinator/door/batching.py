@@ -10,6 +10,7 @@ from nodes.coordinator import transactions
 from nodes.coordinator.dialogues import Talk
 from nodes.coordinator.door.changing import UNCHANGED, notes_on, updatable
 from nodes.coordinator.door.committing import changed, commit, once
+from nodes.coordinator.door.jointed import plain, properties_in, require_opening
 from nodes.coordinator.door.known_map import KnownMap
 from schemas import errors, wording
 from schemas.commands import Batch, Command, Set, Unset, Update
@@ -56,8 +57,10 @@ def _wanted(view: KnownMap, command: Batch, change: Update | Set | Unset) -> _Wa
     if isinstance(signed, Update):
         entity, found = updatable(view, signed)
         return _Wanted(signed, entity, found, transactions.update(signed, entity, found))
-    stated = transactions.state(signed) if isinstance(signed, Set) else transactions.unstate(signed)
-    return _Wanted(signed, view.entity(signed.name), None, stated)
+    if isinstance(signed, Set):
+        require_opening(view, signed)
+        return _Wanted(signed, view.entity(signed.name), None, transactions.state(signed))
+    return _Wanted(signed, view.entity(signed.name), None, transactions.unstate(signed))
 
 
 def _notes(view: KnownMap, wanted: list[_Wanted], made: Effects | None) -> list[str]:
@@ -83,7 +86,7 @@ def _require_each_once(command: Batch) -> None:
     """Raises BadRequest where it is not clear which of two changes holds, for all happen together."""
     known: set[tuple[str, str]] = set()
     for change in command.changes:
-        touched = {(change.name, _plain(word)): word for word in _words(change)}
+        touched = {(change.name, plain(word)): word for word in _words(change)}
         if isinstance(change, Update):
             touched[change.name, ""] = ""
         if twice := touched.keys() & known:
@@ -99,12 +102,7 @@ def _words(change: Update | Set | Unset) -> tuple[str, ...]:
     """The properties that it changes, as they are written."""
     if not isinstance(change, Update):
         return (change.property,)
-    return tuple(word.partition("=")[0] for word in (*change.set, *change.unset))
-
-
-def _plain(property_: str) -> str:
-    """`isOpen`, `is open` and `is_open` are one property."""
-    return property_.replace(" ", "").replace("_", "").lower()
+    return properties_in((*change.set, *change.unset))
 
 
 def _require_bare(change: Command) -> None:

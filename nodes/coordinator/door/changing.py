@@ -6,6 +6,7 @@ from nodes.coordinator import holding, transactions
 from nodes.coordinator.authority import is_placing, require_authority
 from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.committing import changed, commit, new_id, once, taken_anew
+from nodes.coordinator.door.jointed import require_opening
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.plausibility import doubts, require_carrying, require_same_nature
 from nodes.coordinator.scene.hands import Hand
@@ -86,6 +87,7 @@ def update(view: KnownMap, command: Update) -> Talk[Changed]:
 def updatable(view: KnownMap, command: Update) -> tuple[Entity, ClassInfo | None]:
     """The entity that is to be changed so, and the class that it is to have. Raises where it may not be."""
     entity = view.entity(command.name)
+    require_opening(view, command)
     require_carrying(command)
     if command.source != "perception" and is_placing(command):
         holding.require_free(entity)
@@ -117,6 +119,7 @@ def notes_on(
 @once
 def set_(view: KnownMap, command: Set) -> Talk[Changed]:
     """State a property of an entity."""
+    require_opening(view, command)
     return (yield from _stated(view, command, transactions.state(command)))
 
 

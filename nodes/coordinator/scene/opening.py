@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from concurrent.futures import Future
 from typing import NamedTuple
 
 from nodes.coordinator.door import Door
+from nodes.coordinator.door.jointed import endless
 from nodes.coordinator.scene.reconciler import AskSim, Keeping
 from nodes.runtime.futures import OwnFuture, settle
 from schemas import commands as c
@@ -114,21 +114,12 @@ def _require_joints(command: c.Open | c.Close, body: Body) -> None:
         to_switch = f"; to switch it: semmap set {body.name} isSwitchedOn {_is_open(command)}"
         raise errors.Refused(
             f"{body.name} has no door, lid or drawer to {command.VERB}"
-            f"{to_switch if switches else _endless(body.joints)}"
+            f"{to_switch if switches else endless(body.joints)}"
         )
     if command.joint and command.joint not in (*opening, *switches):
         there = [*opening, *switches]
         hint = errors.did_you_mean(command.joint, there) or f"; it has: {', '.join(there)}"
         raise errors.Refused(f"{body.name} has no joint '{command.joint}' to {command.VERB}{hint}")
-
-
-def _endless(joints: Sequence[Joint]) -> str:
-    """Why joints open nothing, of one of them that has no ends; nothing where there is none."""
-    joint = next((joint for joint in joints if not joint.has_ends), None)
-    if joint is None:
-        return ""
-    why = "is a ball joint" if joint.kind == "ball" else "has no limits, of which one could be the closed one"
-    return f": its joint {joint.name} {why}"
 
 
 def _on_its_way(command: c.Open | c.Close, switch: str) -> str:

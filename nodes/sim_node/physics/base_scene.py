@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import count
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import mujoco
 import numpy as np
@@ -88,10 +88,19 @@ def read_mjcf(path: Path, *, compiles: bool = True) -> mujoco.MjSpec:
     return spec
 
 
-def prepare(spec: mujoco.MjSpec) -> None:
+class Compiled(NamedTuple):
+    """A world as MuJoCo has it: of thousands of bodies it takes seconds to make."""
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    """With the frames of its bodies as they stand at first."""
+
+
+def prepare(spec: mujoco.MjSpec) -> Compiled:
     """Set what the simulator relies on: one bad body does not reset the world, and bodies at rest sleep.
 
     In a world with equality constraints on tendons or flexible things nothing sleeps: MuJoCo cannot do it.
+    What it returns has no unseen floor, which is the ground's.
     """
     if all(int(equality.type) in _SLEEP_WITH for equality in spec.equalities):
         spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
@@ -108,10 +117,12 @@ def prepare(spec: mujoco.MjSpec) -> None:
     quality.shadowsize = quality.offsamples = 0  # shadows and MSAA cost 40 times the frame on a CPU
     # a third of the default's time: what is round shrinks by a fiftieth of its radius at most
     quality.numslices, quality.numstacks, quality.numquads = 24, 8, 1
-    if np.isnan(spec.stat.extent):  # how far an endless floor is drawn; nothing may be there to begin with
-        spec.stat.extent = max(_EXTENT_M, float(spec.copy().compile().stat.extent))
     _add_names(spec)
-    _add_net(spec)
+    compiled = _compiled(spec)
+    if np.isnan(spec.stat.extent):  # how far an endless floor is drawn; nothing may be there to begin with
+        spec.stat.extent = max(_EXTENT_M, float(compiled.model.stat.extent))
+    _add_net(spec, *compiled)
+    return compiled
 
 
 def _add_names(spec: mujoco.MjSpec) -> None:
@@ -136,9 +147,8 @@ def _name(elements: Sequence[Any], stem: str, kin: Iterable[Any], is_named: Call
             taken.add(element.name)
 
 
-def _add_net(spec: mujoco.MjSpec) -> None:
+def _add_net(spec: mujoco.MjSpec, model: mujoco.MjModel, data: mujoco.MjData) -> None:
     """An endless floor, unseen, below a world that has none: what falls off it comes to rest somewhere."""
-    model, data = _compiled(spec)
     static = np.flatnonzero(model.body_weldid[model.geom_bodyid] == 0)
     if not (model.geom_type[static] == int(mujoco.mjtGeom.mjGEOM_PLANE)).any():
         low, _ = _extents(model, data, static, 0)
@@ -152,21 +162,21 @@ def _add_net(spec: mujoco.MjSpec) -> None:
         )
 
 
-def _compiled(spec: mujoco.MjSpec) -> tuple[mujoco.MjModel, mujoco.MjData]:
+def _compiled(spec: mujoco.MjSpec) -> Compiled:
     model = spec.copy().compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    return model, data
+    return Compiled(model, data)
 
 
 def bodies_of(
-    spec: mujoco.MjSpec, is_class: Callable[[str], bool] = lambda word: False
+    spec: mujoco.MjSpec, compiled: Compiled, is_class: Callable[[str], bool] = lambda word: False
 ) -> dict[str, BodyRecord]:
     """The world's own bodies: every named one on the top level, and of those within others every `_is_body`.
 
     A joint is of the body that it moves or, if that is none of these, of the nearest one that it is part of.
     """
-    model, data = _compiled(spec)
+    model, data = compiled
     classes = _declared(spec)
     ends = Ends.of(spec)
     switches = {joint for joint in range(model.njnt) if ends.is_switch(model, joint)}
@@ -214,9 +224,8 @@ def ignored(spec: mujoco.MjSpec) -> list[str]:
     return told
 
 
-def left_out(spec: mujoco.MjSpec, records: Collection[str]) -> tuple[str, ...]:
+def left_out(model: mujoco.MjModel, records: Collection[str]) -> tuple[str, ...]:
     """The bodies of a world that are none of `records`, by name; one without a name by what it is part of."""
-    model, _ = _compiled(spec)
     names = [model.body(number).name for number in range(model.nbody)]
     told = []
     above = [""] * model.nbody

@@ -39,13 +39,15 @@ class Engine:
 
         `is_class` tells the names of classes, by which parts of the world's bodies are bodies of their own.
         """
-        base_scene.prepare(ground)
+        world = build.aside(lambda: base_scene.prepare(ground), meanwhile)
         self._meanwhile = meanwhile
         self._ground = ground
         self._shapes: dict[str, Model] = {}
         self._berths: dict[str, Berth] = {}
         self._vacant: list[Berth] = []
-        self.records = base_scene.bodies_of(ground, is_class)
+        self.records = base_scene.bodies_of(ground, world, is_class)
+        self.left_out = base_scene.left_out(world.model, self.records)
+        """The bodies of the world that are only parts of others, each by name or by what it is part of."""
         self.revision = 0
         self.compiling = False
         self.model: mujoco.MjModel

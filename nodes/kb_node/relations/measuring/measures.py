@@ -23,6 +23,8 @@ _SIDEWAYS = math.sin(math.radians(10.0))
 """A normal nearer to the horizontal than this is that of two who stand side by side."""
 _FLAT = math.cos(math.radians(2.0))
 """A normal this near to the vertical is that of a flat contact."""
+_FLOOR_M = 0.002
+"""Between the floor of a hollow and a top that is the floor."""
 
 
 _Piece = tuple[Sequence[Point], float, float]
@@ -94,7 +96,46 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
     if not (is_flat and upper.is_upright):
         return best
     share = _covered(upper, lower, best.height_m)
-    return Measure(True, best.gap_m, share, best.height_m, most) if share > 0.0 else None
+    if share <= 0.0:
+        return None
+    best = best._replace(share=share)
+    if share < limits.base_share and not is_balanced(upper, (lower,), best.height_m):
+        tops = {other.high[2] for _, _, other in pairs if other.has_flat_top}
+        return _within_rim(upper, lower, best, sorted(tops, reverse=True), limits) or best
+    return best
+
+
+def _within_rim(
+    upper: Solid, lower: Solid, rim: Measure, tops: Sequence[float], limits: Thresholds
+) -> Measure | None:
+    """How one rests on the highest of the lower tops that is under enough of its base; None without one.
+
+    A pose is worth less than a rim is wide: what stands in a tray may seem to reach over the edge of it.
+    """
+    for height in tops:
+        gap = upper.bottom - height
+        if height < rim.height_m - LOWEST_M and gap <= rim.limit:
+            share = _covered(upper, lower, height)
+            if share >= limits.base_share:
+                return Measure(True, gap, share, height, rim.limit)
+    return None
+
+
+def cradles(lower: Solid, upper: Solid, made: Measure) -> bool:
+    """Whether what is on another is so in an open hollow of it, as what stands in a tray is.
+
+    Most of the base is over the floor of the hollow, so that nothing below the other one can bear it.
+    """
+    if not (lower.is_level and upper.volume < lower.volume):
+        return False
+    whole = area(upper.outline)
+    for hollow in lower.hollows:
+        (x0, y0, z0), (x1, y1, _) = hollow.low, hollow.high
+        if hollow.open and abs(lower.position[2] + z0 - made.height_m) <= _FLOOR_M:
+            floor = [lower.to_map((x, y, 0.0))[:2] for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+            if area(clipped(upper.outline, floor)) > 0.5 * whole:
+                return True
+    return False
 
 
 def _least(pair: tuple[float, object, object]) -> float:

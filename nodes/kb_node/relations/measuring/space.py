@@ -239,7 +239,8 @@ class Space:
 
         To a centimetre all are equally near; of those the highest counts. The floor of its place, `floor_m`
         below it, is one of them, and so is what it leans on. What is inside something is on no more than
-        what is in there with it. What none of these bears rests on what it leans on.
+        what is in there with it, and what stands in a tray on nothing below the tray. What none of these
+        bears rests on what it leans on.
         """
         limits = self.limits
         if container is not None:
@@ -248,6 +249,11 @@ class Space:
         gaps = [made.gap_m for _, made in leaning]
         below = [found for found in below if found[1].holds and not self._is_below(solid, *found)]
         on_floor = floor_m is not None and abs(floor_m) <= limits.gap_m
+        trays = [made.height_m for other, made in below if measures.cradles(other, solid, made)]
+        if trays:
+            lowest = max(trays) - limits.contact_m
+            below = [found for found in below if found[1].height_m >= lowest]
+            on_floor = on_floor and floor_m is not None and solid.bottom - floor_m >= lowest
         if not below:
             least = min((side.bottom for side, _ in leaning), default=math.inf)
             may_stand = on_floor or (floor_m is None and solid.bottom <= least + limits.gap_m)

@@ -210,6 +210,10 @@ class Survey:
         one, other, away = one[order], other[order], away[order]
         is_nearest = differs(one)
         self.support[one[is_nearest]] = other[is_nearest]
+        # What stands in a tray is on nothing below the tray, however near that is.
+        self.is_open[
+            one[~is_nearest & (self._columns.forms.hollows.count[self._columns.form[other]] > 0)]
+        ] = True
         second = np.flatnonzero(is_nearest[:-1] & ~is_nearest[1:]) + 1
         tied = second[away[second] - away[second - 1] < _NEAREST_M + GUARD]
         self.is_open[one[tied]] = True

@@ -1,0 +1,56 @@
+"""What stands in a tray stands on the tray, as far as a pose can be trusted."""
+
+import pytest
+
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.support import on_nothing
+from ontology.model_shapes import own_size_m
+from schemas.entities import Pose
+from tests.kb_node.relations.facts.test_many_at_once import require_alike
+from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
+
+HALF_M = own_size_m("tray")[0] / 2
+FLOOR_M = 0.01
+RIM_M = 0.015
+
+
+def on_tray(x, above=0.0, model="cup"):
+    """A thing at `x` in a tray on a table, so far above the floor of the tray as the map has it [m]."""
+    return [TABLE, thing("tray1", (0.0, 0.0, TOP)), thing(f"{model}1", (x, 0.0, TOP + FLOOR_M + above))]
+
+
+def bearers(name, things):
+    space = Space([ROOM, *things])
+    solid = space.solids[name]
+    assert on_nothing(space, solid) is None
+    return [other.name for other, _ in space.whereabouts(solid).supports]
+
+
+@pytest.mark.parametrize("model", ["cup", "glass", "bottle"])
+@pytest.mark.parametrize("above", [-0.01, 0.0, 0.005, 0.03])
+@pytest.mark.parametrize("x", [0.0, 0.09, HALF_M - RIM_M - 0.03, HALF_M - RIM_M - 0.015])
+def test_it_is_on_the_tray_and_not_on_the_table(x, above, model):
+    """Also where its pose has it reach over the rim, or into the floor, by as much as a pose is worth."""
+    things = on_tray(x, above, model)
+    assert bearers(f"{model}1", things) == ["tray1"]
+    require_alike([ROOM, *things])
+
+
+def test_it_is_on_the_tray_while_that_is_in_the_air():
+    _, tray, cup = on_tray(0.11, 0.03)
+    assert bearers("cup1", [tray, cup]) == ["tray1"]
+
+
+def test_what_lies_across_the_rims_is_on_them():
+    """A board that is wider than the tray rests on its rims, a little or more above the floor."""
+    pose = Pose(position_m=(0.0, 0.0, TOP + 0.04), orientation_wxyz=(1.0, 0.0, 0.0, 0.0))
+    board = Placed(name="board1", iri="urn:board1", pose=pose, size_m=(0.4, 0.1, 0.01), place=False, model="")
+    space = Space([TABLE, thing("tray1", (0.0, 0.0, TOP)), board])
+    ((tray, made),) = space.whereabouts(space.solids["board1"]).supports
+    assert (tray.name, made.gap_m) == ("tray1", pytest.approx(0.0))
+
+
+def test_two_trays_at_one_spot_do_not_stand_on_one_another():
+    trays = [thing("tray1", (0.0, 0.0, TOP)), thing("tray2", (0.0, 0.0, TOP))]
+    assert [bearers(tray.name, [TABLE, *trays]) for tray in trays] == [["table1"], ["table1"]]
