@@ -127,7 +127,7 @@ class Keeping:
             self._later.update(names or ())
         if self._busy or not self.scene.known:
             return
-        actions = self._follow_contents(self.wanted(names))
+        actions = self._follow_contents(self._follow_robots(self.wanted(names)))
         for group in self._to_follow(actions.follow):
             self._follow(group)
         self._follow_joints(actions.opened)
@@ -361,6 +361,50 @@ class Keeping:
         if anew:
             gone = Delete(names=tuple(order.name for order in anew))
             self._steps.extendleft([self._spawning(anew), Step(gone, lambda _: None)])
+
+    def _follow_robots(self, actions: Actions) -> Actions:
+        """Follow a robot and its parts in one commit, once all of it rests.
+
+        Gives what is left to be done. Were what rests first followed alone, the rest would be where it was, and
+        nothing would be left to do as long as it moves.
+        """
+        bodies = self.scene.bodies
+        done: set[str] = set()
+        for name in (*(placement.name for placement in actions.follow), *actions.opened):
+            if name in done or not bodies[name].robot or self._door.hands.party_of(name):
+                continue
+            whole, party = self._robot_of(name)
+            done |= party
+            now = time.monotonic()
+            if not self._following.isdisjoint(party):
+                continue  # it is looked at again when that is done
+            if (
+                not all(bodies[part].resting for part in party)
+                and now < self._waiting.setdefault(whole, now) + _CALM_S
+            ):
+                self._later.update(party)
+                continue
+            self._waiting.pop(whole, None)
+            wanted = self.wanted(party)
+            opened = next(filter(self._may_follow_joints, wanted.opened), "")  # others in their turn
+            if wanted.follow or opened:
+                self._follow(wanted.follow, opened)
+        return actions._replace(
+            follow=tuple(placement for placement in actions.follow if placement.name not in done),
+            opened=tuple(name for name in actions.opened if name not in done),
+        )
+
+    def _robot_of(self, name: str) -> tuple[str, set[str]]:
+        """The robot that a body is or is part of, and the names of it and of all its parts."""
+        bodies = self.scene.bodies
+
+        def whole_of(part: str) -> str:
+            while (above := bodies[part].part_of) in bodies:
+                part = above
+            return part
+
+        whole = whole_of(name)
+        return whole, {part for part, body in bodies.items() if body.robot and whole_of(part) == whole}
 
     def _follow_contents(self, actions: Actions) -> Actions:
         """Follow in one commit how joints stand and what they took along, once all of it rests.
