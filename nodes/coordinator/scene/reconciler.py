@@ -365,8 +365,8 @@ class Keeping:
     def _follow_robots(self, actions: Actions) -> Actions:
         """Follow a robot and its parts in one commit, once all of it rests.
 
-        Gives what is left to be done. Were what rests first followed alone, the rest would be where it was, and
-        nothing would be left to do as long as it moves.
+        Gives what is left to be done. Were what rests first followed alone, the rest would be where it was,
+        and nothing would be left to do as long as it moves.
         """
         bodies = self.scene.bodies
         done: set[str] = set()
