@@ -44,8 +44,8 @@ class Space:
         self.grid: Final = Grid()
         self._raised: set[str] = set()
         """The things that are above the floor or of a size of their own."""
-        self.held: Final[set[str]] = set()
-        """The things that are grasped by others: nothing else bears them."""
+        self.held: Final[dict[str, str]] = {}
+        """What is grasped, and by what: nothing else bears it, but for a tray that is itself carried."""
         self.memory: Memory | None = None
         """What need not be worked out again, while `remembering`."""
         for _ in self.put_all(entities):
@@ -60,7 +60,7 @@ class Space:
             newest = {entity.name: entity for entity in some}
             for name in newest.keys() & self.solids.keys() if self.solids else ():
                 self.take(name)
-            self.held.update(name for name, entity in newest.items() if holder_in(entity))
+            self.held.update((name, by) for name, entity in newest.items() if (by := holder_in(entity)))
             solids = solids_of(newest.values())
             self.solids.update((solid.name, solid) for solid in solids)
             file(self.grid, solids)
@@ -76,8 +76,8 @@ class Space:
         solid = solid_of(entity, self.take(entity.name))
         if solid is not None:
             self._add(solid)
-            if holder_in(entity):
-                self.held.add(solid.name)
+            if by := holder_in(entity):
+                self.held[solid.name] = by
             if not solid.is_place and (solid.position[2] != 0.0 or entity.size_m is not None):
                 self._raised.add(solid.name)
         return solid
@@ -93,7 +93,7 @@ class Space:
         if solid is not None:
             self.grid.remove(solid)
             self._raised.discard(name)
-            self.held.discard(name)
+            self.held.pop(name, None)
         return solid
 
     @contextmanager
@@ -102,7 +102,8 @@ class Space:
         entities, without = tuple(entities), tuple(without)
         names = {*(entity.name for entity in entities), *without}
         before = [solid for name in names if (solid := self.solids.get(name)) is not None]
-        raised, held = self._raised & names, self.held & names
+        raised = self._raised & names
+        held = {name: self.held[name] for name in names & self.held.keys()}
         try:
             for name in without:
                 self.take(name)
@@ -199,7 +200,6 @@ class Space:
         container: Found | None = None
         place: Found | None = None
         below: list[Found] = []
-        is_held = solid.name in self.held
         least = solid.bottom - limits.gap_m - 1e-6
         for other in self.bearers_around(solid):
             if other.is_place:
@@ -207,9 +207,7 @@ class Space:
                 if made and made.holds and (place is None or _area(other) < _area(place[0])):
                     place = (other, made)
                 continue
-            if is_held:
-                continue
-            if other.top < least:
+            if other.top < least or not self._may_share(other, solid):
                 continue
             made = measures.inside(solid, other, limits) if other.hollows else None
             if made and made.holds and (container is None or _volume(other) < _volume(container[0])):
@@ -225,12 +223,23 @@ class Space:
 
         That takes a look at the two; `whereabouts` looks at all that is around.
         """
-        if solid.is_place or solid.name in self.held or bearer.top < solid.bottom - self.limits.gap_m:
+        if solid.is_place or bearer.top < solid.bottom - self.limits.gap_m:
+            return False
+        if not self._may_share(bearer, solid):
             return False
         if bearer.hollows and self._is_within(solid, bearer):
             return True
         made = measures.on(solid, bearer, self.limits)
         return made is not None and made.holds
+
+    def _may_share(self, bearer: Solid, solid: Solid) -> bool:
+        """Whether one may bear another for all that grasps this: a carried tray does what it takes along.
+
+        So does what is taken along with it, as a bowl on the tray does an apple.
+        """
+        if not self.held or (holder := self.held.get(solid.name)) is None:
+            return True
+        return holder in self.held and holder in (bearer.name, self.held.get(bearer.name))
 
     def _supports(
         self, solid: Solid, below: list[Found], container: Found | None, floor_m: float | None

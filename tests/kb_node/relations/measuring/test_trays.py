@@ -1,6 +1,7 @@
 """What stands in a tray stands on the tray, as far as a pose can be trusted."""
 
 import pytest
+from msgspec import structs
 
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.measuring.space import Space
@@ -54,3 +55,45 @@ def test_what_lies_across_the_rims_is_on_them():
 def test_two_trays_at_one_spot_do_not_stand_on_one_another():
     trays = [thing("tray1", (0.0, 0.0, TOP)), thing("tray2", (0.0, 0.0, TOP))]
     assert [bearers(tray.name, [TABLE, *trays]) for tray in trays] == [["table1"], ["table1"]]
+
+
+def held(entity, holder):
+    """An entity that is grasped where it is."""
+    return structs.replace(Placed.of(entity), held_by=holder)
+
+
+def test_what_a_carried_tray_took_along_is_on_it_still():
+    """The tray itself is on nothing, though it is just above the table."""
+    _, tray, cup = on_tray(0.0)
+    bowl = thing("bowl1", (0.0, 0.15, TOP + FLOOR_M))
+    apple = thing("apple1", (0.0, 0.15, TOP + FLOOR_M + 0.02))
+    along = [held(one, "tray1") for one in (cup, bowl, apple)]
+    space = Space([TABLE, held(tray, "gripper1"), *along])
+    found = {name: space.whereabouts(solid) for name, solid in space.solids.items()}
+    assert [other.name for other, _ in found["cup1"].supports] == ["tray1"]
+    assert [other.name for other, _ in found["bowl1"].supports] == ["tray1"]
+    assert found["apple1"].container[0].name == "bowl1"
+    assert (found["tray1"].container, found["tray1"].supports) == (None, ())
+    assert space.may_bear(space.solids["tray1"], space.solids["cup1"])
+    assert not space.may_bear(space.solids["table1"], space.solids["tray1"])
+
+
+def test_what_anything_else_grasps_is_on_nothing():
+    """Also on a tray that nobody carries, and on the tray that another one holds beside it."""
+    table, tray, cup = on_tray(0.0)
+    for things in (
+        [held(cup, "gripper1"), tray],
+        [held(cup, "tray1"), tray],
+        [held(cup, "tray2"), held(tray, "gripper1"), thing("tray2", (1.0, 0.0, TOP))],
+    ):
+        space = Space([table, *things])
+        assert space.whereabouts(space.solids["cup1"]).supports == ()
+
+
+def test_it_is_on_the_table_again_where_that_is_supposed():
+    table, tray, cup = on_tray(0.0)
+    space = Space([table, held(tray, "gripper1"), held(cup, "tray1")])
+    with space.supposing([Placed.of(tray)], without=("cup1",)):
+        assert [other.name for other, _ in space.whereabouts(space.solids["tray1"]).supports] == ["table1"]
+    assert space.whereabouts(space.solids["tray1"]).supports == ()
+    assert [other.name for other, _ in space.whereabouts(space.solids["cup1"]).supports] == ["tray1"]
