@@ -1,4 +1,4 @@
-"""`python -m benchmarks.sim [--quick] [--parts NAMES] [--minutes N] [--worlds DIR] [--json FILE]`."""
+"""`python -m benchmarks.sim [--quick] [--parts NAMES] [--drives N] [--worlds DIR] ... [--json FILE]`."""
 
 from __future__ import annotations
 
@@ -68,9 +68,9 @@ def _random_doors(words: argparse.Namespace) -> list[Row]:
         return doors.measure_at_random(Path(folder), words.door_minutes)
 
 
-def _drive(_: argparse.Namespace) -> list[Row]:
+def _drive(words: argparse.Namespace) -> list[Row]:
     with tempfile.TemporaryDirectory() as folder:
-        return drive.measure(Path(folder))
+        return drive.measure(Path(folder), words.drives)
 
 
 PARTS: dict[str, Callable[[argparse.Namespace], list[Row]]] = {
@@ -94,6 +94,13 @@ def _arguments() -> argparse.Namespace:
         "--door-minutes", type=float, default=1.0, metavar="N",
         help="simulated minutes in which 40 doors open and close (the whole: 10)",
     )  # fmt: skip
+    parser.add_argument(
+        "--drives",
+        type=int,
+        default=1,
+        metavar="N",
+        help="so many drives, all but one a bit aside",
+    )
     parser.add_argument(
         "--worlds", type=Path, metavar="DIR",
         help="instead of the parts: what becomes of the bodies of every MJCF file in this folder",

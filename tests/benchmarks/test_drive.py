@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from benchmarks.sim.drive import Score, score
+from benchmarks.sim.drive import Score, score, stops
 from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
 from schemas.entities import Entity, Pose, Provenance
 
@@ -37,3 +37,12 @@ def test_one_seen_thing_finds_one_thing_and_a_second_is_a_double() -> None:
 def test_over_20_cm_is_a_wrong_place_and_over_60_cm_is_not_found() -> None:
     assert score([_at("Chair", 0.0)], [_at("Chair", 0.3)], KNOWN) == Score(1, 0, 1)
     assert score([_at("Chair", 0.0)], [_at("Chair", 0.7)], KNOWN) == Score(0, 0, 0)
+
+
+def test_each_seed_is_a_course_of_its_own_near_the_first() -> None:
+    first, second, third = stops(0), stops(1), stops(2)
+    assert second == stops(1)
+    assert second != third
+    for (at, yaw), (other, turned) in zip(first, second, strict=True):
+        assert 0.0 < max(abs(a - b) for a, b in zip(at, other, strict=True)) <= 0.08
+        assert abs(yaw - turned) <= 0.12

@@ -19,7 +19,7 @@ from msgspec import structs
 from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.tracking.assignment import Candidate, Matching, match
 from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
-from nodes.perception_node.tracking.costs import Target
+from nodes.perception_node.tracking.costs import Target, is_rather_all_of_it
 from nodes.perception_node.tracking.legs import is_leg
 from nodes.perception_node.tracking.map_updates import (
     additions,
@@ -69,7 +69,7 @@ def associate(
     matching = match(candidates, others, observations, occupancy_of, classes, config)
     known = {
         name: _watched(
-            _after(name, candidate.track, matching, observations, config),
+            _after(entities[name], candidate, matching, observations, classes, config),
             entities[name],
             occupancy_of,
             config,
@@ -144,8 +144,8 @@ def _candidate(
     elsewhere = distance_m(track.pose, entity.pose) > slack_m(track.size_m, config.still_m)
     if track.told != entity.pose and elsewhere:
         track = replace(track, pose=entity.pose, looks=0, unseen=0, odd=0, fit=None)
-    if track.part and track.whole and track.told != entity.pose:
-        track = replace(track, part=False)  # the map has been told of the whole
+    if track.told != entity.pose:  # the map has been told
+        track = replace(track, part=track.part and not track.whole, outsized=False)
     track = replace(track, told=entity.pose, left=track.left and track.told == entity.pose)
     target = _target(track, classes)
     return Candidate(
@@ -164,14 +164,24 @@ def _target(track: Track, classes: ClassHierarchy) -> Target:
 
 
 def _after(
-    name: str, track: Track, matching: Matching, observations: Sequence[Observation], config: TrackingConfig
+    entity: Entity,
+    candidate: Candidate,
+    matching: Matching,
+    observations: Sequence[Observation],
+    classes: ClassHierarchy,
+    config: TrackingConfig,
 ) -> Track:
     """What is remembered of an entity after this look."""
-    if name in matching.known:
-        if track.is_nearly_odd(config):
-            track = replace(track, sized=0, whole=False)  # what was believed of its size does not count
-        return track.see(observations[matching.known[name]], config)
-    return track.miss(matching.occupancy[name], odd=name in matching.odd)
+    track, name = candidate.track, entity.name
+    if name not in matching.known:
+        return track.miss(matching.occupancy[name], odd=name in matching.odd)
+    seen = observations[matching.known[name]]
+    mistaken = is_own(entity) and not classes.is_a(track.sized_as, entity.class_)
+    if mistaken and is_rather_all_of_it(seen, candidate.target):
+        return track.see_all(seen, config)
+    if track.is_nearly_odd(config):
+        track = replace(track, sized=0, whole=False)  # what was believed of its size does not count
+    return track.see(seen, config)
 
 
 def _watched(track: Track, entity: Entity, occupancy_of: OccupancyOf, config: TrackingConfig) -> Track:

@@ -23,6 +23,8 @@ _BLUR_M = 0.01
 """What an extent may be off by, however small it is."""
 _SAME_SPOT, _AS_WIDE = 0.25, 0.2
 """Of a thing's width so far aside, and so unlike in width (log), it still stands where it stood."""
+_OUTSIZED, _USUAL = 0.5, 0.3
+"""A thing is too large by so much (log) of what its class measures, and is like that within so much."""
 _HIDDEN_PART = 0.3
 """How much it counts that an extent is smaller of what is seen in part."""
 
@@ -59,6 +61,15 @@ def cost_in_place(target: Target, seen: Observation, classes: ClassHierarchy) ->
     if unlike > (_SAME_OF_ANOTHER_CLASS if alien > 0.5 else _SAME):
         return FORBIDDEN
     return aside / reach + unlike + alien
+
+
+def is_rather_all_of_it(seen: Observation, target: Target) -> bool:
+    """Whether what a picture's edge cuts measures what the class does for which the thing is too large."""
+    if seen.whole or not target.whole or target.size_m is None or target.usual_m is None:
+        return False
+    usual, before, now = _upright(target.usual_m), _upright(target.size_m), _upright(seen.size_m)
+    too_large = any(math.log(old / own) > _OUTSIZED for old, own in zip(before, usual, strict=True))
+    return too_large and all(abs(math.log(new / own)) < _USUAL for new, own in zip(now, usual, strict=True))
 
 
 def _is_one_but_for_its_depth(target: Target, seen: Observation) -> bool:

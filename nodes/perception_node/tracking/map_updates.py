@@ -81,7 +81,7 @@ def update_of(
     changes: dict[str, Any] = {}
     moved = has_moved(entity, track, config)
     if moved or _is_turned(entity, track):
-        corrected = (track.part and track.whole) or _was_front(entity, track)
+        corrected = (track.part and track.whole) or track.outsized or _was_front(entity, track)
         enough = config.kept_looks if track.kept else config.nudge_looks
         looks = track.borne_out if moved else track.looks
         if not track.left and not corrected and looks < enough:
@@ -212,7 +212,7 @@ def _described(
             changes["ref"] = classes.label(class_name)
     if (
         track.whole
-        and (track.part or _was_front(entity, track) or track.looks >= config.nudge_looks)
+        and (track.part or track.outsized or _was_front(entity, track) or track.looks >= config.nudge_looks)
         and _is_resized(entity, track, config)
     ):
         changes["size"] = _to_millimetres(track.size_m)

@@ -29,6 +29,10 @@ _NEAREST_M = 0.05
 _IN_VIEW, _UNHIDDEN, _FREE = 0.7, 0.5, 0.75
 _THROUGH = 0.7
 """A ray that ends behind this share of its way through the box has met nothing in it."""
+_LARGE_M, _THIN_M, _LARGE_FREE = 0.4, 0.1, 0.9
+"""What is larger, not thin, may be slats and legs, past which most rays go: it is gone if nearly all do."""
+_EDGE_M, _FOOT_M = 0.02, 0.05
+"""What is so near the sides of its box or so low may be what it stands at or on."""
 
 
 def occupancy_in(clouds: Sequence[Cloud]) -> OccupancyOf:
@@ -57,8 +61,19 @@ def _occupancy_by(cloud: Cloud, pose: Pose, size_m: Size) -> Occupancy:
     unhidden = depth > enter - _IN_FRONT_M  # NaN is hidden
     if depth.size < _FEWEST_RAYS or unhidden.mean() < _UNHIDDEN:
         return "unknown"
-    through = (depth[unhidden] - enter[unhidden]) / way[unhidden]
-    return "free" if (through > _THROUGH).mean() >= _FREE else "occupied"
+    through = (depth[unhidden] - enter[unhidden]) / way[unhidden] > _THROUGH
+    if max(size_m) <= _LARGE_M or min(size_m) <= _THIN_M:
+        return "free" if through.mean() >= _FREE else "occupied"
+    points = cloud.points_camera[rows, columns][crossing][unhidden]
+    through &= ~_inside(points, camera_from_box, np.array(size_m) / 2.0)
+    return "free" if through.mean() >= _LARGE_FREE else "occupied"
+
+
+def _inside(points: NDArray[np.float32], camera_from_box: Transform, half: Transform) -> NDArray[np.bool_]:
+    """Which points (N, 3) of a camera's frame are in a box: also at its far side, where its back is."""
+    own = (points - camera_from_box[:3, 3]) @ camera_from_box[:3, :3]
+    within = (np.abs(own) < half - _EDGE_M).all(axis=1)
+    return np.asarray(within & (own[:, 2] > _FOOT_M - half[2]))
 
 
 def _pixels(

@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from msgspec import structs
+
 from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.tracking.class_hierarchy import ANYTHING
 from nodes.perception_node.tracking.fits import KnownFit
@@ -30,20 +32,22 @@ _MEMORY = 20
 class Track:
     """Observations tied to one thing: `pose` is their mean since it came to rest, `size_m` of their sizes.
 
-    `placed` and `sized`: what the looks are worth of which these are the means. `looks` is how often it was
-    seen since it rests, `borne_out` how often of these as a whole, `occupied` how often its place was so
-    since then although the thing was not told apart, `unseen` how often in a row it should have been seen
-    since and was not, `odd` how often in a row something of another size was in its place. `whole`: it was
-    seen unhidden, uncut. `absent`: looks since it or its place was last seen filled. `told` is the map's pose
-    at the last look; `left`: that place is seen empty; `kept`: what it would have left of it is filled;
-    `part`: the map was told of what a picture's edge cuts. `fit`: what its class's model told of it since it
-    came to rest; `unlike`: the class whose model it is not like at all.
+    `placed` and `sized`: what the looks are worth of which these are the means; `sized_as`: what it was taken
+    for in the last that told of its size. `looks` is how often it was seen since it rests, `borne_out` how
+    often of these as a whole, `occupied` how often its place was so since then although the thing was not
+    told apart, `unseen` how often in a row it should have been seen since and was not, `odd` how often in a
+    row something of another size was in its place. `whole`: it was seen unhidden, uncut. `absent`: looks
+    since it or its place was last seen filled. `told` is the map's pose at the last look; `left`: that place
+    is seen empty; `kept`: what it would have left of it is filled; `part`: the map was told of what a
+    picture's edge cuts; `outsized`: it was told of more than there is. `fit`: what its class's model told of
+    it since it came to rest; `unlike`: the class whose model it is not like at all.
     """
 
     pose: Pose
     size_m: Size
     votes: Votes = field(default_factory=Votes)
     sized: float = 0.0
+    sized_as: str = ""
     placed: float = 0.0
     looks: int = 0
     borne_out: int = 0
@@ -56,6 +60,7 @@ class Track:
     kept: bool = False
     absent: int = 0
     part: bool = False
+    outsized: bool = False
     fit: KnownFit | None = None
     unlike: str = ""
 
@@ -97,7 +102,7 @@ class Track:
         near = self.looks > 0 and distance_m(pose, self.pose) <= slack_m(self.size_m, config.still_m)
         still = near and turn_between(self, pose) <= config.turned_rad
         return replace(
-            self._sized(size_m, worth, whole=seen.whole),
+            self._sized(size_m, worth, seen),
             pose=_between_poses(self.pose, pose, worth / self._placed(worth)) if still else pose,
             placed=self._placed(worth) if still else worth,
             votes=votes,
@@ -109,6 +114,11 @@ class Track:
             absent=0,
             fit=self.fit if still else None,
         )
+
+    def see_all(self, seen: Observation, config: TrackingConfig) -> Track:
+        """One more observation, of all of it, though a picture's edge cuts it: what was believed was more."""
+        forgotten = replace(self, sized=0.0, placed=0.0, looks=0, whole=False, outsized=True)
+        return forgotten.see(structs.replace(seen, whole=True), config)
 
     def miss(self, occupancy: Occupancy, *, odd: bool) -> Track:
         """It was not seen, and this is what is seen where it should be; `odd`: a thing of another size."""
@@ -123,14 +133,15 @@ class Track:
         """Whether it was seen where it is, and is there since so many looks."""
         return self.looks > 0 and self.looks + self.occupied >= looks and not self.unseen and not self.odd
 
-    def _sized(self, size_m: Size, worth: float, *, whole: bool) -> Track:
+    def _sized(self, size_m: Size, worth: float, seen: Observation) -> Track:
         """With one more look at its size; one at the whole of it is worth more than any at a part."""
-        if self.whole and not whole:
+        if self.whole and not seen.whole:
             return self
-        if self.sized and self.whole == whole:
+        sized = worth
+        if self.sized and self.whole == seen.whole:
             sized = min(self.sized, _MEMORY * worth) + worth
-            return replace(self, size_m=_between(self.size_m, size_m, worth / sized), sized=sized)
-        return replace(self, size_m=size_m, sized=worth, whole=whole)
+            size_m = _between(self.size_m, size_m, worth / sized)
+        return replace(self, size_m=size_m, sized=sized, sized_as=seen.class_, whole=seen.whole)
 
     def _placed(self, worth: float) -> float:
         """What the looks are worth that tell where it is, with one more; not too many of them."""
@@ -140,7 +151,9 @@ class Track:
         """When more is seen of it than its front."""
         worth = _weight(seen)
         again = Track(seen.pose, seen.size_m, votes, sized=worth, placed=worth, looks=1, borne_out=1)
-        return replace(again, whole=True, told=self.told, part=self.part, unlike=self.unlike)
+        return replace(
+            again, sized_as=seen.class_, whole=True, told=self.told, part=self.part, unlike=self.unlike
+        )
 
 
 @dataclass(frozen=True)

@@ -576,3 +576,35 @@ def test_a_narrower_thing_in_the_place_of_another_is_another():
     remove, add = table.looks(CONFIG.odd_looks + 2 * CONFIG.nudge_looks)
     assert isinstance(remove, Remove)
     assert add.name == "object2"
+
+
+def two_cups_as_one(class_: str) -> Table:
+    """A table on which a cup was seen in part, then once with its neighbour, as a whole, then as before."""
+    part = seen("Cup", at(1, 1), whole=False)
+    table = Table([part])
+    table.looks(5)
+    table.things = [seen(class_, at(1.0, 1.06), (0.08, 0.2, 0.1))]
+    table.look()
+    table.things, table.hidden = [part], True
+    table.looks(5)
+    return table
+
+
+def test_what_was_once_seen_with_its_neighbour_is_put_right_by_what_the_pictures_edge_cuts():
+    cup = two_cups_as_one("Tableware").entities["cup1"]
+    assert cup.pose.position_m == pytest.approx((1.0, 1.0, 0.7))
+    assert cup.size_m == SIZES["Cup"]
+
+
+def test_a_thing_that_is_larger_than_most_of_its_class_is_not_cut_down_by_a_part_of_it():
+    cup = two_cups_as_one("Cup").entities["cup1"]
+    assert cup.pose.position_m == pytest.approx((1.0, 1.06, 0.7))
+    assert cup.size_m == (0.08, 0.2, 0.1)
+
+
+def test_what_an_operator_says_of_a_size_is_not_put_right_by_what_the_pictures_edge_cuts():
+    table = Table([seen("Tableware", at(1, 1), (0.08, 0.3, 0.1))])
+    table.told([entity("cup1", "Cup", at(1, 1), (0.08, 0.3, 0.1))])
+    table.looks(5)
+    table.things, table.hidden = [seen("Cup", at(1, 1.06), whole=False)], True
+    assert table.looks(20) == []

@@ -61,6 +61,31 @@ def test_what_stands_behind_something_is_hidden():
     assert occupancy_in([picture([screen])])(stands(0.0, 0.1), CUP) == "unknown"
 
 
+CHAIR = (0.45, 0.45, 0.9)
+
+
+def chair(x: float, y: float) -> list[tuple[tuple[float, float, float], tuple[float, float, float]]]:
+    """Its back, of two posts and two rails, is on the far side; seat and legs."""
+    posts = [((x + side * 0.2, y + 0.205, TABLE_Z), (0.04, 0.03, 0.9)) for side in (-1, 1)]
+    rails = [((x, y + 0.205, TABLE_Z + z), (0.36, 0.03, 0.08)) for z in (0.58, 0.8)]
+    legs = [((x + side * 0.2, y - 0.2, TABLE_Z), (0.04, 0.04, 0.42)) for side in (-1, 1)]
+    return [*posts, *rails, *legs, ((x, y, TABLE_Z + 0.42), (0.45, 0.45, 0.03))]
+
+
+@pytest.mark.parametrize("noise_m", [0.0, 0.003])
+def test_a_chair_of_which_only_the_slats_of_its_back_are_in_sight_is_there(noise_m):
+    table = ((0.0, -0.75, TABLE_Z), (1.2, 0.8, 0.5))
+    pose = looking_down(0.45, 3.0)
+    there = picture([table, *chair(0.0, 0.0)], pose, noise_m)
+    assert occupancy_in([there])(stands(0.0, 0.0), CHAIR) == "occupied"
+    assert occupancy_in([picture([table], pose, noise_m)])(stands(0.0, 0.0), CHAIR) == "free"
+
+
+def test_what_stands_behind_a_large_thing_that_is_gone_does_not_fill_its_place():
+    wall = ((0.0, 0.28, TABLE_Z), (3.0, 0.1, 1.5))
+    assert occupancy_in([picture([wall], looking_down(0.45, 3.0))])(stands(0.0, 0.0), CHAIR) == "free"
+
+
 def test_a_neighbour_does_not_fill_a_place():
     neighbour = ((0.09, 0.0, TABLE_Z), CUP)
     assert occupancy_in([picture([neighbour])])(stands(0.0, 0.0), CUP) == "free"
