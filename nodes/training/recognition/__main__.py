@@ -21,7 +21,7 @@ from nodes.training.recognition.fitting import Numbers, classifier, regressor
 from nodes.training.recognition.gathering import Gathered, gather
 from nodes.training.recognition.gradient_descent import Recipe
 from nodes.training.recognition.learn_joining import learn_joining
-from nodes.training.recognition.learn_novelty import learn_novelty
+from nodes.training.recognition.learn_novelty import Told, learn_novelty
 from nodes.training.recognition.samples import NOTHING, Samples
 from nodes.training.scenes.simulated_scenes import STRANGE, foreign_class
 from nodes.training.segmentation.fit import trees_of
@@ -55,7 +55,7 @@ def learn(gathered: Gathered, *, without: Collection[str] = (), unseen: Collecti
     samples = gathered.things[~np.isin(gathered.things.kind, left_out)]
     names = np.array([class_of[kind] for kind in samples.kind])
     pairs = gathered.pairs[np.asarray(~np.isin(gathered.pairs.kinds, left_out).any(axis=1))]
-    classes = tuple(sorted(set(names.tolist())))
+    classes, ancestors = tuple(sorted(set(names.tolist()))), hierarchy()
     target = np.searchsorted(classes, names)
     held = samples.scene % _HELD_OUT == 0
     features = [getattr(samples, name) for name in _SORTS]
@@ -64,13 +64,13 @@ def learn(gathered: Gathered, *, without: Collection[str] = (), unseen: Collecti
         for seed, (f, recipe) in enumerate(zip(shown_to_voters(features), _RECIPES, strict=True))
     )
     weights = _calibrated(voters, [f[held] for f in features], target[held])
-    nameable = [k for k, name in enumerate(classes) if name not in (UNKNOWN, CLUTTER)]
-    novelty = learn_novelty(features, target, held, nameable, _RECIPES, weights)
+    told = Told(features, target, strangers(samples.kind), held, classes, ancestors)
+    novelty = learn_novelty(told, _RECIPES, weights, SURE)
     sizes = _typical_sizes(samples, target, len(classes))
     expected = expected_sizes(vote(voters, weights, features), sizes)
     learnt = Learnt(
         classes=classes,
-        ancestors=hierarchy(),
+        ancestors=ancestors,
         sizes_m=sizes,
         sideways=_sideways(samples, target, len(classes)),
         voters=voters,
@@ -92,6 +92,14 @@ def classes_of(gathered: Gathered) -> dict[str, str]:
         if (foreign := foreign_class(kind)) is not None:
             class_of[kind] = foreign[1] or UNKNOWN
     return class_of
+
+
+def strangers(kind: NDArray[np.str_]) -> NDArray[np.int64]:
+    """(N,) the number of the foreign thing that each is, by its kind (N,); -1 for our own."""
+    kinds, which = np.unique(kind, return_inverse=True)
+    foreign = np.array([foreign_class(kind) is not None for kind in kinds])
+    number = np.where(foreign, np.cumsum(foreign) - 1, -1)
+    return np.asarray(number[which])
 
 
 def _calibrated(

@@ -1,10 +1,9 @@
-"""Learn to tell what is like nothing known, by leaving out classes that are known."""
+"""Learn when the votes are not to be believed, by leaving out classes and things that are known."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,8 @@ from sklearn.discriminant_analysis import LinearDiscriminantAnalysis
 from sklearn.linear_model import LogisticRegression
 
 from nodes.perception_node.recognition.novelty import Novelty, signs
-from nodes.perception_node.recognition.vote import ballots, pool, shown_to_voters
+from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN
+from nodes.perception_node.recognition.vote import answer, ballots, pool, shown_to_voters
 from nodes.training.recognition.fitting import Numbers, classifier
 from nodes.training.recognition.gradient_descent import Recipe
 
@@ -23,8 +23,29 @@ _ENOUGH = 0.25
 """The share of the samples that the voters of a fold learn from: signs need no more."""
 
 _AXES = 30
-_SHARE = 0.1
-"""How many of the things that are met are of no class that was learnt; nobody knows, so it is a guess."""
+_NEW_CLASS, _NEW_THING = 0.1, 0.4
+"""How many of the things that are met are of no class that was learnt, and how many of one but like nothing
+that was learnt; nobody knows, so these are guesses."""
+
+
+@dataclass(frozen=True)
+class Told:
+    """N samples and what is true of them.
+
+    `features`: of each sort (N, its own number). `target`: (N,) numbers of `classes`. `stranger`: (N,) which
+    foreign thing each is, -1 for our own. `held`: (N,) what voters have not learnt from.
+    """
+
+    features: Sequence[Numbers]
+    target: NDArray[np.int64]
+    stranger: NDArray[np.int64]
+    held: NDArray[np.bool_]
+    classes: Sequence[str]
+    ancestors: Mapping[str, Sequence[str]]
+
+    def of(self, rows: NDArray[np.bool_]) -> list[Numbers]:
+        """The features of some."""
+        return [values[rows] for values in self.features]
 
 
 def space(features: Sequence[Numbers], target: NDArray[np.int64], classes: int) -> Novelty:
@@ -41,39 +62,57 @@ def space(features: Sequence[Numbers], target: NDArray[np.int64], classes: int) 
     return Novelty(mean, axes, centres, np.zeros(1))
 
 
-def learn_novelty(
-    features: Sequence[Numbers],
-    target: NDArray[np.int64],
-    held: NDArray[np.bool_],
-    nameable: Sequence[int],
-    recipes: Sequence[Recipe],
-    weights: Numbers,
-) -> Novelty:
-    """Some classes are left out at a time; the regression tells their held-out things from the others'.
+def learn_novelty(told: Told, recipes: Sequence[Recipe], weights: Numbers, sure: float) -> Novelty:
+    """Some classes and some foreign things are left out at a time.
 
-    `nameable`: the leaves that are classes of things. `weights`: how much each vote counts.
+    The regression tells where the votes, which never saw them, name them wrongly. `weights`: how much each
+    vote counts; `sure`: see `answer`.
     """
-    classes, rng = int(target.max()) + 1, np.random.default_rng(0)
-    order = rng.permutation(nameable)
+    things = np.flatnonzero([name not in (UNKNOWN, CLUTTER) for name in told.classes])
+    rng = np.random.default_rng(0)
+    order = rng.permutation(things)
     size = max(1, round(_LEFT_OUT * len(order)))
-    rows, news = [], []
+    rows, wrong, worth = [], [], []
     for fold in range(_FOLDS):
-        out = np.isin(target, order[fold * size : (fold + 1) * size])
-        known = ~held & ~out & (rng.random(len(target)) < _ENOUGH)
+        new_class = np.isin(told.target, order[fold * size : (fold + 1) * size]) & (told.stranger < 0)
+        new_thing = (told.stranger >= 0) & (told.stranger % _FOLDS == fold)
+        lot = rng.random(len(told.target)) < _ENOUGH
+        known = ~told.held & ~new_class & ~new_thing & lot
         voters = [
-            classifier(f[known], target[known], classes, replace(recipe, rounds=_ROUNDS), seed=seed)
-            for seed, (f, recipe) in enumerate(zip(shown_to_voters(features), recipes, strict=True))
+            classifier(f, told.target[known], len(told.classes), replace(recipe, rounds=_ROUNDS), seed=seed)
+            for seed, (f, recipe) in enumerate(zip(shown_to_voters(told.of(known)), recipes, strict=True))
         ]
-        judged = held & np.isin(target, nameable)
-        seen = [f[judged] for f in features]
+        judged = lot & ((told.held & np.isin(told.target, things) & (told.stranger < 0)) | new_thing)
+        seen = told.of(judged)
         votes = ballots(voters, seen)
         pooled = pool(votes, weights)
-        rows.append(signs(space([f[known] for f in features], target[known], classes), seen, votes, pooled))
-        news.append(out[judged])
-    told, new = np.concatenate(rows), np.concatenate(news)
-    scale = told.std(axis=0)
-    regression = LogisticRegression(class_weight="balanced", max_iter=1000).fit(told / scale, new)
-    constant = regression.intercept_ + math.log(_SHARE / (1.0 - _SHARE))
-    whole = space([f[~held] for f in features], target[~held], classes)
-    fitted = np.append(regression.coef_[0] / scale, constant)
+        place = space(told.of(known), told.target[known], len(told.classes))
+        rows.append(signs(place, seen, votes, pooled))
+        wrong.append(_misnamed(pooled, told, judged, sure))
+        worth.append(_worth(new_class[judged], new_thing[judged]))
+    seen_in_folds = np.concatenate(rows)
+    scale = seen_in_folds.std(axis=0)
+    regression = LogisticRegression(max_iter=1000)
+    regression.fit(seen_in_folds / scale, np.concatenate(wrong), np.concatenate(worth))
+    whole = space(told.of(~told.held), told.target[~told.held], len(told.classes))
+    fitted = np.append(regression.coef_[0] / scale, regression.intercept_)
     return Novelty(whole.mean, whole.axes, whole.centres, fitted)
+
+
+def _worth(new_class: NDArray[np.bool_], new_thing: NDArray[np.bool_]) -> Numbers:
+    """(N,) how much each counts, so that the shares are what they are guessed to be."""
+    sorts = (new_class, new_thing & ~new_class, ~new_class & ~new_thing)
+    worth = np.zeros(len(new_class))
+    for sort, share in zip(sorts, (_NEW_CLASS, _NEW_THING, 1.0 - _NEW_CLASS - _NEW_THING), strict=True):
+        worth[sort] = share * len(new_class) / max(1, sort.sum())
+    return worth
+
+
+def _misnamed(pooled: Numbers, told: Told, judged: NDArray[np.bool_], sure: float) -> NDArray[np.bool_]:
+    """(N,) whether the votes' answer is neither a thing's class nor above it."""
+    found = []
+    for chances, target in zip(np.exp(pooled), told.target[judged], strict=True):
+        said, _ = answer(dict(zip(told.classes, chances.tolist(), strict=True)), told.ancestors, sure)
+        true = told.classes[target]
+        found.append(said != true and said not in told.ancestors.get(true, ()))
+    return np.array(found)

@@ -1,0 +1,51 @@
+import numpy as np
+
+from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN
+from nodes.perception_node.recognition.vote import ballots, pool, shown_to_voters
+from nodes.training.recognition.fitting import classifier
+from nodes.training.recognition.gradient_descent import Recipe
+from nodes.training.recognition.learn_novelty import Told, learn_novelty
+
+CLASSES = (CLUTTER, UNKNOWN, *(f"Class{n}" for n in range(38)))
+UNKNOWN_AT = CLASSES.index(UNKNOWN)
+WIDTH, EACH = 36, 60
+RECIPES = (Recipe((16,), batch=16, rate=1e-2),) * 6
+rng = np.random.default_rng(0)
+CENTRES = rng.normal(0.0, 2.0, (len(CLASSES), WIDTH))
+
+
+def sorts(features):
+    return np.split(features, 3, axis=1)
+
+
+def between(count):
+    """Things half like one class and half like another, that are of neither."""
+    pairs = rng.integers(2, len(CLASSES), (count, 2))
+    return CENTRES[pairs].mean(axis=1) + rng.normal(0.0, 0.5, (count, WIDTH)), np.full(count, UNKNOWN_AT)
+
+
+def test_what_is_unlike_all_that_was_learnt_is_doubted():
+    target = np.repeat(np.arange(len(CLASSES)), EACH)
+    own = CENTRES[target] + rng.normal(0.0, 0.5, (len(target), WIDTH))
+    odd, named = between(800)
+    features = sorts(np.concatenate([own, odd]))
+    stranger = np.concatenate([np.full(len(target), -1), np.arange(len(odd)) % 8])
+    target = np.concatenate([target, named])
+    held = np.arange(len(target)) % 5 == 0
+    told = Told(features, target, stranger, held, CLASSES, {})
+    weights = np.full(6, 0.3)
+    novelty = learn_novelty(told, RECIPES, weights, sure=0.4)
+    shown = shown_to_voters(told.of(~held & (stranger < 0)))
+    voters = [
+        classifier(seen, target[~held & (stranger < 0)], len(CLASSES), recipe)
+        for seen, recipe in zip(shown, RECIPES, strict=True)
+    ]
+
+    def doubt(things):
+        votes = ballots(voters, sorts(things))
+        return novelty(sorts(things), votes, pool(votes, weights))
+
+    known = CENTRES[2:] + rng.normal(0.0, 0.5, (len(CLASSES) - 2, WIDTH))
+    odder = doubt(between(100)[0])[:, None] > doubt(known)
+    assert np.median(doubt(known)) < 0.1
+    assert odder.mean() > 0.85
