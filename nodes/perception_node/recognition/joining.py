@@ -16,7 +16,7 @@ _BESIDE_M = 0.04
 _ABOVE_M = 0.2
 """So far a lamp's shade may be above its foot: what is thin between them is not seen."""
 
-_DOUBTFUL = 0.6
+_DOUBTFUL = 0.95
 _PIECE = 0.5
 _LEAST = 1e-3
 

@@ -32,6 +32,10 @@ _SHARES = (0.5, 0.25, 0.12, 0.13)
 _OWN_COLOURS, _COLOURS_OF_A_MODEL, _OWN_TEXTURE = 0.5, 0.25, 0.5
 """How many of our models, varieties and foreign things keep their own colours."""
 
+_COLOURED = "apple banana bread carrot cheese corn egg lemon onion orange pear potato tomato toilet_paper"
+_TRUE_COLOURS = dict.fromkeys(_COLOURED.split(), 0.75)
+"""What has its colour by nature keeps it more often: a blue orange is a ball."""
+
 _FOREIGN_LARGER, _FOREIGN_STOUTER = 0.2, 0.06
 """By which factors e^x foreign things are larger or smaller, at most, and each extent of them beside."""
 
@@ -61,7 +65,7 @@ def own_things(kinds: Sequence[str], rng: np.random.Generator) -> Iterator[Item]
 
 def of_model(kind: str, rng: np.random.Generator) -> Item:
     """One of our models."""
-    paint = any_paint(rng, _OWN_COLOURS)
+    paint = any_paint(rng, _TRUE_COLOURS.get(kind, _OWN_COLOURS))
     return _thing(kind, varied_size(kind, rng), varied_colour(kind, rng), paint)
 
 
@@ -84,7 +88,7 @@ def _varieties(rng: np.random.Generator) -> Iterator[Item]:
             size = any_size(variety, rng)
             while is_like_another(variety, size):
                 size = any_size(variety, rng)
-            paint = any_paint(rng, _COLOURS_OF_A_MODEL)
+            paint = any_paint(rng, _TRUE_COLOURS.get(variety.model, _COLOURS_OF_A_MODEL))
             thing = _thing(variety.model, size, varied_colour(variety.model, rng), paint)
             yield replace(thing, form=variety.form)
 

@@ -29,20 +29,24 @@ Form = Callable[[float, float, float, Colour], Parts]
 
 
 class Variety(NamedTuple):
-    """Things that a model stands for, from the smallest to the largest [m]; round ones as deep as wide."""
+    """Things that a model stands for, from the smallest to the largest [m]; round ones as deep as wide.
+
+    `uneven`: how far a side may be from where the others are between the smallest and the largest.
+    """
 
     model: str
     form: Form
     low_m: Vec3
     high_m: Vec3
     round: bool = False
+    uneven: float = 0.2
 
 
 def any_size(variety: Variety, rng: np.random.Generator) -> Vec3:
     """A size between its smallest and its largest, in proportion more than in extent."""
     low, high = np.log(variety.low_m), np.log(variety.high_m)
     whole = rng.random()
-    share = np.clip(whole + rng.normal(0.0, 0.2, 3), 0.0, 1.0)
+    share = np.clip(whole + rng.normal(0.0, variety.uneven, 3), 0.0, 1.0)
     x, y, z = np.exp(low + share * (high - low)).tolist()
     return (x, x, z) if variety.round else (x, y, z)
 
@@ -67,6 +71,7 @@ VARIETIES: tuple[Variety, ...] = (
     Variety("book", _own("book"), (0.15, 0.012, 0.17), (0.24, 0.060, 0.32)),
     Variety("can", _own("can"), (0.075, 0.075, 0.030), (0.105, 0.105, 0.055), round=True),
     Variety("can", _own("can"), (0.050, 0.050, 0.080), (0.105, 0.105, 0.150), round=True),
+    Variety("can", _own("can"), (0.085, 0.085, 0.095), (0.150, 0.150, 0.190), round=True),
     Variety("can", drink_can, (0.050, 0.050, 0.085), (0.070, 0.070, 0.175), round=True),
     Variety("bottle", _own("bottle"), (0.045, 0.045, 0.140), (0.110, 0.110, 0.340), round=True),
     Variety("bottle", flat_bottle, (0.035, 0.060, 0.120), (0.070, 0.110, 0.280)),
@@ -79,12 +84,15 @@ VARIETIES: tuple[Variety, ...] = (
     Variety("bowl", _own("bowl"), (0.090, 0.090, 0.040), (0.280, 0.280, 0.130), round=True),
     Variety("plate", _own("plate"), (0.140, 0.140, 0.012), (0.310, 0.310, 0.035), round=True),
     Variety("pan", skillet, (0.28, 0.16, 0.035), (0.52, 0.34, 0.080)),
+    Variety("pan", _own("pan"), (0.28, 0.16, 0.040), (0.50, 0.34, 0.075)),
     Variety("pot", _own("pot"), (0.14, 0.20, 0.08), (0.30, 0.42, 0.26)),
     Variety("kettle", teapot, (0.10, 0.16, 0.09), (0.18, 0.28, 0.20)),
     Variety("pitcher", _own("pitcher"), (0.10, 0.13, 0.16), (0.17, 0.22, 0.30)),
     Variety("jar", _own("jar"), (0.050, 0.050, 0.060), (0.130, 0.130, 0.220), round=True),
     Variety("vase", _own("vase"), (0.080, 0.080, 0.150), (0.220, 0.220, 0.400), round=True),
-    Variety("ball", _own("ball"), (0.040, 0.040, 0.040), (0.250, 0.250, 0.250), round=True),
+    Variety("ball", _own("ball"), (0.038, 0.038, 0.037), (0.075, 0.075, 0.074), round=True, uneven=0.03),
+    Variety("ball", _own("ball"), (0.062, 0.062, 0.060), (0.120, 0.120, 0.118), round=True, uneven=0.03),
+    Variety("ball", _own("ball"), (0.100, 0.100, 0.096), (0.250, 0.250, 0.245), round=True, uneven=0.03),
     Variety("toilet_paper", _own("toilet_paper"), (0.090, 0.090, 0.080), (0.130, 0.130, 0.240), round=True),
     Variety("knife", _own("knife"), (0.18, 0.018, 0.010), (0.34, 0.045, 0.022)),
     Variety("spoon", _own("spoon"), (0.14, 0.030, 0.010), (0.34, 0.075, 0.040)),
@@ -100,16 +108,15 @@ VARIETIES: tuple[Variety, ...] = (
     Variety("flower_pot", _own("flower_pot"), (0.090, 0.090, 0.080), (0.260, 0.260, 0.250), round=True),
     Variety("shoes", _own("shoes"), (0.20, 0.16, 0.08), (0.33, 0.28, 0.16)),
     Variety("hat", _own("hat"), (0.24, 0.24, 0.10), (0.38, 0.38, 0.20)),
-    Variety("apple", _own("apple"), (0.060, 0.060, 0.058), (0.095, 0.095, 0.095), round=True),
-    Variety("orange", _own("orange"), (0.055, 0.055, 0.052), (0.100, 0.100, 0.098), round=True),
-    Variety("pear", _own("pear"), (0.060, 0.060, 0.075), (0.085, 0.085, 0.130), round=True),
+    Variety("apple", _own("apple"), (0.060, 0.060, 0.058), (0.095, 0.095, 0.095), round=True, uneven=0.1),
+    Variety("orange", _own("orange"), (0.055, 0.055, 0.052), (0.100, 0.100, 0.098), round=True, uneven=0.1),
+    Variety("pear", _own("pear"), (0.060, 0.060, 0.075), (0.085, 0.085, 0.130), round=True, uneven=0.1),
     Variety("lemon", _own("lemon"), (0.045, 0.060, 0.045), (0.070, 0.100, 0.070)),
     Variety("banana", _own("banana"), (0.050, 0.140, 0.030), (0.095, 0.220, 0.045)),
     Variety("basket", _own("basket"), (0.16, 0.22, 0.09), (0.34, 0.46, 0.28)),
     Variety("tray", _own("tray"), (0.18, 0.25, 0.020), (0.36, 0.48, 0.060)),
     Variety("glasses", _own("glasses"), (0.11, 0.12, 0.035), (0.16, 0.16, 0.060)),
     Variety("headphones", _own("headphones"), (0.07, 0.15, 0.15), (0.11, 0.21, 0.23)),
-    Variety("speaker", _own("speaker"), (0.07, 0.07, 0.09), (0.26, 0.22, 0.38)),
     Variety("toothbrush", _own("toothbrush"), (0.15, 0.010, 0.012), (0.21, 0.018, 0.024)),
     Variety("bread", _own("bread"), (0.08, 0.16, 0.06), (0.15, 0.36, 0.13)),
 )
