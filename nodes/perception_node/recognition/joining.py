@@ -21,8 +21,8 @@ _PIECE = 0.5
 _LEAST = 1e-3
 
 
-def near(things: Sequence[Thing]) -> list[tuple[int, int]]:
-    """Pairs (a, b), a < b, that stand close together or are above one another.
+def near(things: Sequence[Thing], beside_m: float = _BESIDE_M) -> list[tuple[int, int]]:
+    """Pairs (a, b), a < b, that stand closer together than `beside_m` or are above one another.
 
     No table tops, and no two that somebody else's detector took for two.
     """
@@ -31,7 +31,7 @@ def near(things: Sequence[Thing]) -> list[tuple[int, int]]:
     small = np.array([not thing.carrier for thing in things], dtype=bool)
     apart = np.maximum(low[:, None] - high, low - high[:, None])
     masked = np.array([thing.masked for thing in things], dtype=bool)
-    close = (apart < [_BESIDE_M, _BESIDE_M, _ABOVE_M]).all(axis=2) & small & small[:, None]
+    close = (apart < [beside_m, beside_m, _ABOVE_M]).all(axis=2) & small & small[:, None]
     close &= ~(masked & masked[:, None])
     return [(int(a), int(b)) for a, b in np.argwhere(np.triu(close, 1))]
 

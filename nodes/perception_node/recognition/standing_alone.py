@@ -12,9 +12,12 @@ from nodes.perception_node.views.merged_thing import Thing
 
 _SMALLEST_M, _LARGEST_M = 0.025, 0.5
 """What such a thing measures at most: less is a scrap, more a piece of furniture or a wall."""
-_SLENDER = 5.0
-"""What is so many times as high as it is wide may be the leg of a table whose top is not seen with it."""
-_LIFTED_M = 0.02
+_SLENDER, _LEG_M = 5.0, 0.25
+"""What is so high, and so many times as high as wide, may be the leg of a table whose top is not seen."""
+
+_LIFTED_M = 0.03
+_BESIDE_M = 0.015
+"""What has so much room about it is no scrap of its neighbour."""
 _FEWEST = 100
 _WORTH = 0.1
 """A neighbour with a smaller share of its points is a scrap of its own."""
@@ -23,7 +26,7 @@ _WORTH = 0.1
 def stand_alone(things: Sequence[Thing]) -> NDArray[np.bool_]:
     """(N,) whether each is compact, seen whole, upon its support, and beside nothing else."""
     alone = np.array([is_compact(thing) for thing in things], dtype=bool)
-    for a, b in near(things):
+    for a, b in near(things, _BESIDE_M):
         for one, other in ((a, b), (b, a)):
             if things[other].count > _WORTH * things[one].count:
                 alone[one] = False
@@ -39,5 +42,5 @@ def is_compact(thing: Thing) -> bool:
         and thing.count >= _FEWEST
         and thing.lifted_m < _LIFTED_M
         and _SMALLEST_M <= max(x, y, z) <= _LARGEST_M
-        and z < _SLENDER * max(x, y)
+        and z < max(_LEG_M, _SLENDER * max(x, y))
     )

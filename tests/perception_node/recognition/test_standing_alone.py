@@ -10,13 +10,23 @@ from tests.perception_node.recognition.test_features import block
 
 THING = block(((0.0, 0.0, 0.0), (0.2, 0.1, 0.1)))
 FAR = block(((0.5, 0.0, 0.0), (0.6, 0.1, 0.1)))
-BESIDE = block(((0.22, 0.0, 0.0), (0.32, 0.1, 0.1)))
-SCRAP = block(((0.22, 0.0, 0.0), (0.24, 0.02, 0.05)))
+BESIDE = block(((0.202, 0.0, 0.0), (0.302, 0.1, 0.1)))
+WITH_ROOM = block(((0.23, 0.0, 0.0), (0.33, 0.1, 0.1)))
+TORCH = block(((0.5, 0.0, 0.0), (0.527, 0.026, 0.15)))
+SCRAP = block(((0.202, 0.0, 0.0), (0.222, 0.02, 0.05)))
 
 
 def test_things_apart_stand_alone_and_neighbours_do_not():
     assert stand_alone([THING, FAR]).tolist() == [True, True]
     assert stand_alone([THING, BESIDE, FAR]).tolist() == [False, False, True]
+
+
+def test_things_with_some_room_between_them_stand_alone():
+    assert stand_alone([THING, WITH_ROOM]).tolist() == [True, True]
+
+
+def test_a_slender_thing_that_is_low_is_no_leg():
+    assert stand_alone([TORCH])[0]
 
 
 def test_a_scrap_beside_a_thing_does_not_count():
