@@ -31,7 +31,7 @@ SURE = 0.4
 _HELD_OUT = 5
 _SORTS = ("geometry", "shape", "colour")
 _ONE_SORT = Recipe((256,), dropped=(0.1, 0.3))
-_ALL = Recipe((512, 256), dropped=(0.1, 0.3))
+_ALL = Recipe((512, 256), rounds=24, dropped=(0.1, 0.3))
 _RECIPES = (_ONE_SORT, _ONE_SORT, Recipe((64,), dropped=(0.1, 0.1)), _ALL, _ALL, _ALL)
 """How each of `VOTERS` learns."""
 
