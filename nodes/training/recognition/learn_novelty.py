@@ -23,9 +23,11 @@ _ENOUGH = 0.25
 """The share of the samples that the voters of a fold learn from: signs need no more."""
 
 _AXES = 30
-_NEW_CLASS, _NEW_THING = 0.1, 0.4
-"""How many of the things that are met are of no class that was learnt, and how many of one but like nothing
-that was learnt; nobody knows, so these are guesses."""
+_NEW_CLASS, _NEW_THING, _FAR = 0.1, 0.4, 0.03
+"""How many of the things that are met are of no class that was learnt, how many of one but of another make,
+and how many like nothing at all; nobody knows, so these are guesses."""
+_FAR_OFF = (3.0, 40.0)
+"""How far from the mean those are in each feature, in deviations."""
 
 
 @dataclass(frozen=True)
@@ -65,8 +67,8 @@ def space(features: Sequence[Numbers], target: NDArray[np.int64], classes: int) 
 def learn_novelty(told: Told, recipes: Sequence[Recipe], weights: Numbers, sure: float) -> Novelty:
     """Some classes and some foreign things are left out at a time.
 
-    The regression tells where the votes, which never saw them, name them wrongly. `weights`: how much each
-    vote counts; `sure`: see `answer`.
+    The regression tells where the votes, which never saw them, name them wrongly; what is far from all that
+    there is would always be. `weights`: how much each vote counts; `sure`: see `answer`.
     """
     things = np.flatnonzero([name not in (UNKNOWN, CLUTTER) for name in told.classes])
     rng = np.random.default_rng(0)
@@ -83,13 +85,15 @@ def learn_novelty(told: Told, recipes: Sequence[Recipe], weights: Numbers, sure:
             for seed, (f, recipe) in enumerate(zip(shown_to_voters(told.of(known)), recipes, strict=True))
         ]
         judged = lot & ((told.held & np.isin(told.target, things) & (told.stranger < 0)) | new_thing)
-        seen = told.of(judged)
+        far = _far_off(told.of(known), judged.sum() // 20, rng)
+        seen = [np.concatenate(both) for both in zip(told.of(judged), far, strict=True)]
         votes = ballots(voters, seen)
         pooled = pool(votes, weights)
         place = space(told.of(known), told.target[known], len(told.classes))
         rows.append(signs(place, seen, votes, pooled))
-        wrong.append(_misnamed(pooled, told, judged, sure))
-        worth.append(_worth(new_class[judged], new_thing[judged]))
+        is_far = np.arange(len(pooled)) >= judged.sum()
+        wrong.append(np.append(_misnamed(pooled[~is_far], told, judged, sure), is_far[is_far]))
+        worth.append(_worth(new_class[judged], new_thing[judged], len(far[0])))
     seen_in_folds = np.concatenate(rows)
     scale = seen_in_folds.std(axis=0)
     regression = LogisticRegression(max_iter=1000)
@@ -99,13 +103,23 @@ def learn_novelty(told: Told, recipes: Sequence[Recipe], weights: Numbers, sure:
     return Novelty(whole.mean, whole.axes, whole.centres, fitted)
 
 
-def _worth(new_class: NDArray[np.bool_], new_thing: NDArray[np.bool_]) -> Numbers:
-    """(N,) how much each counts, so that the shares are what they are guessed to be."""
+def _far_off(features: Sequence[Numbers], count: int, rng: np.random.Generator) -> list[Numbers]:
+    """Features of so many things such as there are none, of each sort."""
+    near, far = np.log(_FAR_OFF)
+    away = np.exp(rng.uniform(near, far, (count, 1)))
+    return [
+        values.mean(axis=0) + away * values.std(axis=0) * rng.choice([-1.0, 1.0], (count, values.shape[1]))
+        for values in features
+    ]
+
+
+def _worth(new_class: NDArray[np.bool_], new_thing: NDArray[np.bool_], far: int) -> Numbers:
+    """(N + far,) how much each counts, so that the shares are what they are guessed to be."""
     sorts = (new_class, new_thing & ~new_class, ~new_class & ~new_thing)
     worth = np.zeros(len(new_class))
     for sort, share in zip(sorts, (_NEW_CLASS, _NEW_THING, 1.0 - _NEW_CLASS - _NEW_THING), strict=True):
         worth[sort] = share * len(new_class) / max(1, sort.sum())
-    return worth
+    return np.append(worth, np.full(far, _FAR * len(new_class) / max(1, far)))
 
 
 def _misnamed(pooled: Numbers, told: Told, judged: NDArray[np.bool_], sure: float) -> NDArray[np.bool_]:
