@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
 
-_SURE = 0.5
+_SURE = 0.4
 """A class that has this much of the votes is believed."""
 _FORGET = 0.9
 """What a look's vote is worth one look later."""
