@@ -10,7 +10,7 @@ from nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
 from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS, Learnt
 from nodes.perception_node.views.boxes import Numbers
 
-_CLEAR = 0.6
+_CLEAR = 2.0 / 3.0
 
 
 def vote(voters: Sequence[Perceptron], weights: Numbers, features: Sequence[Numbers]) -> Numbers:
@@ -65,7 +65,7 @@ def answer(
 ) -> tuple[str, float]:
     """The most special class whose leaves together are at least `sure`, and its probability; else `UNKNOWN`.
 
-    A class that is not half as likely again as all else below one of its ancestors is not said: what may be a
+    A class that is not twice as likely as all else below one of its ancestors is not said: what may be a
     desk or a table is furniture. Of several, none of which is below another, the likelier.
     """
     total: dict[str, float] = {}
