@@ -87,11 +87,11 @@ def test_commits_between_the_steps_change_nothing_of_the_outcome(restarted, seed
 
 def test_what_is_computed_for_a_commit_holds_at_once(restarted):
     begin(restarted)
-    cup, table = restarted.entity("more1"), restarted.entity("more2")
+    cup, table = restarted.entity("more1"), restarted.entity("more3")
     x, y, z = table.pose.position_m
     edit = (Edit(name=cup.name, at=(x, y, z + table.size_m[2])),)
     restarted.commit(Transaction(id="on", source="operator", edit=edit))
-    assert restarted.reasoner.is_computed((v.entity_iri("more1"), v.dm("isOn"), v.entity_iri("more2")))
+    assert restarted.reasoner.is_computed((v.entity_iri("more1"), v.dm("isOn"), v.entity_iri("more3")))
     assert not restarted._follows_all
 
 
