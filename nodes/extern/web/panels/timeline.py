@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import math
+import time
 from typing import Any, Final
 
 from nicegui import ui
@@ -18,6 +20,8 @@ _SPEEDS: Final = {0.1: "0.1 ×", 1.0: "1 ×", 10.0: "10 ×", 100.0: "100 ×", 10
 _COMPARED: Final = {"before": "the commit before", "now": "now", "": "nothing"}
 _SMALL: Final = "dense options-dense borderless"
 _AT_MOST: Final[dict[str, Any]] = {"throttle": 0.1, "leading_events": True, "trailing_events": True}
+_ECHO_S: Final = 1.0
+"""A browser tells a place of the slider twice: when the key goes down, and a little later."""
 _DRAWN_S: Final = 0.15
 """No moment is shown for less while the past is played."""
 _FEW: Final = 12
@@ -42,6 +46,7 @@ class _Timeline:
         self._page = page
         self._is_playing = False
         self._wanted: int | None = None
+        self._dragged = (0, -math.inf)  # to which commit the slider was moved last, and when
         with ui.column().classes("semmap-bar") as self._bar:
             self._bar.props('role="group" aria-label="Time"')
             with ui.row().classes("w-full items-center no-wrap gap-2"):
@@ -109,7 +114,10 @@ class _Timeline:
 
     def _on_slider(self, event: Any) -> None:
         """The slider is dragged: the newest place counts, and one at a time is fetched."""
-        commit = int(event.args)
+        commit, now_s = int(event.args), time.monotonic()
+        before, self._dragged = self._dragged, (commit, now_s)
+        if before[0] == commit and now_s - before[1] < _ECHO_S:
+            return  # the key came up again; who has gone elsewhere meanwhile stays there
         self._is_playing = False
         was, self._wanted = self._wanted, commit
         if was is None:
