@@ -57,6 +57,18 @@ def test_back_and_on_by_commit_and_home_again(tab, cup):
     assert chips(tab) == ""
 
 
+def test_home_right_after_the_slider_stays_now(tab, cup):
+    *_, moved, again = cup
+    until(lambda: commit_of(tab) >= again, "the page has all commits")
+    tab.get_by_role("tab", name="History").click()
+    go_to(tab, moved - 1)
+    until(lambda: caption(tab).startswith("The past: "), "it shows the past")
+    tab.locator(".q-slider__track-container").press("ArrowRight")
+    tab.keyboard.press("Home")
+    tab.wait_for_timeout(1500)  # in which the browser tells of the slider again
+    assert caption(tab).startswith("Now: commit ")
+
+
 def test_the_past_is_compared_with_now_and_cannot_be_changed(tab, cup, system):
     name, added, *_ = cup
     tab.get_by_role("tab", name="History").click()

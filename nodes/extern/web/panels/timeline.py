@@ -20,8 +20,8 @@ _SPEEDS: Final = {0.1: "0.1 ×", 1.0: "1 ×", 10.0: "10 ×", 100.0: "100 ×", 10
 _COMPARED: Final = {"before": "the commit before", "now": "now", "": "nothing"}
 _SMALL: Final = "dense options-dense borderless"
 _AT_MOST: Final[dict[str, Any]] = {"throttle": 0.1, "leading_events": True, "trailing_events": True}
-_ECHO_S: Final = 1.0
-"""A browser tells a place of the slider twice: when the key goes down, and a little later."""
+_ECHO_S: Final = 2.0
+"""Of a key on the slider a browser tells twice: when it goes down, and up to half a second later."""
 _DRAWN_S: Final = 0.15
 """No moment is shown for less while the past is played."""
 _FEW: Final = 12
@@ -117,7 +117,7 @@ class _Timeline:
         commit, now_s = int(event.args), time.monotonic()
         before, self._dragged = self._dragged, (commit, now_s)
         if before[0] == commit and now_s - before[1] < _ECHO_S:
-            return  # the key came up again; who has gone elsewhere meanwhile stays there
+            return  # who has gone elsewhere meanwhile stays there
         self._is_playing = False
         was, self._wanted = self._wanted, commit
         if was is None:
