@@ -76,6 +76,32 @@ def test_files_are_tried_first_and_loaded_then_refused_or_downloaded(tab, system
     assert name in download.value.path().read_text()
 
 
+def test_what_is_sent_or_tried_can_be_stopped(tab, system, tmp_path):
+    name, many = fresh("cup"), tmp_path / "many.ttl"
+    many.write_text("".join(f"<{ABOX}{name}_{n}> a <{DM}Cup> .\n" for n in range(30_000)))
+    turn_to(tab, "Files")
+    chooser, stop = tab.locator("input[type=file]"), tab.get_by_role("button", name="Stop", exact=True)
+    network = tab.context.new_cdp_session(tab)
+    slow = {"offline": False, "latency": 0, "downloadThroughput": -1, "uploadThroughput": 100_000}
+    network.send("Network.enable")
+    network.send("Network.emulateNetworkConditions", slow)
+    chooser.set_input_files(many)
+    tab.get_by_text("Sending the file").wait_for()
+    stop.click()
+    tab.get_by_text("Stopped: nothing was loaded.").wait_for()
+    network.send("Network.emulateNetworkConditions", slow | {"uploadThroughput": -1})
+
+    chooser.set_input_files(many)
+    tab.get_by_text("Trying many.ttl").wait_for()
+    stop.click()
+    tab.get_by_text("Stopped: nothing was loaded.").wait_for()
+    assert not stop.is_visible()
+    with system.client() as client:  # whose answer comes after that to what was tried
+        assert not {entity.name for entity in client.list("Cup") if entity.name.startswith(name)}
+    assert tab.get_by_text("is loaded:").count() == 0
+    assert tab.get_by_role("alert").get_by_text("not sent whole").count() == 0
+
+
 def test_the_plan_the_graph_the_check_and_the_nodes(tab):
     turn_to(tab, "Plan")
     image = tab.get_by_role("img", name="Plan of the rooms").locator("img")

@@ -137,8 +137,11 @@ def test_a_click_selects_and_one_beside_things_selects_nothing(tab, system, chai
         until(click_beside, "nothing is selected")
 
 
-def drag_along_x(tab, view, client, name) -> None:
-    """By the arrow along x, until the map follows; before it is drawn, the mouse turns the view instead."""
+def drag_along_x(tab, view, client, name, done=None) -> None:
+    """By the arrow along x, until the map follows, or else until it is `done()`.
+
+    Before the arrow is drawn, the mouse turns the view instead.
+    """
     entity = client.get(name)
     x, y, z = entity.pose.position_m
     grip = 0.6 * arm_m(entity.size_m)
@@ -154,9 +157,9 @@ def drag_along_x(tab, view, client, name) -> None:
             tab.wait_for_timeout(200)
         tab.mouse.up()
         tab.wait_for_timeout(2000)
-        return client.get(name).pose.position_m[0] > x + 0.5
+        return client.get(name).pose.position_m[0] > x + 0.5 if done is None else done()
 
-    until(drag, "the map says that the chair was moved")
+    until(drag, "the chair was dragged")
 
 
 def test_what_is_dragged_with_the_mouse_is_moved_and_the_map_follows(tab, system, chair):
@@ -169,6 +172,16 @@ def test_what_is_dragged_with_the_mouse_is_moved_and_the_map_follows(tab, system
         assert moved.position_m[0] == pytest.approx(x + 1.0, abs=0.35)
         assert moved.position_m[1] == pytest.approx(y, abs=0.05)
         assert math.isclose(moved.yaw_rad, entity.pose.yaw_rad, abs_tol=0.05)
+
+
+def test_what_is_dragged_into_another_thing_goes_back_and_that_is_named(tab, system, chair):
+    with standing(system, (4.0, 2.2, 0.0)) as other, system.client() as client:
+        view, entity = looking(tab, client), client.get(chair)
+        select(tab, view, entity)
+        said = tab.get_by_text(f"There is no room for {chair} there: it would stand in {other}.")
+        drag_along_x(tab, view, client, chair, lambda: said.count() > 0)
+        until(lambda: client.get(chair).body.status == "present", "the chair stands")
+        assert client.get(chair).pose.position_m == pytest.approx(entity.pose.position_m, abs=0.05)
 
 
 def test_what_is_dragged_keeps_its_yaw_whatever_was_selected_before(tab, system, chair):

@@ -107,6 +107,12 @@ class Tape:
         if self._reading is None or self._reading.done():
             self._reading = asyncio.get_running_loop().create_task(self._read())
 
+    async def caught_up(self) -> None:
+        """Wait until what the commits are has been read, as far as it can be."""
+        self.read()
+        if self._reading is not None:
+            await asyncio.shield(self._reading)  # others wait for it, too
+
     async def _read(self) -> None:
         try:
             await self._read_newest()

@@ -90,6 +90,18 @@ def run(coroutine):
     return asyncio.run(coroutine)
 
 
+def test_who_waits_until_it_has_caught_up_finds_what_has_just_come():
+    async def grown():
+        live = Map(20)
+        tape = await whole(live)
+        live.grow()
+        assert tape.row(21) is None  # it is only being asked for
+        await asyncio.gather(tape.caught_up(), tape.caught_up())
+        return tape.row(21)
+
+    assert run(grown()).seq == 21
+
+
 def test_each_moment_is_as_the_map_was_whatever_way_one_comes_there():
     live = Map(350)
 

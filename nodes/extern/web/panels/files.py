@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import time
 from typing import Final, get_args
 
@@ -24,6 +25,7 @@ from schemas.commands import Export, Load, RdfFormat
 from schemas.packing import packed
 
 _TIMEOUT_S: Final = 1800.0
+_BROWSER_S: Final = 10.0
 _FORMATS: Final[dict[RdfFormat, str]] = {
     "turtle": "Turtle", "rdfxml": "RDF/XML", "ntriples": "N-Triples", "jsonld": "JSON-LD",
 }  # fmt: skip
@@ -50,6 +52,8 @@ class _Loading:
         self._tried: Load | None = None
         self._size = 0
         """Bytes of the file as it was uploaded; on the wire it is packed."""
+        self._turn = 0
+        """Which file, and which try of it, is waited for; what comes of an earlier one is left."""
         with ui.card().classes("grow").props("flat bordered").style("min-width: 18rem; flex-basis: 24rem"):
             ui.label("Load").classes("text-subtitle1")
             ui.label(
@@ -69,17 +73,20 @@ class _Loading:
                 auto_upload=True,
                 max_files=None,
                 max_file_size=LARGEST,
+                on_begin_upload=self._begun,
                 on_upload=self._uploaded,
                 on_rejected=self._rejected,
             )
-            self._upload.classes("w-full").props("flat bordered").mark("upload")
+            self._upload.classes("w-full").props("flat bordered").mark("upload").on("failed", self._failed)
             self._said = ui.column().classes("w-full gap-0").props('role="status"').mark("load-said")
             self._error = ui.label().classes("text-negative whitespace-pre-wrap").props('role="alert"')
             self._error.mark("load-error")
             with ui.row().classes("gap-2"):
                 self._button = ui.button("Load", icon="file_upload", on_click=self._load)
                 self._button.props("no-caps dense").classes("px-3").mark("load-button")
-            self._button.visible = False
+                self._stop = ui.button("Stop", icon="stop", on_click=self._stopped)
+                self._stop.props("no-caps dense outline").classes("px-3").mark("load-stop")
+            self._button.visible = self._stop.visible = False
 
     def _rejected(self) -> None:
         self._forget()
@@ -87,9 +94,38 @@ class _Loading:
             f" has {megabytes(LARGEST + 1)}", " is larger"
         )
 
+    def _begun(self) -> None:
+        self._forget()
+        self._stop.visible = True
+        self._say("Sending the file ...")
+
+    async def _stopped(self) -> None:
+        """What is being sent or tried is left; a try that is under way in the system changes nothing."""
+        self._forget()
+        turn = self._turn
+        await self._empty()
+        if turn == self._turn:
+            self._say("Stopped: nothing was loaded.")
+
+    async def _empty(self) -> None:
+        """Have the browser send nothing, and forget what it sent, before anybody is told to choose again.
+
+        Told first, somebody quick had the next file taken away by this.
+        """
+        with contextlib.suppress(TimeoutError):  # the tab may be gone
+            await self._upload.run_method("reset", timeout=_BROWSER_S)
+
+    def _failed(self) -> None:
+        if self._stop.visible:  # nobody stopped it
+            self._forget()
+            self._error.text = "The file was not sent whole; choose it again."
+
     async def _uploaded(self, event: events.UploadEventArguments) -> None:
         self._forget()
-        self._upload.reset()
+        turn = self._turn
+        await self._empty()
+        if turn != self._turn:
+            return
         file = event.file
         beginning = b""
         async for chunk in file.iterate(chunk_size=BEGINNING):
@@ -98,7 +134,10 @@ class _Loading:
         if sentence := refusal(file.name, file.size(), beginning):
             self._error.text = sentence
             return
+        self._stop.visible = True
         content = await asyncio.to_thread(packed, await file.read())
+        if turn != self._turn:
+            return
         self._tried, self._size = Load(content=content, filename=file.name), file.size()
         await self._try()
 
@@ -124,7 +163,9 @@ class _Loading:
             dry_run=True,
         )
         name, size, began_s = self._tried.filename, self._size, time.monotonic()
-        self._error.text, self._button.visible = "", False
+        self._error.text, self._button.visible, self._stop.visible = "", False, True
+        self._turn += 1
+        turn = self._turn
         self._say(
             f"Trying {name} ({megabytes(size)}) ..."
             + (" this may take a while" if takes_long(len(self._tried.content)) else "")
@@ -135,11 +176,15 @@ class _Loading:
         try:
             reply = await self._page.live.ask(self._tried, _TIMEOUT_S)
         except errors.SemmapError as error:
-            self._say()
-            self._error.text = error.text
+            if turn == self._turn:
+                self._say()
+                self._error.text, self._stop.visible = error.text, False
             return
         finally:
             ticking.cancel()
+        if turn != self._turn:
+            return
+        self._stop.visible = False
         self._say(f"If {name} is loaded:", *changed(reply))
         self._button.text = f"Load {name}"
         self._button.visible = True
@@ -167,7 +212,9 @@ class _Loading:
             self._say(*changed(reply))
 
     def _forget(self) -> None:
-        self._tried, self._error.text, self._button.visible = None, "", False
+        self._turn += 1
+        self._tried, self._error.text = None, ""
+        self._button.visible = self._stop.visible = False
         self._say()
 
     def _say(self, *lines: str) -> None:

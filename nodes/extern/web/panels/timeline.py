@@ -165,6 +165,8 @@ class _Timeline:
         if page.moment.is_now and not await page.arrive(page.tape.first):
             self._is_playing = False
         while self._is_playing and not page.moment.is_now:
+            if page.tape.row(self._shown) is None:  # it has just come, and what it is has not
+                await page.tape.caught_up()
             stamps = [row.stamp_ns for row in page.tape.rows]
             here = self._shown - page.tape.first
             if not 0 <= here < len(stamps):

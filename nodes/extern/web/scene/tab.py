@@ -60,9 +60,7 @@ _AFTER_S: Final = 0.03
 _MODIFIERS: Final = (None, "shift", "cmd/ctrl", "cmd/ctrl+shift")
 _TOLD_S: Final = 0.2
 """After so long it is known that a body stands where it was put."""
-_NO_ROOM: Final = (
-    "There is no room for {name} there: it would stand in something else. It is back where it was."
-)
+_NO_ROOM: Final = "There is no room for {name} there: it would stand in {other}. It is back where it was."
 _RENDER_S: Final = (0.3, 1.0, 3.0, 8.0)
 _MEASURES: Final = 8
 """Of so many relations, the nearest things first, it is written what they are."""
@@ -495,10 +493,11 @@ class TabScene:
         target = put_down(pose, thing.size_m, self._solids(without=name))
         self._copy(target)
         done = await self.page.change(Move(name=name, at=target.position_m, yaw=target.yaw_rad, carry=True))
-        if done is not None and not was_ghost and await self._is_ghost(name):
+        ghost = None if done is None or was_ghost else await self._ghost(name)
+        if ghost is not None:
             back = Move(name=name, at=before.position_m, yaw=before.yaw_rad, carry=True)
             if await self.page.change(back) is not None:
-                self.page.tell(_NO_ROOM.format(name=name), "warning")
+                self.page.tell(_NO_ROOM.format(name=name, other=ghost.in_the_way or "something"), "warning")
         if done is not None:
             await asyncio.sleep(_TOLD_S)
         self._dragging = ""
@@ -506,13 +505,13 @@ class TabScene:
             self._dragged.show({})
             self._draw()
 
-    async def _is_ghost(self, name: str) -> bool:
-        """Does its body not collide, because it was put where something else is?"""
+    async def _ghost(self, name: str) -> Body | None:
+        """Its body, if that does not collide, because it was put where something else is."""
         try:
             scene = await self.page.live.query(keys.SIM, SceneQuery())
         except errors.SemmapError:
-            return False
-        return any(body.name == name and body.ghost for body in scene.bodies)
+            return None
+        return next((body for body in scene.bodies if body.name == name and body.ghost), None)
 
     # Relations
 

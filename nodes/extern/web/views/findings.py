@@ -83,16 +83,18 @@ def _of_entities(entities: Iterable[Entity]) -> Iterator[Finding]:
             yield Finding("doubt", text, (entity.name,))
         body = entity.body
         if body is not None and body.status in ("ghost", "failed", "missing"):
-            reason = f": {body.detail}" if body.detail else ""
+            reason = f": {body.detail}" if body.detail else _UNTOLD.get(body.status, "")
             bodies.append(Finding("body", f"{entity.name} {_BODY[body.status]}{reason}", (entity.name,)))
     yield from bodies
 
 
 _BODY: Final = {
-    "ghost": "is a ghost, because something else fills its place",
+    "ghost": "is a ghost",
     "failed": "could not be made",
-    "missing": "is not in the scene",
+    "missing": "has no body",
 }
+_UNTOLD: Final = {"ghost": ", because something else fills its place"}
+"""Of a simulator that does not tell what."""
 
 
 def why(explanation: Explanation, classes: Iterable[ClassInfo] = ()) -> tuple[str, ...]:

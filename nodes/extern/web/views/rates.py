@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Iterable, Mapping
 from typing import Final, NamedTuple
 
-from schemas import wording
+from schemas import keys, wording
 from schemas.health import Health
 from schemas.replies import SystemStatus
 
@@ -73,6 +73,7 @@ class Rates:
 def degraded(health: Mapping[str, Health], why_not: str, now_ns: int) -> tuple[str, ...]:
     """What does not work as it should, a sentence each, the gravest first."""
     said = [why_not] if why_not else []
+    health = {node: beat for node, beat in health.items() if not _has_ended(beat, now_ns)}
     for node, beat in sorted(health.items()):
         age_s = (now_ns - beat.stamp_ns) / 1e9
         if age_s > _LATE_S:
@@ -81,6 +82,11 @@ def degraded(health: Mapping[str, Health], why_not: str, now_ns: int) -> tuple[s
             said.append(f"{node} is starting" + (f": {beat.detail}" if beat.detail else ""))
     said.extend(f"{node}: {beat.last_error}" for node, beat in sorted(health.items()) if beat.last_error)
     return tuple(dict.fromkeys(said))
+
+
+def _has_ended(beat: Health, now_ns: int) -> bool:
+    """Is it the last of a client that nobody misses?"""
+    return beat.node in keys.CLIENTS and (now_ns - beat.stamp_ns) / 1e9 > _LATE_S
 
 
 def headline(status: SystemStatus) -> str:
@@ -93,7 +99,7 @@ def headline(status: SystemStatus) -> str:
 def node_rows(health: Iterable[Health], loads: Mapping[int, Load], now_ns: int) -> list[dict[str, str]]:
     """One row a node: its state, host, process, age, how long ago its heart beat, and what it says."""
     rows = []
-    for beat in sorted(health, key=lambda h: h.node):
+    for beat in sorted((h for h in health if not _has_ended(h, now_ns)), key=lambda h: h.node):
         age_s = (now_ns - beat.stamp_ns) / 1e9
         load = loads.get(beat.pid)
         rows.append(

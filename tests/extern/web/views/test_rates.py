@@ -58,6 +58,13 @@ def test_rows_of_nodes():
     assert (silent["state"], silent["memory"]) == ("silent", "")
 
 
+@pytest.mark.parametrize("client", ["web", "ros"])
+def test_a_client_that_has_ended_is_no_fault(client):
+    ended = structs.replace(BEAT, node=client, stamp_ns=NOW_NS - 20_000_000_000)
+    assert degraded({client: ended}, "", NOW_NS) == ()
+    assert node_rows([ended], {}, NOW_NS) == []
+
+
 def test_the_headline_says_whether_map_and_scene_agree():
     status = SystemStatus(truth="map", commit=3, entities=78, bodies=1, in_agreement=True, nodes=())
     assert headline(status) == "78 entities, 1 body, commit 3; map and scene agree"
