@@ -39,7 +39,9 @@ def measure(folder: Path, samples: Path | None, training_scenes: int) -> list[Ro
         return []
     dealt = folds(things)
     gathered = (
-        read(samples) if samples else gather(training_scenes, training_scenes // 4, seed=1, foreign=folder)
+        read(samples)
+        if samples
+        else gather(training_scenes, training_scenes // 4, training_scenes // 3, seed=1, foreign=folder)
     )
     known, new = tallies(things, dealt, [_without(gathered, things, dealt, fold) for fold in range(FOLDS)])
     asked, asked_new = max(1, known.total()), max(1, new.total())

@@ -26,7 +26,9 @@ def measure(scenes: int, samples: Path | None, training_scenes: int) -> list[Row
     class_of = class_of_models(MODELS)
     kinds = [str(kind) for kind in np.random.default_rng(_SEED).choice(THINGS, LEFT_OUT, replace=False)]
     learnt = learn(
-        read(samples) if samples else gather(training_scenes, training_scenes // 4, seed=1),
+        read(samples)
+        if samples
+        else gather(training_scenes, training_scenes // 4, training_scenes // 3, seed=1),
         without=[class_of[kind] for kind in kinds],
     )
     judge = Judge(class_of, learnt.ancestors)

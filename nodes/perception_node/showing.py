@@ -13,6 +13,7 @@ from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.input.files.frame_folders import frames_in, read_frame
 from nodes.perception_node.pipeline import parts_in
 from nodes.perception_node.recognition.features import features_of
+from nodes.perception_node.recognition.likeness import views_of
 from nodes.perception_node.recognition.pieces import put_together
 from nodes.perception_node.recognition.shipped_votes import Learnt
 from nodes.perception_node.recognition.sides import completed, side_features
@@ -45,18 +46,17 @@ def view_of(thing: Thing, learnt: Learnt) -> View:
     features = features_of([thing])
     expected = expected_sizes(leaves(learnt, features), learnt.sizes_m)[0]
     x, y, z = completed(thing, side_features(thing, expected), learnt.sides).size_m.tolist()
-    return View(np.concatenate(features, axis=1)[0], (max(x, y), min(x, y), z))
+    return View(views_of(features)[0], (max(x, y), min(x, y), z))
 
 
 def shown_in_frames(folder: Path, learnt: Learnt, box_px: BoxPx | None) -> tuple[list[View], tuple[str, ...]]:
     """The thing in each frame of a dataset, and what is to be said of frames that show none.
 
-    A folder that is a frame itself is one of a dataset. Raises BadFile where no frame shows one, with the
+    Raises BadFile where no frame shows one, with the
     reason of the first; BadRequest for a bad box.
     """
-    folders = [folder] if (folder / "camera.json").exists() else frames_in(folder)
     views, wrong = list[View](), list[errors.BadFile]()
-    for frame_folder in folders:
+    for frame_folder in frames_in(folder):
         try:
             frame = read_frame(frame_folder)
             box = None if box_px is None else _thinned(box_px, frame.shape, frame.step)

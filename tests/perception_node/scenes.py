@@ -20,8 +20,11 @@ def item(name, kind, position, yaw=0.0, size=None):
 
 @cache
 def shot() -> Shot:
+    return shot_of([item(kind, kind, (x, y, HEIGHT_M + 0.001), 0.4) for kind, (x, y) in KINDS.items()])
+
+
+def shot_of(things) -> Shot:
     stage = Stage()
-    things = [item(kind, kind, (x, y, HEIGHT_M + 0.001), 0.4) for kind, (x, y) in KINDS.items()]
     bodies = stage.show([item("table", "table", (0.0, 0.0, 0.0), 0.0, (0.8, 1.4, HEIGHT_M)), *things])
     target = np.array([0.0, 0.0, HEIGHT_M])
     views = [

@@ -1,4 +1,4 @@
-"""What the classifiers look at: the box of a thing, the histogram of its shape, its colours.
+"""What the classifiers look at: the box of a thing, the histogram of its shape, its colours, its outline.
 
 `inside` is (N, 3) the thing's cells in its box, each axis from 0 to 1, with x along the longer side.
 """
@@ -10,8 +10,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from nodes.perception_node.recognition.outlines import outlines
+from nodes.perception_node.recognition.relief import reliefs
 from nodes.perception_node.views.boxes import Numbers, in_frame
 from nodes.perception_node.views.merged_thing import Thing
+
+SORTS = ("geometry", "shape", "colour", "outline", "relief")
+"""The sorts of features, in the order of `features_of`."""
 
 _SLICES = 8
 _RINGS = 5
@@ -21,17 +26,20 @@ _PICKS = np.random.default_rng(0).random((2, _PAIRS))
 _HUES = 12
 _GREYS = 4
 _BANDS = 4
+MEAN_COLOUR = slice(_HUES + _GREYS, _HUES + _GREYS + 3)
+"""Where `colour` tells the mean red, green and blue."""
 _TRIMMED = np.array([0.01, 0.03, 0.08, 0.2])
 _LEAST_M = 1e-3
 
 
 def features_of(things: Sequence[Thing]) -> list[Numbers]:
-    """Geometry, shape and colour of each thing: (N, their own number) each."""
+    """Of each of `SORTS`, what there is to see of each thing: (N, their own number)."""
     inside = [_normalised(thing) for thing in things]
-    return [
+    one_by_one = [
         np.array([look(thing, where) for thing, where in zip(things, inside, strict=True)])
         for look in (geometry, shape, colour)
     ]
+    return [*one_by_one, outlines(things, inside), reliefs(things, inside)]
 
 
 def geometry(thing: Thing, inside: Numbers) -> Numbers:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nodes.perception_node.recognition.likeness import Likeness
+from nodes.perception_node.recognition.likeness import Likeness, views_of
 from nodes.perception_node.recognition.shipped_votes import Learnt
 from nodes.perception_node.views.boxes import Numbers
 from schemas.entities import Size
@@ -55,7 +55,7 @@ class Shown:
 
         Whether a thing is that of a lesson is told apart from the votes; what is left is theirs.
         """
-        seen = np.concatenate(features, axis=1)
+        seen = views_of(features)
         like = np.column_stack([self._like(seen, lesson) for lesson in self.lessons])
         odds = like / (1.0 - like)
         rest = 1.0 / (1.0 + odds.sum(axis=1, keepdims=True))

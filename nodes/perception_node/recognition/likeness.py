@@ -1,11 +1,13 @@
 """How likely a thing that is seen is one that was shown before, from what both look like.
 
 A view of a thing is a row of features: geometry, shape and colour one after the other, see `features`.
+Outlines are not among them: what was shown to an earlier version stays what it is.
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -81,6 +83,11 @@ def load(path: Path = SHIPPED) -> Likeness:
 def shipped() -> Likeness:
     """What ships with perception."""
     return load()
+
+
+def views_of(features: Sequence[Numbers]) -> Numbers:
+    """(N, WIDTH) views of things, of whose features each sort is (N, its own number)."""
+    return np.concatenate(features, axis=1)[:, :WIDTH]
 
 
 def signs(kept: Numbers, seen: Numbers) -> Floats:

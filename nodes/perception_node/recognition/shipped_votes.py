@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from nodes.perception_node.recognition.features import SORTS
 from nodes.perception_node.recognition.novelty import Novelty
 from nodes.perception_node.recognition.perceptron import Perceptron
 from nodes.perception_node.segmentation.trees import Trees
@@ -30,10 +31,13 @@ UNKNOWN = "Object"
 CLUTTER = ""
 """The leaf for what is no thing: a table's edge, a leg, a piece of something."""
 
-VOTERS = ("geometry", "shape", "colour", "all", "all_again", "all_anew")
-"""Who votes, in the order of the weights: one by each sort of features, and the others by all of them.
-
-A file of fewer has those that come first."""
+VOTERS: Mapping[str, tuple[str, ...]] = {
+    **{sort: (sort,) for sort in SORTS},
+    "all": SORTS,
+    "all_again": SORTS,
+    "without_relief": SORTS[:-1],
+}
+"""Who votes, in the order of the weights, and by which sorts of features; who sees others errs otherwise."""
 
 _JOINING = ("feature", "threshold", "keeps", "first", "value")
 _NOVELTY = ("mean", "axes", "centres", "weights")
@@ -46,7 +50,8 @@ class Learnt:
     `classes`: K leaves, `UNKNOWN` and `CLUTTER` among them. `ancestors`: what the TBox had above each class,
     the most special first. `sizes_m`: (K, 3) what things of a leaf measure: long side, short side, height.
     `sideways`: (K,) whether a leaf's longer side is its own y axis. `voters`: scores (N, K) from each one's
-    features. `weights`: (voters,) how much each one's vote counts. `joining`: whether two
+    features. `weights`: (voters,) how much each vote counts. `familiar`: scores (N, K + 1) of having the very
+    form of our model of a leaf, the last of having that of none. `joining`: whether two
     things are pieces of one, from `joining.signs`. `sides`: see `sides.completed`.
     `sure`: the probability from which on a class is said. `story`: what all this was learnt from.
     `shown`: what people have shown since, whose leaves come last.
@@ -58,6 +63,7 @@ class Learnt:
     sideways: NDArray[np.bool_]
     voters: tuple[Perceptron, ...]
     weights: Numbers
+    familiar: Perceptron
     novelty: Novelty
     joining: Trees
     sides: Perceptron
@@ -96,8 +102,8 @@ def save(learnt: Learnt, path: Path) -> None:
         **{f"joining.{name}": getattr(learnt.joining, name) for name in _JOINING},
         **{f"novelty.{name}": getattr(learnt.novelty, name).astype(np.float32) for name in _NOVELTY},
     }
-    voters = VOTERS[: len(learnt.voters)]
-    for name, perceptron in zip((*voters, "sides"), (*learnt.voters, learnt.sides), strict=True):
+    named = zip((*VOTERS, "familiar", "sides"), (*learnt.voters, learnt.familiar, learnt.sides), strict=True)
+    for name, perceptron in named:
         arrays |= {f"{name}.mean": perceptron.mean.astype(np.float32)}
         arrays |= {f"{name}.scale": perceptron.scale.astype(np.float32)}
         for layer, (weight, bias) in enumerate(zip(perceptron.weights, perceptron.biases, strict=True)):
@@ -123,8 +129,9 @@ def load(path: Path = SHIPPED) -> Learnt:
                 ancestors={name: tuple(above) for name, above in text["ancestors"].items()},
                 sizes_m=arrays["sizes_m"],
                 sideways=arrays["sideways"],
-                voters=tuple(_perceptron(arrays, name) for name in VOTERS if f"{name}.mean" in arrays),
+                voters=tuple(_perceptron(arrays, name) for name in VOTERS),
                 weights=arrays["weights"],
+                familiar=_perceptron(arrays, "familiar"),
                 novelty=Novelty(*(arrays[f"novelty.{name}"].astype(float) for name in _NOVELTY)),
                 joining=Trees(
                     **{name: arrays[f"joining.{name}"] for name in _JOINING}, bias=float(text["joining bias"])

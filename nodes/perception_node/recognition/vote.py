@@ -6,11 +6,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from nodes.perception_node.recognition.features import SORTS
 from nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
 from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS, Learnt
 from nodes.perception_node.views.boxes import Numbers
 
-_CLEAR = 2.0 / 3.0
+_CLEAR = 0.85
+_SAY = 0.2
+"""How much the votes count where something has the form of our model: what they rule out it is not."""
 
 
 def vote(voters: Sequence[Perceptron], weights: Numbers, features: Sequence[Numbers]) -> Numbers:
@@ -22,15 +25,18 @@ def vote(voters: Sequence[Perceptron], weights: Numbers, features: Sequence[Numb
     return np.exp(pool(ballots(voters, features), weights))
 
 
-def shown_to_voters(features: Sequence[Numbers], voters: int = len(VOTERS)) -> list[Numbers]:
-    """What each of `VOTERS` looks at: one sort of features; the last ones at all of them."""
-    everything = np.concatenate(features, axis=1)
-    return [*features, *[everything] * (voters - len(features))]
+def shown_to_voters(features: Sequence[Numbers]) -> list[Numbers]:
+    """What each of `VOTERS` looks at, of `features`: of each sort (N, its own number)."""
+    of_sort = dict(zip(SORTS, features, strict=True))
+    shown = {
+        sorts: np.concatenate([of_sort[sort] for sort in sorts], axis=1) for sorts in set(VOTERS.values())
+    }
+    return [shown[sorts] for sorts in VOTERS.values()]
 
 
 def ballots(voters: Sequence[Perceptron], features: Sequence[Numbers]) -> Numbers:
     """(voters, N, K) logarithms of the probabilities that each voter gives."""
-    shown = shown_to_voters(features, len(voters))
+    shown = shown_to_voters(features)
     return np.array([log_softmax(voter(seen)) for voter, seen in zip(voters, shown, strict=True)])
 
 
@@ -42,7 +48,8 @@ def pool(votes: Numbers, weights: Numbers) -> Numbers:
 def leaves(learnt: Learnt, features: Sequence[Numbers]) -> Numbers:
     """(N, K) probabilities of the leaves, in which what is like nothing known counts as `UNKNOWN`.
 
-    What people have shown is a leaf each, and is told apart from the votes.
+    What has the very form of one of our models is known by that, and the votes name the rest. What people
+    have shown is a leaf each, and is told apart from both.
     """
     votes = ballots(learnt.voters, features)
     pooled = pool(votes, learnt.weights)
@@ -52,6 +59,10 @@ def leaves(learnt: Learnt, features: Sequence[Numbers]) -> Numbers:
     moved = np.where(nameable, probabilities * new[:, None], 0.0)
     probabilities -= moved
     probabilities[:, learnt.classes.index(UNKNOWN)] += moved.sum(axis=1)
+    scores = log_softmax(learnt.familiar(np.concatenate(features, axis=1)))
+    scores[:, :-1] += _SAY * pooled
+    familiar = np.exp(log_softmax(scores))
+    probabilities = familiar[:, :-1] + familiar[:, -1:] * probabilities
     return probabilities if learnt.shown is None else learnt.shown.mixed(features, probabilities)
 
 
@@ -61,12 +72,15 @@ def expected_sizes(probabilities: Numbers, sizes_m: Numbers) -> Numbers:
 
 
 def answer(
-    probabilities: Mapping[str, float], ancestors: Mapping[str, Sequence[str]], sure: float
+    probabilities: Mapping[str, float],
+    ancestors: Mapping[str, Sequence[str]],
+    sure: float,
+    clear: float = _CLEAR,
 ) -> tuple[str, float]:
     """The most special class whose leaves together are at least `sure`, and its probability; else `UNKNOWN`.
 
-    A class that is not twice as likely as all else below one of its ancestors is not said: what may be a
-    desk or a table is furniture. Of several, none of which is below another, the likelier.
+    A class that has not so much (`clear`) of the probability of each of its ancestors is not said: what may
+    be a desk or a table is furniture. Of several, none of which is below another, the likelier.
     """
     total: dict[str, float] = {}
     for leaf, probability in probabilities.items():
@@ -77,7 +91,7 @@ def answer(
         for name in total
         if name not in (UNKNOWN, CLUTTER)
         and total[name] >= sure
-        and all(total[name] >= _CLEAR * total[above] for above in ancestors.get(name, ()) if above != UNKNOWN)
+        and all(total[name] >= clear * total[above] for above in ancestors.get(name, ()) if above != UNKNOWN)
     ]
     lowest = [name for name in certain if not any(name in ancestors.get(other, ()) for other in certain)]
     best = max(lowest, key=total.__getitem__, default=UNKNOWN)

@@ -156,7 +156,11 @@ def _enlarged(picture: NDArray[Any], step: int, height: int, width: int) -> NDAr
 
 
 def shifted(picture: NDArray[Any], rows: int, columns: int) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Two views of a picture (h, w): cells, and those `rows` down and `columns` to the right of each."""
+    """Two views of a picture (h, w): cells, and those `rows` down and `columns` to the right of each.
+
+    Both are empty where the picture is not as large as that.
+    """
     height, width = picture.shape
+    rows, columns = min(rows, height), max(-width, min(columns, width))
     left, right = max(0, -columns), width - max(0, columns)
     return picture[: height - rows, left:right], picture[rows:, left + columns : right + columns]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from nodes.perception_node.input.cloud import Cloud, Floats
 from nodes.perception_node.segmentation import Plane, Segmentation, segment
 from nodes.perception_node.segmentation.gravity import level_plane, room_pose, standing_on
+from nodes.perception_node.segmentation.picture import as_picture
 from nodes.perception_node.segmentation.working_picture import grid_of
 from nodes.perception_node.views.furniture_planes import EVERY, with_furniture
 from nodes.perception_node.views.segments import Segment, cut_out, in_map
@@ -38,7 +39,9 @@ class Sight:
 
 
 def see(cloud: Cloud) -> Sight:
-    """Take a cloud apart."""
+    """Take a cloud apart; one without order as the picture that a camera at its origin has of it."""
+    if not cloud.organised:
+        return _without_order(cloud)
     placed = _placed(cloud)
     segmentation = segment(placed)
     pose = placed.map_from_camera
@@ -59,9 +62,16 @@ def labelled(sight: Sight, labels: NDArray[np.int32], carriers: frozenset[int]) 
     return replace(sight, labels=labels, carriers=carriers, segments=tuple(segments))
 
 
+def _without_order(cloud: Cloud) -> Sight:
+    picture, pixel = as_picture(cloud)
+    seen = see(picture)
+    labels, planes = (np.append(of.ravel(), np.int32(0))[pixel][None, :] for of in (seen.labels, seen.planes))
+    return labelled(replace(seen, cloud=cloud, planes=planes), labels, seen.carriers)
+
+
 def _placed(cloud: Cloud) -> Cloud:
     """The cloud with the pose that follows from the floor that it shows, where nobody knows a better one."""
-    if cloud.map_from_camera is not None or not cloud.organised:
+    if cloud.map_from_camera is not None:
         return cloud
     return replace(cloud, map_from_camera=room_pose(grid_of(cloud).points))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from nodes.perception_node.recognition.features import SORTS
 from nodes.perception_node.recognition.perceptron import Perceptron
 from nodes.perception_node.recognition.shipped_votes import CLUTTER, SHIPPED, UNKNOWN, Learnt, save
 from nodes.perception_node.recognition.sides import SIZE_FEATURES
@@ -20,19 +21,23 @@ from nodes.sim_node.models.model_table import MODELS
 from nodes.training.recognition.fitting import Numbers, classifier, regressor
 from nodes.training.recognition.gathering import Gathered, gather
 from nodes.training.recognition.gradient_descent import Recipe
+from nodes.training.recognition.learn_familiar import learn_familiar
 from nodes.training.recognition.learn_joining import learn_joining
 from nodes.training.recognition.learn_novelty import Told, learn_novelty
+from nodes.training.recognition.natural_colours import unnatural
 from nodes.training.recognition.samples import NOTHING, Samples
+from nodes.training.scenes.families.table import FAMILIES
 from nodes.training.scenes.simulated_scenes import STRANGE, foreign_class
 from nodes.training.segmentation.fit import trees_of
 from nodes.training.taxonomy import class_of_models, hierarchy
 
-SURE = 0.42
+SURE = 0.48
 _HELD_OUT = 5
-_SORTS = ("geometry", "shape", "colour")
-_ONE_SORT = Recipe((256,), dropped=(0.1, 0.3))
-_ALL = Recipe((512, 256), rounds=24, dropped=(0.1, 0.3))
-_RECIPES = (_ONE_SORT, _ONE_SORT, Recipe((64,), dropped=(0.1, 0.1)), _ALL, _ALL, _ALL)
+_ONE_SORT = Recipe((256,), rounds=12, dropped=(0.1, 0.3))
+_ALL = Recipe((512, 256), rounds=12, dropped=(0.1, 0.3))
+_FAMILIAR = Recipe((512, 256), rounds=24, dropped=(0.05, 0.2))
+_COLOUR = Recipe((64,), dropped=(0.1, 0.1))
+_RECIPES = (_ONE_SORT, _ONE_SORT, _COLOUR, _ONE_SORT, _ONE_SORT, _ALL, _ALL, _ALL)
 """How each of `VOTERS` learns."""
 
 _SIDES = Recipe((128, 64), rounds=60, decay=1e-4)
@@ -52,20 +57,22 @@ def learn(gathered: Gathered, *, without: Collection[str] = (), unseen: Collecti
         for kind, name in class_of.items()
         if name in without or ((of := foreign_class(kind)) is not None and of[0] in unseen)
     ]
-    samples = gathered.things[~np.isin(gathered.things.kind, left_out)]
+    things, own = (s[~np.isin(s.kind, left_out)] for s in (gathered.things, gathered.own))
+    samples = things[~unnatural(things, own)]
     names = np.array([class_of[kind] for kind in samples.kind])
     pairs = gathered.pairs[np.asarray(~np.isin(gathered.pairs.kinds, left_out).any(axis=1))]
     classes, ancestors = tuple(sorted(set(names.tolist()))), hierarchy()
     target = np.searchsorted(classes, names)
     held = samples.scene % _HELD_OUT == 0
-    features = [getattr(samples, name) for name in _SORTS]
+    features = [getattr(samples, name) for name in SORTS]
     voters = tuple(
         classifier(f[~held], target[~held], len(classes), recipe, seed=seed)
         for seed, (f, recipe) in enumerate(zip(shown_to_voters(features), _RECIPES, strict=True))
     )
     weights = _calibrated(voters, [f[held] for f in features], target[held])
     told = Told(features, target, strangers(samples.kind), held, classes, ancestors)
-    novelty = learn_novelty(told, _RECIPES, weights, SURE)
+    novelty = learn_novelty(told, _RECIPES, weights)
+    familiar = _familiar(things[things.scene % _HELD_OUT != 0], own, class_of, classes)
     sizes = _typical_sizes(samples, target, len(classes))
     expected = expected_sizes(vote(voters, weights, features), sizes)
     learnt = Learnt(
@@ -75,6 +82,7 @@ def learn(gathered: Gathered, *, without: Collection[str] = (), unseen: Collecti
         sideways=_sideways(samples, target, len(classes)),
         voters=voters,
         weights=weights,
+        familiar=familiar,
         novelty=novelty,
         joining=trees_of([], 0.0),  # is learnt last, from what all else says
         sides=_sides(samples, expected),
@@ -83,6 +91,16 @@ def learn(gathered: Gathered, *, without: Collection[str] = (), unseen: Collecti
         "rendered from the model library, 2 cameras",
     )
     return replace(learnt, joining=learn_joining(learnt, pairs))
+
+
+def _familiar(
+    things: Samples, own: Samples, class_of: Mapping[str, str], classes: Sequence[str]
+) -> Perceptron:
+    """What knows our models by sight."""
+    seen = Samples.joined([things, own])
+    leaf = np.searchsorted(classes, [class_of[kind] for kind in seen.kind])
+    leaf = np.where(seen.as_modelled, leaf, len(classes))
+    return learn_familiar([getattr(seen, name) for name in SORTS], leaf, len(classes), _FAMILIAR)
 
 
 def classes_of(gathered: Gathered) -> dict[str, str]:
@@ -97,7 +115,8 @@ def classes_of(gathered: Gathered) -> dict[str, str]:
 def strangers(kind: NDArray[np.str_]) -> NDArray[np.int64]:
     """(N,) the number of the foreign thing that each is, by its kind (N,); -1 for our own."""
     kinds, which = np.unique(kind, return_inverse=True)
-    foreign = np.array([foreign_class(kind) is not None for kind in kinds])
+    own = {family.kind for family in FAMILIES}
+    foreign = np.array([foreign_class(kind) is not None and kind not in own for kind in kinds])
     number = np.where(foreign, np.cumsum(foreign) - 1, -1)
     return np.asarray(number[which])
 
@@ -144,15 +163,18 @@ def _sides(samples: Samples, expected_m: Numbers) -> Perceptron:
 def main() -> None:
     """Render, learn, and write what ships."""
     parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("--scenes", type=int, default=3000)
-    parser.add_argument("--heaps", type=int, default=400, help="to learn from which pieces are one thing")
+    parser.add_argument("--scenes", type=int, default=3300)
+    parser.add_argument("--heaps", type=int, default=480, help="to learn from which pieces are one thing")
+    parser.add_argument("--ours", type=int, default=1200, help="scenes of our models alone, as they are")
     parser.add_argument("--seed", type=int, default=101)
     parser.add_argument("--foreign", type=Path, help="a folder of foreign things to learn from, too")
     parser.add_argument("--parts", type=Path, help="a folder to keep the samples in, and to resume from")
     parser.add_argument("--out", type=Path, default=SHIPPED)
     options = parser.parse_args()
     started = time.perf_counter()
-    gathered = gather(options.scenes, options.heaps, options.seed, options.foreign, options.parts)
+    gathered = gather(
+        options.scenes, options.heaps, options.ours, options.seed, options.foreign, options.parts
+    )
     print(f"{len(gathered.things)} segments after {time.perf_counter() - started:.0f} s")
     learnt = learn(gathered)
     save(learnt, options.out)

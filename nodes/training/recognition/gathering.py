@@ -15,13 +15,13 @@ import numpy as np
 
 from nodes.training.recognition.neighbour_pairs import Pairs, pairs_of
 from nodes.training.recognition.samples import Samples, samples_of
-from nodes.training.scenes.arranging import Scene, heaps, training_scenes
+from nodes.training.scenes.arranging import Scene, heaps, own_scenes, training_scenes
 from nodes.training.scenes.foreign_things import ForeignThing, foreign_things
 from nodes.training.scenes.simulated_scenes import Item, Shot, Stage
 
 _SCENES, _HEAPS = 150, 40  # a part, at most
 _COLOURLESS = 0.06  # of the scenes are seen without colours
-_SEEDS = 100  # from the first of scenes to the first of heaps
+_SEEDS = 100  # from the first of scenes to the first of heaps, and from there to the first of own scenes
 
 
 _Part = TypeVar("_Part", Samples, Pairs)
@@ -29,16 +29,22 @@ _Part = TypeVar("_Part", Samples, Pairs)
 
 @dataclass(frozen=True)
 class Gathered:
-    """What recognition learns from: things, and pairs of neighbours in other scenes."""
+    """What recognition learns from: things, our models as they are, and neighbours in other scenes."""
 
     things: Samples
+    own: Samples
     pairs: Pairs
 
 
 def gather(
-    scenes: int, heaped: int, seed: int, foreign: Path | None = None, keep: Path | None = None
+    scenes: int,
+    heaped: int,
+    ours: int,
+    seed: int,
+    foreign: Path | None = None,
+    keep: Path | None = None,
 ) -> Gathered:
-    """Things from so many simulated scenes, pairs from so many heaps, made by several processes.
+    """Things from so many scenes, pairs from so many heaps, and so many scenes of ours, by several processes.
 
     They are made in parts, each by a process of its own: the same whatever the machine. `foreign`: a folder
     of foreign things that come among ours. `keep`: a folder in which parts are kept; those that are there
@@ -49,13 +55,15 @@ def gather(
         pairs = list(
             pool.map(_pairs, _shares(heaped, _HEAPS), count(seed + _SEEDS), repeat(foreign), repeat(keep))
         )
-    return joined(things, pairs)
+        own = list(pool.map(_own, _shares(ours, _SCENES), count(seed + 2 * _SEEDS), repeat(keep)))
+    return joined(things, own, pairs)
 
 
 def read(folder: Path) -> Gathered:
     """All the parts that a folder keeps."""
     return joined(
         _things_in(folder),
+        _things_in(folder, "own"),
         [Pairs.read(part) for part in sorted(folder.glob(_file("pairs", "*", "*")), key=_in_order)],
     )
 
@@ -65,13 +73,13 @@ def read_things(folder: Path) -> Samples:
     return _numbered(_things_in(folder))
 
 
-def joined(things: Sequence[Samples], pairs: Sequence[Pairs]) -> Gathered:
+def joined(things: Sequence[Samples], own: Sequence[Samples], pairs: Sequence[Pairs]) -> Gathered:
     """All of all parts."""
-    return Gathered(_numbered(things), Pairs.joined(pairs))
+    return Gathered(_numbered(things), _numbered(own), Pairs.joined(pairs))
 
 
-def _things_in(folder: Path) -> list[Samples]:
-    return [Samples.read(part) for part in sorted(folder.glob(_file("things", "*", "*")), key=_in_order)]
+def _things_in(folder: Path, name: str = "things") -> list[Samples]:
+    return [Samples.read(part) for part in sorted(folder.glob(_file(name, "*", "*")), key=_in_order)]
 
 
 def _numbered(things: Sequence[Samples]) -> Samples:
@@ -85,6 +93,10 @@ def _shares(total: int, most: int) -> list[int]:
 
 def _things(scenes: int, seed: int, foreign: Path | None, keep: Path | None) -> Samples:
     return _kept(Samples, "things", lambda: _seen_in(scenes, seed, foreign), scenes, seed, keep)
+
+
+def _own(scenes: int, seed: int, keep: Path | None) -> Samples:
+    return _kept(Samples, "own", lambda: _own_in(scenes, seed), scenes, seed, keep)
 
 
 def _pairs(heaped: int, seed: int, foreign: Path | None, keep: Path | None) -> Pairs:
@@ -114,7 +126,16 @@ def _in_order(path: Path) -> int:
 
 def _seen_in(scenes: int, seed: int, foreign: Path | None) -> Samples:
     rng = np.random.default_rng(seed)
-    shots = _photographed(training_scenes(scenes, _learnable(foreign), rng), rng)
+    return _sampled(training_scenes(scenes, _learnable(foreign), rng), rng)
+
+
+def _own_in(scenes: int, seed: int) -> Samples:
+    rng = np.random.default_rng(seed)
+    return _sampled(own_scenes(scenes, rng), rng)
+
+
+def _sampled(scenes: Iterable[Scene], rng: np.random.Generator) -> Samples:
+    shots = _photographed(scenes, rng)
     samples = (samples_of(shot, items, number) for number, (shot, items) in enumerate(shots))
     return Samples.joined([found for found in samples if found is not None])
 

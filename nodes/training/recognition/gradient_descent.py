@@ -31,7 +31,6 @@ class Recipe:
     hidden: tuple[int, ...]
     rounds: int = 16
     dropped: tuple[float, float] = (0.0, 0.0)
-    noise: float = 0.0
     batch: int = 256
     rate: float = 2e-3
     decay: float = 1e-2
@@ -96,8 +95,7 @@ def _slopes(
 ) -> list[Floats]:
     """The loss's slopes by all weights and then all biases, for one batch."""
     of_inputs, of_hidden = recipe.dropped
-    values = [(inputs + np.float32(recipe.noise) * rng.standard_normal(inputs.shape, np.float32))]
-    values[0] *= rng.random(inputs.shape, np.float32) >= of_inputs
+    values = [inputs * (rng.random(inputs.shape, np.float32) >= of_inputs)]
     kept = []
     for weights, biases in zip(layers.weights[:-1], layers.biases[:-1], strict=True):
         hidden = values[-1] @ weights + biases

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from nodes.perception_node.recognition.features import SORTS
 from nodes.perception_node.recognition.joining import signs, worth_trying
 from nodes.perception_node.recognition.shipped_votes import Learnt
 from nodes.perception_node.recognition.vote import leaves
@@ -17,7 +18,8 @@ _TREES = 100
 
 def learn_joining(learnt: Learnt, pairs: Pairs) -> Trees:
     """Trees that tell which pairs are one thing, from pairs in scenes that `learnt` has not learnt from."""
-    features = [values.reshape(-1, values.shape[2]) for values in (pairs.geometry, pairs.shape, pairs.colour)]
+    of_sorts = (getattr(pairs, sort) for sort in SORTS)
+    features = [values.reshape(-1, values.shape[2]) for values in of_sorts]
     chances = leaves(learnt, features).reshape(len(pairs.one), 3, -1)
     worth = worth_trying(chances[:, :2], learnt)
     told = signs(chances[worth, :2], chances[worth, 2], pairs.known[worth], learnt)

@@ -23,6 +23,8 @@ _ENOUGH = 0.25
 """The share of the samples that the voters of a fold learn from: signs need no more."""
 
 _AXES = 30
+_SURE, _CLEAR = 0.42, 2.0 / 3.0
+"""From when on a name counts as said: somewhat sooner than perception says it, to have more wrong ones."""
 _NEW_CLASS, _NEW_THING, _FAR = 0.1, 0.4, 0.03
 """How many of the things that are met are of no class that was learnt, how many of one but of another make,
 and how many like nothing at all; nobody knows, so these are guesses."""
@@ -64,11 +66,11 @@ def space(features: Sequence[Numbers], target: NDArray[np.int64], classes: int) 
     return Novelty(mean, axes, centres, np.zeros(1))
 
 
-def learn_novelty(told: Told, recipes: Sequence[Recipe], weights: Numbers, sure: float) -> Novelty:
+def learn_novelty(told: Told, recipes: Sequence[Recipe], weights: Numbers) -> Novelty:
     """Some classes and some foreign things are left out at a time.
 
     The regression tells where the votes, which never saw them, name them wrongly; what is far from all that
-    there is would always be. `weights`: how much each vote counts; `sure`: see `answer`.
+    there is would always be. `weights`: how much each vote counts.
     """
     things = np.flatnonzero([name not in (UNKNOWN, CLUTTER) for name in told.classes])
     rng = np.random.default_rng(0)
@@ -85,14 +87,14 @@ def learn_novelty(told: Told, recipes: Sequence[Recipe], weights: Numbers, sure:
             for seed, (f, recipe) in enumerate(zip(shown_to_voters(told.of(known)), recipes, strict=True))
         ]
         judged = lot & ((told.held & np.isin(told.target, things) & (told.stranger < 0)) | new_thing)
-        far = _far_off(told.of(known), judged.sum() // 20, rng)
+        far = far_off(told.of(known), judged.sum() // 20, rng)
         seen = [np.concatenate(both) for both in zip(told.of(judged), far, strict=True)]
         votes = ballots(voters, seen)
         pooled = pool(votes, weights)
         place = space(told.of(known), told.target[known], len(told.classes))
         rows.append(signs(place, seen, votes, pooled))
         is_far = np.arange(len(pooled)) >= judged.sum()
-        wrong.append(np.append(_misnamed(pooled[~is_far], told, judged, sure), is_far[is_far]))
+        wrong.append(np.append(_misnamed(pooled[~is_far], told, judged), is_far[is_far]))
         worth.append(_worth(new_class[judged], new_thing[judged], len(far[0])))
     seen_in_folds = np.concatenate(rows)
     scale = seen_in_folds.std(axis=0)
@@ -103,12 +105,13 @@ def learn_novelty(told: Told, recipes: Sequence[Recipe], weights: Numbers, sure:
     return Novelty(whole.mean, whole.axes, whole.centres, fitted)
 
 
-def _far_off(features: Sequence[Numbers], count: int, rng: np.random.Generator) -> list[Numbers]:
-    """Features of so many things such as there are none, of each sort."""
+def far_off(features: Sequence[Numbers], count: int, rng: np.random.Generator) -> list[Numbers]:
+    """Features of so many things such as there are none, of each sort; any share of them is too large."""
     near, far = np.log(_FAR_OFF)
-    away = np.exp(rng.uniform(near, far, (count, 1)))
+    away, above = np.exp(rng.uniform(near, far, (count, 1))), rng.random((count, 1))
     return [
-        values.mean(axis=0) + away * values.std(axis=0) * rng.choice([-1.0, 1.0], (count, values.shape[1]))
+        values.mean(axis=0)
+        + values.std(axis=0) * np.where(rng.random((count, values.shape[1])) < above, away, -away)
         for values in features
     ]
 
@@ -122,11 +125,12 @@ def _worth(new_class: NDArray[np.bool_], new_thing: NDArray[np.bool_], far: int)
     return np.append(worth, np.full(far, _FAR * len(new_class) / max(1, far)))
 
 
-def _misnamed(pooled: Numbers, told: Told, judged: NDArray[np.bool_], sure: float) -> NDArray[np.bool_]:
+def _misnamed(pooled: Numbers, told: Told, judged: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """(N,) whether the votes' answer is neither a thing's class nor above it."""
     found = []
     for chances, target in zip(np.exp(pooled), told.target[judged], strict=True):
-        said, _ = answer(dict(zip(told.classes, chances.tolist(), strict=True)), told.ancestors, sure)
+        by_leaf = dict(zip(told.classes, chances.tolist(), strict=True))
+        said, _ = answer(by_leaf, told.ancestors, _SURE, _CLEAR)
         true = told.classes[target]
         found.append(said != true and said not in told.ancestors.get(true, ()))
     return np.array(found)

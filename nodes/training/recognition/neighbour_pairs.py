@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from nodes.perception_node.pipeline import Parts, parts_in
-from nodes.perception_node.recognition.features import features_of
+from nodes.perception_node.recognition.features import SORTS, features_of
 from nodes.perception_node.recognition.joining import between, near
 from nodes.perception_node.views.segmented_view import see
 from nodes.training.recognition.array_tables import Table
@@ -27,8 +27,8 @@ Members = tuple[int, ...]
 class Pairs(Table):
     """N pairs. `kinds`: (N, 2) the models, `NOTHING` for none. `one`: (N,) whether they are one thing.
 
-    `geometry`, `shape`, `colour`: (N, 3, D) features of either and of both together. `known`: (N, 16), see
-    `joining.between`.
+    `geometry`, `shape`, `colour`, `outline`, `relief`: (N, 3, D) features of either and of both together.
+    `known`: (N, 16), see `joining.between`.
     """
 
     kinds: NDArray[np.str_]
@@ -36,6 +36,8 @@ class Pairs(Table):
     geometry: NDArray[np.float64]
     shape: NDArray[np.float64]
     colour: NDArray[np.float64]
+    outline: NDArray[np.float64]
+    relief: NDArray[np.float64]
     known: NDArray[np.float64]
 
 
@@ -79,16 +81,14 @@ def _described(
         return []
     threes = [(things[a], things[b], parts.join(things[a], things[b])) for a, b in pairs]
     features = features_of([thing for three in threes for thing in three])
-    geometry, shape, colour = (values.reshape(len(pairs), 3, -1) for values in features)
+    shown = {sort: values.reshape(len(pairs), 3, -1) for sort, values in zip(SORTS, features, strict=True)}
     owner = owners[[numbers[0] for numbers in members]][np.array(pairs)]
     held = [parts.held_for_one[:, members[a]][:, :, members[b]] for a, b in pairs]
     return [
         Pairs(
             kinds=kinds[owner],
             one=(owner[:, 0] == owner[:, 1]) & (owner[:, 0] > 0),
-            geometry=geometry,
-            shape=shape,
-            colour=colour,
+            **shown,
             known=np.array([between(*three, how) for three, how in zip(threes, held, strict=True)]),
         )
     ]

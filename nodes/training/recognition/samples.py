@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.pipeline import Parts, parts_in
-from nodes.perception_node.recognition.features import features_of
+from nodes.perception_node.recognition.features import SORTS, features_of
 from nodes.perception_node.recognition.sides import shifts, side_features
 from nodes.perception_node.segmentation.segment import LOWEST_M
 from nodes.perception_node.views.boxes import Box
@@ -38,15 +38,19 @@ NOTHING = ""
 class Samples(Table):
     """N things. `kind`: (N,) the model, `NOTHING` for clutter. `scene`: (N,) the number of its scene.
 
-    `geometry`, `shape`, `colour`: (N, D) features. `sides`: (N, 5, F) with an expected size of one metre;
-    `shifts`: (N, 5) how far the sides are off, NaN for clutter. `size_m`: (N, 3) true size.
+    `as_modelled`: (N,) whether it has the very form of our model, whatever its size and colours.
+    `geometry`, `shape`, `colour`, `outline`, `relief`: (N, D) features. `sides`: (N, 5, F) with an expected
+    size of one metre; `shifts`: (N, 5) how far the sides are off, NaN for clutter. `size_m`: (N, 3) truth.
     """
 
     kind: NDArray[np.str_]
     scene: NDArray[np.int64]
+    as_modelled: NDArray[np.bool_]
     geometry: NDArray[np.float64]
     shape: NDArray[np.float64]
     colour: NDArray[np.float64]
+    outline: NDArray[np.float64]
+    relief: NDArray[np.float64]
     sides: NDArray[np.float64]
     shifts: NDArray[np.float64]
     size_m: NDArray[np.float64]
@@ -73,13 +77,12 @@ def samples_of(shot: Shot, items: Sequence[Item], scene: int) -> Samples | None:
             truths.append(item)
     if not things:
         return None
-    geometry, shape, colour = features_of(things)
+    features = dict(zip(SORTS, features_of(things), strict=True))
     return Samples(
         kind=np.array(kinds),
         scene=np.full(len(things), scene),
-        geometry=geometry,
-        shape=shape,
-        colour=colour,
+        as_modelled=np.array([item is not None and item.form is None for item in truths]),
+        **features,
         sides=np.array([side_features(thing, _UNIT) for thing in things]),
         shifts=np.array([_shifts(thing, item) for thing, item in zip(things, truths, strict=True)]),
         size_m=np.array([(np.nan,) * 3 if item is None else item.size_m for item in truths]),

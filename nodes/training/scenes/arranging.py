@@ -11,7 +11,7 @@ import numpy as np
 from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import Vec3
 from nodes.sim_node.vision.view import View, look_at
-from nodes.training.scenes.drawing_lots import LARGE, own_things, small_things, varied_colour
+from nodes.training.scenes.drawing_lots import LARGE, SMALL, own_things, small_things, varied_colour
 from nodes.training.scenes.foreign_things import ForeignThing
 from nodes.training.scenes.placements import Rectangle, spread
 from nodes.training.scenes.simulated_scenes import Item
@@ -94,6 +94,14 @@ def training_scenes(count: int, foreign: Sequence[ForeignThing], rng: np.random.
         else:
             things = [next(large) for _ in range(4)] + [small() for _ in range(3)]
             yield floor_scene(things, rng), views((0.0, 0.0, 0.3), (2.0, 4.0), rng)
+
+
+def own_scenes(count: int, rng: np.random.Generator) -> Iterator[Scene]:
+    """Tables of our models alone, as they are, most of them crowded: what a simulated map shows."""
+    things = own_things(SMALL, rng, own_colours=1.0)
+    for _ in range(count):
+        items = table_scene([next(things) for _ in range(rng.integers(8, 19))], rng, crowded_share=_HEAPED)
+        yield items, views((0.0, 0.0, items[0].size_m[2]), _DISTANCES_M, rng)
 
 
 def heaps(count: int, foreign: Sequence[ForeignThing], rng: np.random.Generator) -> Iterator[Scene]:

@@ -1,4 +1,4 @@
-"""Which things a scene has: our models, other forms and sizes of their classes, foreign and strange ones."""
+"""Which things a scene has: our models, other forms and sizes, families, foreign and strange things."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import Colour, Parts, Vec3
+from nodes.training.scenes.families.table import FAMILIES, drawn
 from nodes.training.scenes.foreign_things import ForeignThing, parts_of, texture_of
 from nodes.training.scenes.paint import Paint, any_paint
 from nodes.training.scenes.simulated_scenes import STRANGE, Item, foreign_label
@@ -27,14 +28,42 @@ SMALL_M = 0.5
 SMALL = tuple(k for k, kind in MODELS.items() if max(kind.size_m) <= SMALL_M and k not in HANGING)
 LARGE = tuple(k for k, kind in MODELS.items() if max(kind.size_m) > SMALL_M and k not in HANGING)
 
-_SHARES = (0.5, 0.25, 0.12, 0.13)
-"""Of the small things: our models, varieties, foreign, strange ones."""
+_SHARES = (0.44, 0.13, 0.18, 0.11, 0.14)
+"""Of the small things: our models, varieties, families, foreign, strange ones."""
+_FOREIGN = 3
 _OWN_COLOURS, _COLOURS_OF_A_MODEL, _OWN_TEXTURE = 0.5, 0.25, 0.5
 """How many of our models, varieties and foreign things keep their own colours."""
 
-_COLOURED = "apple banana bread carrot cheese corn egg lemon onion orange pear potato tomato toilet_paper"
-_TRUE_COLOURS = dict.fromkeys(_COLOURED.split(), 0.75)
-"""What has its colour by nature keeps it more often: a blue orange is a ball."""
+_COLOURED = (
+    "apple banana bread carrot cheese corn egg lemon onion orange pear potato tomato toilet_paper fruit@Fruit"
+)
+COLOURED = tuple(_COLOURED.split())
+"""What has its colour by nature."""
+
+_TRUE_COLOURS = dict.fromkeys(COLOURED, 0.75)
+"""It keeps that more often."""
+
+_RIPE = {
+    "apple": (
+        (0.75, 0.12, 0.10),
+        (0.55, 0.10, 0.12),
+        (0.50, 0.66, 0.18),
+        (0.82, 0.76, 0.24),
+        (0.78, 0.38, 0.18),
+    ),
+    "pear": ((0.68, 0.72, 0.24), (0.48, 0.60, 0.18), (0.84, 0.76, 0.30), (0.56, 0.42, 0.20)),
+    "onion": ((0.72, 0.48, 0.22), (0.50, 0.12, 0.28), (0.88, 0.84, 0.76)),
+    "fruit@Fruit": (
+        (0.75, 0.10, 0.12),
+        (0.35, 0.12, 0.25),
+        (0.22, 0.14, 0.26),
+        (0.90, 0.58, 0.32),
+        (0.45, 0.34, 0.16),
+        (0.55, 0.66, 0.20),
+    ),
+    "potato": ((0.72, 0.58, 0.36), (0.60, 0.28, 0.26)),
+}
+"""What has more than one colour by nature."""
 
 _FOREIGN_LARGER, _FOREIGN_STOUTER = 0.2, 0.06
 """By which factors e^x foreign things are larger or smaller, at most, and each extent of them beside."""
@@ -47,26 +76,29 @@ def small_things(foreign: Sequence[ForeignThing], rng: np.random.Generator) -> L
     """Small things of all sorts; those of one sort come about equally often."""
     shares = np.array(_SHARES)
     if not foreign:
-        shares[2] = 0.0
+        shares[_FOREIGN] = 0.0
     of_sort = [
         own_things(SMALL, rng),
         _varieties(rng),
+        _families(rng),
         _foreign(foreign, rng),
         _strange(rng),
     ]
     return lambda: next(of_sort[int(rng.choice(len(of_sort), p=shares / shares.sum()))])
 
 
-def own_things(kinds: Sequence[str], rng: np.random.Generator) -> Iterator[Item]:
-    """Our models, a little larger or smaller, slimmer or stouter, painted."""
+def own_things(
+    kinds: Sequence[str], rng: np.random.Generator, *, own_colours: float | None = None
+) -> Iterator[Item]:
+    """Our models, a little larger or smaller, slimmer or stouter; so many of them in their own colours."""
     for kind in _deck(kinds, rng):
-        yield of_model(kind, rng)
+        yield of_model(kind, rng, own_colours)
 
 
-def of_model(kind: str, rng: np.random.Generator) -> Item:
-    """One of our models."""
-    paint = any_paint(rng, _TRUE_COLOURS.get(kind, _OWN_COLOURS))
-    return _thing(kind, varied_size(kind, rng), varied_colour(kind, rng), paint)
+def of_model(kind: str, rng: np.random.Generator, own_colours: float | None = None) -> Item:
+    """One of our models, painted unless it keeps its own colours, by this chance or a usual one."""
+    paint = any_paint(rng, _TRUE_COLOURS.get(kind, _OWN_COLOURS) if own_colours is None else own_colours)
+    return _thing(kind, varied_size(kind, rng), _natural_colour(kind, rng), paint)
 
 
 def varied_size(kind: str, rng: np.random.Generator) -> Vec3:
@@ -77,7 +109,24 @@ def varied_size(kind: str, rng: np.random.Generator) -> Vec3:
 
 def varied_colour(kind: str, rng: np.random.Generator) -> Colour:
     """The model's own colour under other light."""
-    red, green, blue = np.clip(np.array(MODELS[kind].colour) + rng.normal(0.0, 0.05, 3), 0.0, 1.0).tolist()
+    return _lit(MODELS[kind].colour, rng)
+
+
+def _natural_colour(kind: str, rng: np.random.Generator) -> Colour:
+    """One of those that its like have, under other light; of what has no model, any."""
+    if kind in _RIPE:
+        ripe = _RIPE[kind]
+        return _lit(ripe[int(rng.integers(len(ripe)))], rng)
+    return varied_colour(kind, rng) if kind in MODELS else _any_colour(rng)
+
+
+def _any_colour(rng: np.random.Generator) -> Colour:
+    red, green, blue = rng.uniform(0.05, 0.95, 3).tolist()
+    return (red, green, blue)
+
+
+def _lit(colour: Colour, rng: np.random.Generator) -> Colour:
+    red, green, blue = np.clip(np.array(colour) + rng.normal(0.0, 0.05, 3), 0.0, 1.0).tolist()
     return (red, green, blue)
 
 
@@ -89,8 +138,19 @@ def _varieties(rng: np.random.Generator) -> Iterator[Item]:
             while is_like_another(variety, size):
                 size = any_size(variety, rng)
             paint = any_paint(rng, _TRUE_COLOURS.get(variety.model, _COLOURS_OF_A_MODEL))
-            thing = _thing(variety.model, size, varied_colour(variety.model, rng), paint)
+            thing = _thing(variety.model, size, _natural_colour(variety.model, rng), paint)
             yield replace(thing, form=variety.form)
+
+
+def _families(rng: np.random.Generator) -> Iterator[Item]:
+    while True:
+        for number in rng.permutation(len(FAMILIES)):
+            family = FAMILIES[number]
+            colour = _natural_colour(family.kind, rng)
+            parts = drawn(family, colour, rng)
+            paint = any_paint(rng, _TRUE_COLOURS.get(family.kind, _COLOURS_OF_A_MODEL))
+            thing = _thing(family.kind.partition("@")[0], size_of(parts), colour, paint)
+            yield replace(thing, form=_ready(parts), said=family.kind)
 
 
 def _foreign(things: Sequence[ForeignThing], rng: np.random.Generator) -> Iterator[Item]:
@@ -114,10 +174,10 @@ def _form_of(thing: ForeignThing) -> Form:
 
 def _strange(rng: np.random.Generator) -> Iterator[Item]:
     while True:
-        red, green, blue = rng.uniform(0.05, 0.95, 3).tolist()
-        parts = strange_parts(rng, (red, green, blue))
+        colour = _any_colour(rng)
+        parts = strange_parts(rng, colour)
         paint = any_paint(rng, _COLOURS_OF_A_MODEL)
-        thing = _thing(STRANGE, size_of(parts), (red, green, blue), paint)
+        thing = _thing(STRANGE, size_of(parts), colour, paint)
         yield replace(thing, form=_ready(parts), said=STRANGE)
 
 

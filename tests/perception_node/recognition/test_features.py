@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.recognition.features import features_of
+from nodes.perception_node.recognition.features import SORTS, features_of
 from nodes.perception_node.views.merged_thing import thing_of
 from nodes.perception_node.views.segments import Segment
 from nodes.perception_node.views.supports import Support
@@ -26,7 +26,7 @@ WITH_A_SCRAP = block(((0.0, 0.0, 0.0), (0.2, 0.1, 0.1)), ((0.2, 0.04, 0.04), (0.
 
 def test_one_row_a_thing_for_each_sort():
     features = features_of([ALONE, WITH_A_SCRAP])
-    assert [len(of) for of in features] == [2, 2, 2]
+    assert [len(of) for of in features] == [2] * len(SORTS)
     assert all(np.isfinite(of).all() for of in features)
 
 

@@ -8,7 +8,7 @@ import pytest
 from nodes.perception_node.pipeline import parts_in
 from nodes.perception_node.recognition import likeness
 from nodes.perception_node.recognition.features import features_of
-from nodes.perception_node.recognition.likeness import COLOUR, GEOMETRY, SHAPE, WIDTH
+from nodes.perception_node.recognition.likeness import COLOUR, GEOMETRY, SHAPE, WIDTH, views_of
 from nodes.perception_node.views.segmented_view import see
 from nodes.training.recognition.samples import shared_pixels
 from schemas.errors import BadFile
@@ -23,7 +23,7 @@ def seen():
         parts = parts_in([see(cloud)])
         owner = shared_pixels(parts, shot(), [camera])[1:].argmax(axis=1)
         names = [shot().bodies[n - 1].name if n else "" for n in owner]
-        views = np.concatenate(features_of(parts.things), axis=1)
+        views = views_of(features_of(parts.things))
         largest_last = sorted(range(len(names)), key=lambda n: parts.things[n].count)
         found.append({names[n]: views[n] for n in largest_last if names[n] in KINDS})
         things += parts.things
@@ -33,8 +33,9 @@ def seen():
 def test_the_columns_are_those_of_the_features(seen):
     things = seen[1]
     features = features_of(things)
-    assert [part.stop - part.start for part in (GEOMETRY, SHAPE, COLOUR)] == [f.shape[1] for f in features]
-    views = np.concatenate(features, axis=1)
+    of_sorts = (GEOMETRY, SHAPE, COLOUR)
+    assert [part.stop - part.start for part in of_sorts] == [f.shape[1] for f in features[: len(of_sorts)]]
+    views = views_of(features)
     assert views.shape[1] == WIDTH
     assert views[:, likeness._HEIGHT] == pytest.approx([np.log(t.box.size_m[2]) for t in things])
     assert views[:, likeness._MEAN] == pytest.approx(np.array([t.colors.mean(axis=0) for t in things]))

@@ -1,6 +1,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from nodes.perception_node.recognition.pieces import put_together
 from nodes.perception_node.recognition.shipped_votes import shipped
@@ -30,10 +31,10 @@ def test_what_is_recognised_stays_apart():
     assert [shipped().classes[k] for k in chances.argmax(axis=1)] == ["Bottle", "Cereals"]
 
 
-def test_a_neck_finds_its_bottle():
-    height = 0.7 + 0.17
+@pytest.mark.parametrize("from_m", [0.17, 0.18, 0.20, 0.22])
+def test_a_neck_finds_its_bottle(from_m):
     halves = [
-        thing_of([_part(s, (s.points[:, 2] > height) == upper) for s in body("bottle")], SUPPORTS)
+        thing_of([_part(s, (s.points[:, 2] > 0.7 + from_m) == upper) for s in body("bottle")], SUPPORTS)
         for upper in (False, True)
     ]
     parts, chances, members = put_together(halves, UNASKED, shipped(), join)

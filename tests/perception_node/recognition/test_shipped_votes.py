@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from nodes.perception_node.recognition.features import SORTS
 from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, load, save, shipped
 from nodes.perception_node.recognition.vote import leaves
 from schemas.errors import BadFile
@@ -9,7 +10,8 @@ from schemas.errors import BadFile
 def random_features(learnt, count=5):
     rng = np.random.default_rng(0)
     return [
-        voter.mean + voter.scale * rng.normal(size=(count, len(voter.mean))) for voter in learnt.voters[:3]
+        voter.mean + voter.scale * rng.normal(size=(count, len(voter.mean)))
+        for voter in learnt.voters[: len(SORTS)]
     ]
 
 
@@ -37,7 +39,7 @@ def test_probabilities_add_up():
 
 def test_what_is_far_from_all_that_was_learnt_is_unknown():
     learnt = shipped()
-    far = [voter.mean + 40.0 * voter.scale for voter in learnt.voters[:3]]
+    far = [voter.mean + 40.0 * voter.scale for voter in learnt.voters[: len(SORTS)]]
     chances = leaves(learnt, [f[None] for f in far])
     assert chances[0, learnt.classes.index(UNKNOWN)] + chances[0, learnt.classes.index(CLUTTER)] > 0.5
 

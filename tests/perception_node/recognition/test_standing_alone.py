@@ -49,6 +49,15 @@ def test_what_may_be_a_piece_does_not_stand_alone(thing):
     assert not stand_alone([thing])[0]
 
 
+def test_what_is_below_a_tables_edge_may_be_its_leg():
+    top = block(((0.0, 0.0, 0.0), (1.0, 1.6, 0.75)))
+    table = replace(top, segments=(replace(top.segments[0], carrier=True),))
+    leg = block(((0.02, 0.02, 0.0), (0.1, 0.1, 0.3)))
+    bin_ = block(((0.3, 0.3, 0.0), (0.5, 0.5, 0.3)))
+    assert stand_alone([leg, bin_]).tolist() == [True, True]
+    assert stand_alone([table, leg, bin_]).tolist() == [False, False, True]
+
+
 def test_what_stands_alone_is_an_object_however_much_it_looks_like_clutter():
     learnt = shipped()
     chances = np.zeros((2, len(learnt.classes)))

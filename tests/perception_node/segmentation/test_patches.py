@@ -39,3 +39,15 @@ def test_nothing_outside_what_is_asked_for():
     labels = patches(points, np.broadcast_to(np.float32([[[0]], [[0]], [[-1]]]), points.shape), where)
     assert set(np.unique(labels[where])) <= set(range(labels.max() + 1))
     assert not labels[~where].any()
+
+
+@pytest.mark.parametrize("height", range(1, 7))
+@pytest.mark.parametrize("width", range(1, 7))
+def test_a_picture_may_be_smaller_than_what_is_looked_across(height, width):
+    x, y = np.meshgrid(np.arange(width) * 0.01, np.arange(height) * 0.01)
+    points = np.stack([x, y, np.ones_like(x)]).astype(np.float32)
+    facing = np.zeros_like(points)
+    facing[2] = -1.0
+    labels = patches(points, facing, np.ones((height, width), bool))
+    assert labels.shape == (height, width)
+    assert set(np.unique(labels)) == ({1} if height * width >= 12 else {0})

@@ -66,10 +66,10 @@ def test_a_map_of_labels_and_labels_that_nobody_knows():
     assert labels.class_of("WINE-bottle") == labels.class_of("winebottle")
     assert labels.class_of("gizmo") is None
     names = {"apple": "Granny Smith", "bottle": "spork", "cereals": "gizmo"}
-    seen = look(shot().clouds[:1], learnt, [masks(0, names=names, alone=True, score=0.97)], labels)
+    seen = look(shot().clouds[:1], learnt, [masks(0, names=names, alone=True, score=0.999)], labels)
     said = {o.class_: o.probability for o in seen.observations.observations}
     assert said["Apple"] > 0.8
-    assert said["Spork"] == pytest.approx(0.97)
+    assert said["Spork"] == pytest.approx(0.999)
     assert len(said) == 3
 
 

@@ -22,9 +22,7 @@ def square(target):
     "recipe",
     [
         pytest.param(SMALL, id="plain"),
-        pytest.param(
-            Recipe((48, 24), 60, (0.05, 0.1), 0.05, 64, 1e-2), id="deep, with all that is left to chance"
-        ),
+        pytest.param(Recipe((48, 24), 60, (0.05, 0.1), 64, 1e-2), id="deep, with all that is left to chance"),
     ],
 )
 def test_what_no_line_parts_is_told_apart(recipe):

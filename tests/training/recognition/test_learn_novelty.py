@@ -1,6 +1,7 @@
 import numpy as np
 
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN
+from nodes.perception_node.recognition.features import SORTS
+from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS
 from nodes.perception_node.recognition.vote import ballots, pool, shown_to_voters
 from nodes.training.recognition.fitting import classifier
 from nodes.training.recognition.gradient_descent import Recipe
@@ -8,14 +9,14 @@ from nodes.training.recognition.learn_novelty import Told, learn_novelty
 
 CLASSES = (CLUTTER, UNKNOWN, *(f"Class{n}" for n in range(38)))
 UNKNOWN_AT = CLASSES.index(UNKNOWN)
-WIDTH, EACH = 36, 60
-RECIPES = (Recipe((16,), batch=16, rate=1e-2),) * 6
+WIDTH, EACH = 48, 60
+RECIPES = (Recipe((16,), batch=16, rate=1e-2),) * len(VOTERS)
 rng = np.random.default_rng(0)
 CENTRES = rng.normal(0.0, 2.0, (len(CLASSES), WIDTH))
 
 
 def sorts(features):
-    return np.split(features, 3, axis=1)
+    return np.array_split(features, len(SORTS), axis=1)
 
 
 def between(count):
@@ -33,8 +34,8 @@ def test_what_is_unlike_all_that_was_learnt_is_doubted():
     target = np.concatenate([target, named])
     held = np.arange(len(target)) % 5 == 0
     told = Told(features, target, stranger, held, CLASSES, {})
-    weights = np.full(6, 0.3)
-    novelty = learn_novelty(told, RECIPES, weights, sure=0.4)
+    weights = np.full(len(VOTERS), 1.0 / len(VOTERS))  # as calibration has it, nearly
+    novelty = learn_novelty(told, RECIPES, weights)
     shown = shown_to_voters(told.of(~held & (stranger < 0)))
     voters = [
         classifier(seen, target[~held & (stranger < 0)], len(CLASSES), recipe)

@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from nodes.sim_node.models.model_table import MODELS
 from nodes.training.recognition.samples import NOTHING, samples_of, true_box
-from tests.perception_node.scenes import HEIGHT_M, KINDS, item, shot
+from tests.perception_node.scenes import HEIGHT_M, KINDS, item, shot, shot_of
 
 
 def test_every_thing_is_a_sample_from_each_side_and_from_both():
@@ -14,8 +17,17 @@ def test_every_thing_is_a_sample_from_each_side_and_from_both():
     assert sorted(as_it_is) == truly
     assert set(as_perception_cuts) >= {*KINDS, "table"}
     things = samples.kind != NOTHING
+    assert (samples.as_modelled == things).all()
     assert np.isfinite(samples.shifts[things]).all()
     assert np.abs(samples.shifts[things]).max() < 1.5
+
+
+def test_what_is_of_another_make_has_not_the_form_of_our_model():
+    cup = replace(item("cup", "cup", (0.0, 0.0, HEIGHT_M + 0.001), 0.4), form=MODELS["can"].parts)
+    table = item("table", "table", (0.0, 0.0, 0.0), 0.0, (0.8, 1.4, HEIGHT_M))
+    samples = samples_of(shot_of([cup]), [cup, table], scene=1)
+    assert set(samples.kind[~samples.as_modelled & (samples.kind != NOTHING)]) == {"cup"}
+    assert set(samples.kind[samples.as_modelled]) == {"table"}
 
 
 def test_the_true_box_of_a_turned_thing():

@@ -8,10 +8,11 @@ from PIL import Image
 
 from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import bounds
-from nodes.training.scenes.drawing_lots import SMALL, small_things
+from nodes.training.scenes.drawing_lots import SMALL, of_model, small_things
+from nodes.training.scenes.families.table import FAMILIES
 from nodes.training.scenes.foreign_things import foreign_things, texture_of
 from nodes.training.scenes.simulated_scenes import STRANGE, foreign_class, tinted
-from nodes.training.scenes.strange_things import size_of, strange_parts
+from nodes.training.scenes.strange_things import _lump, size_of, strange_parts
 from nodes.training.scenes.varieties import VARIETIES, any_size, carton, is_like_another
 
 
@@ -51,8 +52,10 @@ def test_there_are_things_of_all_sorts_and_each_can_be_built(folder):
     assert labels[STRANGE] > 20
     assert labels["mine@Ball"] > 5
     assert labels["odd@"] > 5
-    assert set(labels) - {STRANGE, "mine@Ball", "odd@"} <= set(MODELS)
-    assert sum(thing.form is None for thing in things) > 100
+    families = {family.kind for family in FAMILIES}
+    assert set(labels) - {STRANGE, "mine@Ball", "odd@"} <= {*MODELS, *families}
+    assert sum(labels[kind] for kind in families) > 50
+    assert sum(thing.form is None for thing in things) > 80
     for thing in things[:60]:
         assert tinted(thing).parts
 
@@ -79,7 +82,9 @@ def test_a_thing_without_a_texture_keeps_none(folder):
 
 def test_without_a_folder_nothing_is_foreign():
     lot = small_things([], np.random.default_rng(0))
-    assert all(foreign_class(lot().label) is None for _ in range(100))
+    families = {family.kind for family in FAMILIES}
+    labels = {lot().label for _ in range(200)}
+    assert all(label in families or foreign_class(label) is None for label in labels)
 
 
 @pytest.mark.parametrize("variety", VARIETIES, ids=lambda v: f"{v.model}-{getattr(v.form, '__name__', '')}")
@@ -122,6 +127,14 @@ def test_strange_things_are_lumps_too_and_often_alike_on_both_sides():
     assert sum(_alike(parts) for parts in found) > 30
 
 
+def test_no_strange_thing_is_a_plain_ball_rod_or_box():
+    rng = np.random.default_rng(2)
+    for _ in range(100):
+        parts = strange_parts(rng, (0.5, 0.5, 0.5))
+        spans = [2.0 * part.reach() / size_of(parts) for part in parts if part.mesh is None]
+        assert all(span.min() < 0.9 for span in spans)
+
+
 def _alike(parts):
     middles = sorted(
         np.round([(abs(part.centre[0] + 1e-12), *part.centre[1:]) for part in parts], 9).tolist()
@@ -133,3 +146,21 @@ def test_a_foreign_label_tells_thing_and_class():
     assert foreign_class("ycb can@Can") == ("ycb can", "Can")
     assert foreign_class("ycb drill@") == ("ycb drill", "")
     assert foreign_class("cup") is None
+
+
+def test_lumps_of_all_seeds_have_a_hull():
+    for seed in range(400):
+        lump = _lump(0.1, (0.0, 0.0, 0.0), (0.5, 0.5, 0.5), np.random.default_rng(seed))
+        low, high = bounds([lump])
+        assert min(high - low) > 0.002
+
+
+def test_apples_are_of_several_colours_and_lemons_of_one():
+    rng = np.random.default_rng(0)
+    apples = np.array([of_model("apple", rng).colour for _ in range(60)])
+    lemons = np.array([of_model("lemon", rng).colour for _ in range(60)])
+    assert {"red", "green", "yellow"} == {
+        "yellow" if red > 0.6 and green > 0.6 else "green" if green > red else "red"
+        for red, green, _ in apples
+    }
+    assert lemons.std(axis=0).max() < 0.1

@@ -38,6 +38,8 @@ def read_cloud(path: Path) -> Cloud:
     """The cloud in a file; what is neither PCD nor PLY as we know it is read by Open3D. Raises BadFile."""
     suffix = path.suffix.lower()
     if suffix not in (*_DECODERS, *open3d_clouds.SUFFIXES):
+        if path.is_dir():
+            raise BadFile(f"{path} is a folder; a dataset takes --frames: semmap perceive --frames {path}")
         supported = ", ".join((*_DECODERS, *open3d_clouds.SUFFIXES))
         raise BadFile(f"{path} is not a supported cloud; supported are {supported} and images as .png")
     try:

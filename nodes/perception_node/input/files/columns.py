@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Cloud
+from nodes.perception_node.input.files import units
 
 MAX_POINTS = 50_000_000
 """No frame has more; a header that says so is damaged."""
@@ -47,7 +48,7 @@ def cloud_of(columns: Mapping[str, Column], height: int, width: int) -> Cloud:
 
     Colours are packed as 0xRRGGBB in `rgb` or `rgba`, an integer or the same bits called a float, or stand in
     `red`, `green` and `blue`. Points nearer or farther than any camera measures become NaN. Axes of other
-    conventions are turned. Raises ValueError for missing columns, axes of nobody's, and millimetres.
+    conventions are turned. Raises ValueError for missing columns, axes of nobody's, and other units.
     """
     if missing := [name for name in "xyz" if name not in columns]:
         raise ValueError(f"it has no field {', '.join(missing)}, only {', '.join(columns) or 'none'}")
@@ -55,9 +56,10 @@ def cloud_of(columns: Mapping[str, Column], height: int, width: int) -> Cloud:
     depth = points[np.isfinite(points).all(axis=-1), 2]
     depth = depth[depth != 0.0]
     if len(depth) and np.median(depth) > FARTHEST_M:
+        scale_m = units.likely(depth)
         raise ValueError(
-            f"half of its points are more than {np.median(depth):.0f} m away, as if they were in millimetres;"
-            " multiply them by 0.001"
+            f"half of its points are more than {np.median(depth):.0f} m away, as if they were in"
+            f" {units.name(scale_m)}; multiply them by {scale_m:g}"
         )
     measured = (np.abs(points) < FARTHEST_M).all(axis=-1) & (points[:, 2] > NEAREST_M)  # NaN is not
     points[~measured] = np.nan

@@ -11,9 +11,10 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud, Floats, Transform
-from nodes.perception_node.input.files.image_files import opened
-from nodes.perception_node.input.projection import cloud_of, fits, is_pose, thinned, thinning
+from nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud, Floats
+from nodes.perception_node.input.files import units
+from nodes.perception_node.input.files.image_files import opened, pose_of
+from nodes.perception_node.input.projection import cloud_of, fits, thinned, thinning
 from schemas import codec
 from schemas.errors import BadFile
 from schemas.wording import few, sentence
@@ -21,15 +22,15 @@ from schemas.wording import few, sentence
 COLOUR, DEPTH, CAMERA = "rgb.png", "depth.png", "camera.json"
 _FILES = (COLOUR, DEPTH, CAMERA)
 
-_FEWEST_MM = 100
-"""A depth picture whose largest number is less is in metres, or of nothing."""
+_MM_M = 0.001
 
 
 class FrameCamera(Struct, frozen=True, kw_only=True):
     """What `camera.json` says: a pinhole [pixel], the corner of the picture at 0, and maybe its pose.
 
-    `width` and `height`: the pictures that it is for, where it says so. `map_from_camera`: (4, 4), row by
-    row, of the optical frame (x right, y down, z forward) [m].
+    `width` and `height`: the pictures that it is for, where it says so. `depth_scale`: metres of 1 in the
+    depth picture, where that is not in millimetres. `map_from_camera`: (4, 4), row by row, of the optical
+    frame (x right, y down, z forward) [m].
     """
 
     fx: float
@@ -38,6 +39,7 @@ class FrameCamera(Struct, frozen=True, kw_only=True):
     cy: float
     width: int | None = None
     height: int | None = None
+    depth_scale: float | None = None
     map_from_camera: tuple[Any, ...] | None = None
 
 
@@ -53,8 +55,10 @@ class FileFrame:
 def frames_in(folder: Path) -> list[Path]:
     """The folders of a dataset's frames, in the order of their names; hidden ones are none.
 
-    Raises BadFile when there are none.
+    A folder that is a frame itself is the only one of a dataset. Raises BadFile when there are none.
     """
+    if (folder / CAMERA).exists():
+        return [folder]
     try:
         found = sorted(p for p in folder.iterdir() if p.is_dir() and not p.name.startswith("."))
     except NotADirectoryError:
@@ -89,18 +93,18 @@ def read_frame(folder: Path) -> FileFrame:
             raise ValueError("its numbers are floats; it must have whole ones of 16 bits: metres times 1000")
         if numbers is None:
             raise ValueError("it must have 16 bits in a single channel: millimetres, 0 for nothing seen")
-        if 0 < numbers.max(initial=0) < _FEWEST_MM:
-            raise ValueError(
-                f"its largest number is {numbers.max()}, as if it were in metres; it must be in"
-                " millimetres, metres times 1000"
-            )
         if rgb.shape[:2] != numbers.shape:
             (height, width), (rows, columns) = rgb.shape[:2], numbers.shape
             raise ValueError(f"colour is {width} x {height} pixels, depth {columns} x {rows}")
         if not numbers.any():
             raise ValueError("it has no depth anywhere: all of its numbers are 0")
+        if camera.depth_scale is None and (told := units.doubt(numbers, _MM_M)) is not None:
+            raise ValueError(
+                f'{told}; it must be in millimetres, or say "depth_scale": {told.scale_m:g} in {CAMERA}'
+            )
         of = CAMERA
-        return _put_together(rgb, (numbers * np.float32(0.001)).astype(np.float32), camera)
+        scale_m = np.float32(camera.depth_scale or _MM_M)
+        return _put_together(rgb, (numbers * scale_m).astype(np.float32), camera)
     except OSError as error:
         raise BadFile(f"{folder.name}/{of} cannot be read: {error.strerror}") from None
     except ValueError as error:
@@ -109,9 +113,12 @@ def read_frame(folder: Path) -> FileFrame:
 
 def _camera(path: Path) -> FrameCamera:
     try:
-        return msgspec.json.decode(path.read_bytes(), type=codec.prepared(FrameCamera))
+        camera = msgspec.json.decode(path.read_bytes(), type=codec.prepared(FrameCamera))
     except msgspec.DecodeError as error:
         raise ValueError(sentence(error, FrameCamera)) from None
+    if camera.depth_scale is not None and not camera.depth_scale > 0:
+        raise ValueError("depth_scale must be positive")
+    return camera
 
 
 def _put_together(rgb: NDArray[np.uint8], depth_m: Floats, camera: FrameCamera) -> FileFrame:
@@ -125,19 +132,7 @@ def _put_together(rgb: NDArray[np.uint8], depth_m: Floats, camera: FrameCamera) 
         )
     step = thinning(width, height)
     depth_m, colours, intrinsics = thinned(depth_m, rgb, intrinsics, step)
-    cloud = cloud_of(depth_m, colours, intrinsics, _pose(camera.map_from_camera))
+    cloud = cloud_of(depth_m, colours, intrinsics, pose_of(camera.map_from_camera))
     if cloud.measured < FEWEST_POINTS:
         raise ValueError(f"{DEPTH} has no depth from {NEAREST_M:g} to {FARTHEST_M:g} m")
     return FileFrame(cloud, step, (height, width))
-
-
-def _pose(rows: tuple[Any, ...] | None) -> Transform | None:
-    if rows is None:
-        return None
-    try:
-        numbers = np.array(rows, dtype=float)
-    except (TypeError, ValueError):
-        numbers = np.empty(0)
-    if numbers.size != 16 or not is_pose(numbers.reshape(4, 4)):
-        raise ValueError("map_from_camera is not a 4 x 4 pose matrix: rotation, position, last row 0 0 0 1")
-    return numbers.reshape(4, 4)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -10,7 +11,8 @@ from msgspec import Struct
 from numpy.typing import NDArray
 from PIL import Image
 
-from nodes.perception_node.input.cloud import FARTHEST_M, Cloud
+from nodes.perception_node.input.cloud import Cloud, Transform
+from nodes.perception_node.input.files import units
 from nodes.perception_node.input.projection import cloud_of, fits, is_pose
 from schemas import codec
 from schemas.wording import sentence
@@ -18,8 +20,6 @@ from schemas.wording import sentence
 _DEPTH_MODES = ("I;16", "I;16B", "I", "F")
 _MOST_PIXELS = 50_000_000
 _MM_M = 0.001
-_FEWEST_MM = 100
-"""A depth picture whose largest number is less is in metres, or of nothing."""
 
 
 class PinholeCamera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -27,15 +27,23 @@ class PinholeCamera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     `depth_scale` makes metres of a depth picture's numbers; where nobody says, whole numbers are millimetres
     and floats metres.
-    `map_from_camera` is the (4, 4) pose of the camera row by row, where somebody knows it.
+    `width` and `height`: the pictures that it is for, where it says so. `map_from_camera` is the (4, 4) pose
+    of the camera, sixteen numbers or four rows, where somebody knows it.
     """
 
     fx: float
     fy: float
     cx: float
     cy: float
+    width: int | None = None
+    height: int | None = None
     depth_scale: float | None = None
-    map_from_camera: tuple[float, ...] | None = None
+    map_from_camera: tuple[Any, ...] | None = None
+
+    @property
+    def size(self) -> tuple[int, int] | None:
+        """Width and height of the pictures that it is for, where it says so."""
+        return (self.width, self.height) if self.width and self.height else None
 
 
 def read_camera(path: Path) -> PinholeCamera:
@@ -46,13 +54,21 @@ def read_camera(path: Path) -> PinholeCamera:
         raise ValueError(f"invalid intrinsics: {sentence(error, PinholeCamera)}") from None
     if not (camera.fx > 0 and camera.fy > 0 and (camera.depth_scale is None or camera.depth_scale > 0)):
         raise ValueError("invalid intrinsics: fx, fy and depth_scale must be positive")
-    if camera.map_from_camera is not None:
-        numbers = np.array(camera.map_from_camera)
-        if numbers.size != 16 or not is_pose(numbers.reshape(4, 4)):
-            raise ValueError(
-                "map_from_camera is not a 4 x 4 pose matrix: rotation, position, last row 0 0 0 1"
-            )
+    pose_of(camera.map_from_camera)
     return camera
+
+
+def pose_of(numbers: tuple[Any, ...] | None) -> Transform | None:
+    """The (4, 4) pose of sixteen numbers or four rows. Raises ValueError for what is none."""
+    if numbers is None:
+        return None
+    try:
+        found = np.array(numbers, dtype=float)
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    if found.size != 16 or not is_pose(found.reshape(4, 4)):
+        raise ValueError("map_from_camera is not a 4 x 4 pose matrix: rotation, position, last row 0 0 0 1")
+    return found.reshape(4, 4)
 
 
 def is_depth(path: Path) -> bool:
@@ -73,11 +89,14 @@ def read_pictures(depth: Path, color: Path | None, camera: PinholeCamera) -> Clo
             raise ValueError(f"colour is {w} x {h} pixels, depth {width} x {height}")
     intrinsics = np.array([[camera.fx, 0, camera.cx + 0.5], [0, camera.fy, camera.cy + 0.5], [0, 0, 1]])
     height, width = depth_m.shape
+    if (of := camera.size or (width, height)) != (width, height):
+        raise ValueError(
+            f"the intrinsics are those of pictures of {of[0]} x {of[1]}; these have {width} x {height} pixels"
+        )
     if not fits(intrinsics, width, height):
         said = " ".join(f"{name} {getattr(camera, name):g}" for name in ("fx", "fy", "cx", "cy"))
         raise ValueError(f"the intrinsics {said} do not fit a picture of {width} x {height} pixels")
-    pose = None if camera.map_from_camera is None else np.reshape(camera.map_from_camera, (4, 4))
-    return cloud_of(depth_m, colors, intrinsics, pose)
+    return cloud_of(depth_m, colors, intrinsics, pose_of(camera.map_from_camera))
 
 
 def _depth_m(path: Path, camera: PinholeCamera) -> NDArray[np.float32]:
@@ -86,18 +105,10 @@ def _depth_m(path: Path, camera: PinholeCamera) -> NDArray[np.float32]:
         numbers, is_float = np.asarray(image, dtype=np.float32), image.mode == "F"
     if camera.depth_scale is not None:
         return np.asarray(numbers * np.float32(camera.depth_scale), np.float32)
-    seen = numbers[np.isfinite(numbers) & (numbers > 0)]
-    if is_float and len(seen) and np.median(seen) > FARTHEST_M:
-        raise ValueError(
-            f"half of its numbers are more than {np.median(seen):.0f}, as if they were millimetres; say"
-            ' "depth_scale": 0.001 in the intrinsics'
-        )
-    if not is_float and len(seen) and seen.max() < _FEWEST_MM:
-        raise ValueError(
-            f'its largest number is {seen.max():.0f}, as if it were in metres; say "depth_scale": 1 in the'
-            " intrinsics"
-        )
-    return numbers if is_float else np.asarray(numbers * np.float32(_MM_M), np.float32)
+    scale_m = 1.0 if is_float else _MM_M
+    if (told := units.doubt(numbers, scale_m)) is not None:
+        raise ValueError(f'{told}; say "depth_scale": {told.scale_m:g} in the intrinsics')
+    return np.asarray(numbers * np.float32(scale_m), np.float32)
 
 
 def opened(path: Path) -> Image.Image:

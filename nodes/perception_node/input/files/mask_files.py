@@ -10,6 +10,7 @@ import msgspec
 import numpy as np
 
 from nodes.perception_node.input.files.image_files import opened
+from nodes.perception_node.input.files.mask_polygons import counts_of
 from nodes.perception_node.input.masks import Masks, of_numbers, of_runs
 from schemas.errors import BadFile
 from schemas.perception import MaskRun
@@ -25,7 +26,7 @@ def read_masks(path: Path, height: int, width: int) -> Masks:
     try:
         match path.suffix.lower():
             case ".json":
-                return of_runs(_runs(path.read_bytes()), height, width)
+                return of_runs(_runs(path.read_bytes(), height, width), height, width)
             case ".png":
                 with opened(path) as image:
                     numbers = np.asarray(image)
@@ -46,7 +47,7 @@ def read_masks(path: Path, height: int, width: int) -> Masks:
         raise BadFile(f"{path}: {error}") from None
 
 
-def _runs(data: bytes) -> list[MaskRun]:
+def _runs(data: bytes, height: int, width: int) -> list[MaskRun]:
     """Masks, with labels where there are names of categories. Raises ValueError."""
     try:
         found = msgspec.json.decode(data)
@@ -66,19 +67,19 @@ def _runs(data: bytes) -> list[MaskRun]:
         raise ValueError(
             f"it has masks of {len(pictures)} pictures (image_id); each picture needs its own file"
         )
-    return [_run(told, names) for told in found]
+    return [_run(told, names, height, width) for told in found]
 
 
-def _run(told: Any, names: dict[str, str]) -> MaskRun:
-    if not isinstance(told, dict) or not isinstance(told.get("segmentation"), dict):
-        raise ValueError(
-            "each mask needs a segmentation with size and counts (RLE); polygons are not supported"
-        )
+def _run(told: Any, names: dict[str, str], height: int, width: int) -> MaskRun:
+    code = told.get("segmentation") if isinstance(told, dict) else None
+    if isinstance(code, list) and code:
+        code = {"size": (height, width), "counts": counts_of(code, height, width)}
+    if not isinstance(told, dict) or not isinstance(code, dict):
+        raise ValueError("each mask needs a segmentation: size and counts (RLE), or a list of polygons")
     category = told.get("category_id")
     label = told.get("category") or told.get("label") or names.get(str(category)) or ""
     if not label and category is not None:
         label = str(category)
-    code = told["segmentation"]
     mask = {
         "size": code.get("size"),
         "counts": code.get("counts"),

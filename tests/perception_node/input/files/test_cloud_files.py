@@ -86,7 +86,9 @@ def test_pictures_need_intrinsics_and_depth(tmp_path):
     [
         (np.full((6, 8), 2.0, np.float32), None),
         (np.full((6, 8), 2000.0, np.float32), 'millimetres; say "depth_scale": 0.001'),
-        (np.full((6, 8), 2, np.uint16), 'in metres; say "depth_scale": 1 in'),
+        (np.full((6, 8), 2, np.uint16), 'were metres; say "depth_scale": 1 in'),
+        (np.full((6, 8), 13_000, np.uint16), 'tenths of a millimetre; say "depth_scale": 0.0001 in'),
+        (np.full((6, 8), 90, np.uint16), 'were centimetres; say "depth_scale": 0.01 in'),
     ],
 )
 def test_depth_in_floats_is_in_metres_and_another_unit_is_told(tmp_path, numbers, said):
@@ -120,11 +122,26 @@ def test_bad_intrinsics_are_refused(tmp_path, content):
         list(read_frames((rgb, depth), camera))
 
 
+def test_the_camera_of_a_folder_of_frames_will_do(tmp_path):
+    rgb, depth, camera = write_pictures(tmp_path)
+    camera.write_text(json.dumps({**CAMERA, "width": 8, "height": 6, "map_from_camera": np.eye(4).tolist()}))
+    [(_, cloud)] = read_frames((rgb, depth), camera)
+    assert (cloud.map_from_camera == np.eye(4)).all()
+    camera.write_text(json.dumps({**CAMERA, "width": 640, "height": 480}))
+    with pytest.raises(BadFile, match="pictures of 640 x 480; these have 8 x 6 pixels"):
+        list(read_frames((rgb, depth), camera))
+
+
 def test_the_intrinsics_of_another_camera_is_told(tmp_path):
     rgb, depth, camera = write_pictures(tmp_path)
     camera.write_text(json.dumps({**CAMERA, "cx": 319.5}))
     with pytest.raises(BadFile, match=r"fx 50 .* cx 319\.5 .* do not fit a picture of 8 x 6 pixels"):
         list(read_frames((rgb, depth), camera))
+
+
+def test_a_folder_is_told_how_to_give_it(tmp_path):
+    with pytest.raises(BadFile, match=r"is a folder; .* semmap perceive --frames "):
+        read_cloud(tmp_path)
 
 
 def test_what_is_no_cloud_is_refused_in_one_line(tmp_path):
@@ -215,3 +232,8 @@ def test_a_point_behind_the_camera_turns_nothing(tmp_path):
 def test_a_cloud_in_millimetres_is_told_with_the_factor(tmp_path, sign):
     with pytest.raises(BadFile, match=r"more than 1000 m away, as if .* multiply them by 0\.001"):
         read_cloud(written(tmp_path, sign * 1000 * POINTS))
+
+
+def test_a_cloud_in_centimetres_is_told_with_the_factor(tmp_path):
+    with pytest.raises(BadFile, match=r"more than 200 m away, .* centimetres; multiply them by 0\.01$"):
+        read_cloud(written(tmp_path, 200 * POINTS))

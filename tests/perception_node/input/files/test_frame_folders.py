@@ -40,6 +40,12 @@ def test_a_pose_is_sixteen_numbers_or_four_rows(tmp_path, flat):
     assert frame.cloud.map_from_camera.tolist() == pose.tolist()
 
 
+def test_depth_is_in_the_unit_that_the_camera_tells(tmp_path):
+    depth = np.full((48, 64), 15_000, np.uint16)
+    frame = read_frame(write_frame(tmp_path / "a", depth=depth, depth_scale=0.0001))
+    assert frame.cloud.points_camera[0, 0, 2] == pytest.approx(1.5)
+
+
 def test_a_large_picture_is_thinned(tmp_path):
     large = np.full((1200, 1600), 2000, np.uint16)
     lens = {"fx": 1500.0, "fy": 1500.0, "cx": 800.0, "cy": 600.0}
@@ -52,6 +58,8 @@ def test_a_large_picture_is_thinned(tmp_path):
     [
         ({"depth": np.full((24, 32), 900, np.uint16)}, "colour is 64 x 48 pixels, depth 32 x 24"),
         ({"depth": np.full((48, 64), 2, np.uint16)}, "millimetres"),
+        ({"depth": np.full((48, 64), 15_000, np.uint16)}, 'or say "depth_scale": 0.0001 in camera.json'),
+        ({"depth_scale": 0}, "depth_scale must be positive"),
         ({"depth": np.full((48, 64), 200, np.uint8)}, "16 bits"),
         ({"depth": np.zeros((48, 64), np.uint16)}, "no depth"),
         ({"width": 640, "height": 480}, "pictures of 640 x 480; these have 64 x 48 pixels"),
@@ -92,6 +100,11 @@ def test_frames_are_the_folders_in_the_order_of_their_names(tmp_path):
         (tmp_path / name).mkdir()
     (tmp_path / "readme.txt").touch()
     assert [path.name for path in frames_in(tmp_path)] == ["a10", "a9", "b"]
+
+
+def test_a_frame_is_a_dataset_of_itself(tmp_path):
+    folder = write_frame(tmp_path / "table7")
+    assert frames_in(folder) == [folder]
 
 
 def test_a_folder_without_frames_is_refused(tmp_path):

@@ -25,6 +25,24 @@ def test_results_and_datasets_of_coco(tmp_path):
     assert found.labels.tolist() == [[0, 1, 1], [0, 0, 0]]
 
 
+@pytest.mark.parametrize(
+    ("polygons", "pixels"),
+    [
+        ([[1, 0, 3, 0, 3, 2, 1, 2]], [[0, 1, 1, 0], [0, 1, 1, 0], [0, 0, 0, 0]]),
+        ([[0, 0, 1, 0, 1, 3, 0, 3], [3, 0, 4, 0, 4, 1, 3, 1]], [[1, 0, 0, 1], [1, 0, 0, 0], [1, 0, 0, 0]]),
+        ([[0, 0, 4, 0, 0, 3]], [[1, 1, 1, 0], [1, 1, 0, 0], [1, 0, 0, 0]]),
+        ([[-5, -5, 9, -5, 9, 9, -5, 9]], [[1] * 4] * 3),
+        ([[0, 0, 4, 0, 4, 3, 3, 3, 3, 1, 1, 1, 1, 3, 0, 3]], [[1] * 4, [1, 0, 0, 1], [1, 0, 0, 1]]),
+        ([[5, 0, 7, 0, 7, 2]], [[0] * 4] * 3),
+    ],
+)
+def test_polygons_hold_the_pixels_whose_middle_is_within(tmp_path, polygons, pixels):
+    (tmp_path / "a.json").write_text(json.dumps([{"segmentation": polygons, "category": "cup"}]))
+    found = read_masks(tmp_path / "a.json", 3, 4)
+    assert found.labels.tolist() == pixels
+    assert found.said == (Said("cup", 1.0),)
+
+
 def test_label_images(tmp_path):
     np.save(tmp_path / "a.npy", LABELS)
     Image.fromarray(LABELS.astype(np.uint8)).save(tmp_path / "a.png")
@@ -40,7 +58,9 @@ def test_label_images(tmp_path):
         ("a.json", b"{", "not JSON"),
         ("a.json", b"{}", "expected a list of masks"),
         ("a.json", b"[3]", "needs a segmentation"),
-        ("a.json", b'[{"segmentation": [[1, 2, 3]]}]', "polygons are not supported"),
+        ("a.json", b'[{"segmentation": [[1, 2, 3]]}]', "polygon needs x and y of at least three corners"),
+        ("a.json", b'[{"segmentation": [[0, 0, 9e9, 0, 9, 9]]}]', "far beyond the picture"),
+        ("a.json", b'[{"segmentation": []}]', "or a list of polygons"),
         ("a.json", b'[{"segmentation": {"size": [2, 2], "counts": [4]}}]', "2 x 2 pixels"),
         ("a.json", b'[{"segmentation": {"size": "x", "counts": [4]}}]', r"a\.json: a mask's size must be"),
         (

@@ -1,0 +1,29 @@
+"""Learn to know our own models by sight, and to tell that a thing is none of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.recognition.perceptron import Perceptron
+from nodes.training.recognition.fitting import Numbers, classifier
+from nodes.training.recognition.gradient_descent import Recipe
+from nodes.training.recognition.learn_novelty import far_off
+
+_FAR = 0.05
+"""How many things such as there are none come to all that there are: they are none of our models."""
+
+
+def learn_familiar(
+    features: Sequence[Numbers], leaf: NDArray[np.int64], leaves: int, recipe: Recipe
+) -> Perceptron:
+    """Scores (N, leaves + 1) from all features, of each sort (N, its own number).
+
+    `leaf`: (N,) of which leaf's model it has the very form, `leaves` for none.
+    """
+    far = far_off(features, round(_FAR * len(leaf)), np.random.default_rng(0))
+    seen = np.concatenate([np.concatenate(both) for both in zip(features, far, strict=True)], axis=1)
+    aim = np.append(leaf, np.full(len(far[0]), leaves))
+    return classifier(seen, aim, leaves + 1, recipe, seed=leaves)

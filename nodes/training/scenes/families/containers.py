@@ -1,0 +1,137 @@
+"""Bottles, jars, cans, vases, flower pots: what holds something and has no handle."""
+
+from __future__ import annotations
+
+from nodes.sim_node.models.parts import Colour, Parts
+from nodes.training.scenes.families.lots import Lots
+from nodes.training.scenes.solids import full, hollow, lathe, smooth
+
+
+def bottle(lots: Lots, colour: Colour) -> Parts:
+    """Round or flat, with or without shoulders, a waist, a cap."""
+    z = lots(0.12, 0.34)
+    radius = min(z * lots(0.11, 0.33), 0.08)
+    neck = radius * lots(0.25, 0.6)
+    shoulder, base = z * lots.even(0.35, 0.8), radius * lots.even(0.85, 1.0)
+    slope = min(z * lots.even(0.04, 0.3), 0.94 * z - shoulder)
+    waist = radius * (lots.even(0.8, 1.0) if lots.chance(0.4) else 1.0)
+    cap_radius, cap = neck * lots.even(1.0, 1.4), z * lots.even(0.03, 0.14)
+    outside = smooth(
+        [
+            (base, 0.0),
+            (radius, 0.06 * z),
+            (waist, 0.5 * shoulder),
+            (radius, 0.9 * shoulder),
+            (radius, shoulder),
+            (neck + 0.4 * (radius - neck) * lots.even(0.5, 1.5), shoulder + 0.6 * slope),
+            (neck, shoulder + slope),
+            (neck, z - 0.3 * cap),
+        ]
+    )
+    flat = lots.even(0.5, 0.9) if lots.chance(0.35) else 1.0
+    solids = [lathe(full(outside)).scaled(y=flat).part(colour)]
+    if lots.chance(0.85):
+        lid = lathe(full([(cap_radius, z - cap), (cap_radius, z)]))
+        solids.append(lid.scaled(y=max(flat, 0.7)).part(lots.other(colour)))
+    return solids
+
+
+def wine_bottle(lots: Lots, colour: Colour) -> Parts:
+    """Slim, with high shoulders."""
+    z, radius = lots(0.26, 0.34), lots(0.033, 0.044)
+    neck, shoulder = radius * lots(0.32, 0.45), z * lots.even(0.48, 0.66)
+    slope = z * lots.even(0.06, 0.2)
+    outside = smooth(
+        [
+            (0.95 * radius, 0.0),
+            (radius, 0.03 * z),
+            (radius, shoulder),
+            (0.5 * (radius + neck), shoulder + 0.6 * slope),
+            (neck, shoulder + slope),
+            (neck, 0.97 * z),
+            (1.15 * neck, z),
+        ]
+    )
+    return [lathe(full(outside)).part(colour)]
+
+
+def jar(lots: Lots, colour: Colour) -> Parts:
+    """Stout, with a lid."""
+    radius = lots(0.026, 0.07)
+    z = radius * lots(1.4, 3.4)
+    lid_radius, lid = radius * lots.even(0.7, 1.03), z * lots.even(0.1, 0.26)
+    outside = smooth(
+        [
+            (0.93 * radius, 0.0),
+            (radius, 0.08 * z),
+            (radius * lots.even(0.93, 1.04), 0.5 * z),
+            (radius, (z - lid) * lots.even(0.8, 0.95)),
+            (0.96 * lid_radius, z - lid),
+        ]
+    )
+    return [
+        lathe(full(outside)).part(colour),
+        lathe(full([(lid_radius, z - lid), (lid_radius, 0.97 * z), (0.95 * lid_radius, z)])).part(
+            lots.other(colour)
+        ),
+    ]
+
+
+def drink_can(lots: Lots, colour: Colour) -> Parts:
+    """Narrower at both ends, its top sunk."""
+    radius = lots(0.025, 0.035)
+    z, neck = radius * lots(2.6, 5.2), radius * lots.even(0.78, 0.96)
+    taper = z * lots.even(0.05, 0.12)
+    outside = smooth(
+        [(0.8 * radius, 0.0), (radius, 0.5 * taper), (radius, 0.5 * z), (radius, z - taper), (neck, z)], 1
+    )
+    return [lathe(hollow(outside, 0.05 * radius, z - lots.even(0.002, 0.006))).part(colour)]
+
+
+def food_can(lots: Lots, colour: Colour) -> Parts:
+    """With rims, sometimes with a lid of another colour."""
+    radius = lots(0.03, 0.08)
+    z, rim = radius * lots(0.6, 3.4), radius * lots.even(1.0, 1.04)
+    edge = min(0.004, 0.1 * z)
+    outside = [
+        (rim, 0.0),
+        (rim, edge),
+        (radius, 1.5 * edge),
+        (radius, z - 1.5 * edge),
+        (rim, z - edge),
+        (rim, z),
+    ]
+    sunk = lots.even(0.001, 0.006)
+    solids = [lathe(hollow(outside, 0.05 * radius, z - sunk)).part(colour)]
+    if lots.chance(0.3):  # a plastic lid
+        solids.append(
+            lathe(full([(1.02 * rim, z - 2 * edge), (1.02 * rim, 1.01 * z)])).part(lots.other(colour))
+        )
+    return solids
+
+
+def vase(lots: Lots, colour: Colour) -> Parts:
+    """With a belly and a neck."""
+    z = lots(0.13, 0.4)
+    radius = min(z * lots(0.16, 0.42), 0.12)
+    neck = radius * lots.even(0.28, 0.75)
+    outside = smooth(
+        [
+            (radius * lots.even(0.4, 0.85), 0.0),
+            (radius, z * lots.even(0.25, 0.5)),
+            (0.6 * radius + 0.4 * neck, z * lots.even(0.55, 0.7)),
+            (neck, z * lots.even(0.75, 0.9)),
+            (min(neck * lots.even(1.0, 1.9), radius), z),
+        ]
+    )
+    return [lathe(hollow(outside, 0.004, 0.04 * z)).part(colour)]
+
+
+def flower_pot(lots: Lots, colour: Colour) -> Parts:
+    """With a rim, filled to some height."""
+    radius = lots(0.045, 0.13)
+    z = radius * lots(1.2, 2.2)
+    bottom, rim = radius * lots.even(0.58, 0.85), radius * lots.even(0.9, 1.0)
+    edge = z * lots.even(0.12, 0.28)
+    outside = [(bottom, 0.0), (rim * 0.97, z - edge), (radius, z - edge), (radius, z)]
+    return [lathe(hollow(outside, 0.07 * radius, z * lots.even(0.1, 0.85))).part(colour)]

@@ -1,0 +1,72 @@
+"""All families, and drawing one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from nodes.sim_node.models.model_files import keyed
+from nodes.sim_node.models.parts import Colour, Parts
+from nodes.training.scenes.families.containers import (
+    bottle,
+    drink_can,
+    flower_pot,
+    food_can,
+    jar,
+    vase,
+    wine_bottle,
+)
+from nodes.training.scenes.families.cookware import pan, pot, teapot
+from nodes.training.scenes.families.lots import Lots
+from nodes.training.scenes.families.produce import apple, lemon, onion, orange, other_fruit, pear, potato
+from nodes.training.scenes.families.tableware import bowl, cup, glass, pitcher, plate, stem_glass
+from nodes.training.scenes.families.utensils import ladle, screwdriver, spatula, sponge
+from nodes.training.scenes.simulated_scenes import foreign_label
+
+Draw = Callable[[Lots, Colour], Parts]
+
+
+class Family(NamedTuple):
+    """`kind`: the model whose class they have; of a class without a model, see `foreign_label`."""
+
+    kind: str
+    draw: Draw
+
+
+def drawn(family: Family, colour: Colour, rng: np.random.Generator) -> Parts:
+    """One of a family, upon the ground, in this colour and those that go with it."""
+    return keyed(family.draw(Lots(rng), colour), f"{family.kind} {rng.integers(1 << 62)}")
+
+
+FAMILIES: tuple[Family, ...] = (
+    *(Family("bottle", bottle),) * 2,
+    Family("wine_bottle", wine_bottle),
+    Family("jar", jar),
+    Family("can", drink_can),
+    Family("can", food_can),
+    *(Family("cup", cup),) * 2,
+    Family("glass", glass),
+    Family("glass", stem_glass),
+    Family("bowl", bowl),
+    Family("plate", plate),
+    *(Family("pitcher", pitcher),) * 2,
+    Family("pot", pot),
+    *(Family("kettle", teapot),) * 2,
+    Family("pan", pan),
+    Family("vase", vase),
+    Family("flower_pot", flower_pot),
+    *(Family("apple", apple),) * 2,
+    *(Family("pear", pear),) * 2,
+    Family("orange", orange),
+    Family("lemon", lemon),
+    Family("potato", potato),
+    Family("onion", onion),
+    Family(foreign_label("fruit", "Fruit", new=False), other_fruit),
+    Family(foreign_label("spatula", "Utensil", new=False), spatula),
+    Family(foreign_label("ladle", "Utensil", new=False), ladle),
+    Family("screwdriver", screwdriver),
+    Family(foreign_label("sponge", "Cleaner", new=False), sponge),
+)
+"""Those that differ most among themselves are there twice."""
