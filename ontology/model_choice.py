@@ -16,6 +16,8 @@ from schemas import errors
 from schemas.entities import Size
 
 _WORD = re.compile(r"[A-Z]?[^\W\d_A-Z]+|[A-Z]+(?![^\W\d_A-Z])")
+_DIGITS = "0123456789"
+"""They are in no word: `cup1` and `cup2` say the same."""
 
 
 def chosen(model: str, name: str, size_m: Size | None) -> str:
@@ -26,7 +28,7 @@ def chosen(model: str, name: str, size_m: Size | None) -> str:
     """
     if not varieties_of(model):
         return model
-    candidates = _said_by(model, frozenset(word.lower() for word in _WORD.findall(name)))
+    candidates = _said_by(model, name.rstrip(_DIGITS))
     if not candidates:
         if size_m is None:
             return model
@@ -52,8 +54,9 @@ def _told_by_size(model: str) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=4096)
-def _said_by(model: str, words: frozenset[str]) -> tuple[str, ...]:
+def _said_by(model: str, name: str) -> tuple[str, ...]:
     """The varieties of which the most words are in a name, as in `wine_glass2`, `WineGlass`, `wineglass`."""
+    words = {word.lower() for word in _WORD.findall(name)}
     found = {variety: _said(variety, words, model) for variety in varieties_of(model)}
     most = max(found.values(), default=0)
     return tuple(variety for variety, count in found.items() if count == most > 0)
@@ -67,28 +70,25 @@ def _said(variety: str, words: Set[str], model: str) -> int:
     return max(map(len, said), default=0)
 
 
-@lru_cache(maxsize=4096)
 def _nearest(candidates: tuple[str, ...], size_m: Size) -> str:
     """The model that is nearest to a size.
 
-    How far off one is: the squared logarithms of the ratios of extents, and once more of proportions.
+    How far off one is: the squared logarithms of the ratios of extents, and once more of proportions. That of
+    proportions, in which the mean is taken off each, is the former less a third of their sum squared.
     """
     x, y, z = map(math.log, size_m)
-
-    def distance(model: str) -> float:
-        own = _logarithms(model)
-        if own is None:
-            return math.inf
+    nearest, least = candidates[0], math.inf
+    for model in candidates:  # this runs for every entity of a load
+        if (own := _logarithms(model)) is None:
+            continue
         (a, b, c), turns = own
-        straight = _apart(x - a, y - b, z - c)
-        return min(straight, _apart(y - a, x - b, z - c)) if turns else straight
-
-    return min(candidates, key=distance)
-
-
-def _apart(x: float, y: float, z: float) -> float:
-    mean = (x + y + z) / 3.0
-    return x * x + y * y + z * z + (x - mean) ** 2 + (y - mean) ** 2 + (z - mean) ** 2
+        floor = (x - a) ** 2 + (y - b) ** 2
+        if turns:
+            floor = min(floor, (y - a) ** 2 + (x - b) ** 2)
+        apart = 2.0 * (floor + (z - c) ** 2) - (x - a + y - b + z - c) ** 2 / 3.0
+        if apart < least:
+            nearest, least = model, apart
+    return nearest
 
 
 @cache

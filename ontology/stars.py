@@ -8,6 +8,8 @@ New individuals are named after the entity, never after their text, which may ho
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from ontology import vocabulary as v
 from schemas.entities import IDENTITY, Pose, Size
 from schemas.explanations import Term, Triple
@@ -16,6 +18,7 @@ STAR_PROPERTIES = (v.HAS_POSITION, v.HAS_SIZE, v.HAS_PREFERRED_REFERENCE, v.HAS_
 """The edges from an entity to the individuals of its star."""
 COORDINATE_PROPERTIES = (*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ)
 """The numbers that say where an entity is."""
+_FLOAT = f'"^^{v.XSD_FLOAT}'
 
 
 def star(
@@ -72,7 +75,7 @@ def preferred_reference(entity: Term, node: Term, text: str) -> list[Triple]:
     return [
         (entity, v.HAS_PREFERRED_REFERENCE, node),
         (node, v.RDF_TYPE, v.PREFERRED_REFERENCE),
-        (node, v.LEXICAL_REFERENCE, v.literal(text)),
+        (node, v.LEXICAL_REFERENCE, _word(text)),
     ]
 
 
@@ -81,12 +84,18 @@ def alternative_reference(entity: Term, node: Term, text: str) -> list[Triple]:
     return [
         (entity, v.HAS_ALTERNATIVE_REFERENCE, node),
         (node, v.RDF_TYPE, v.ALTERNATIVE_REFERENCE),
-        (node, v.LEXICAL_REFERENCE, v.literal(text)),
+        (node, v.LEXICAL_REFERENCE, _word(text)),
     ]
+
+
+@lru_cache(maxsize=1024)
+def _word(text: str) -> Term:
+    """The literal of what is said of very many things: then it is one object."""
+    return v.literal(text)
 
 
 def _numbers(node: Term, properties: tuple[Term, ...], values: tuple[float, ...]) -> list[Triple]:
     return [
-        (node, predicate, f'"{float(value)!r}"^^{v.XSD_FLOAT}')  # a number has nothing to escape
+        (node, predicate, f'"{float(value)!r}{_FLOAT}')  # a number has nothing to escape
         for predicate, value in zip(properties, values, strict=True)
     ]

@@ -54,7 +54,8 @@ class Announcer:
                     self._put(described)
         for gone in commit.removed:
             self._types.pop(gone.name, None)
-        self._types.update((entity.name, entity.types) for entity in commit.changed)
+        for entity in commit.changed:
+            self._types[entity.name] = entity.types
 
     def _put(self, entity: Described) -> None:
         lost = set(self._types.get(entity.name, ())).difference(entity.types)

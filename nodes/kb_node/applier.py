@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Set
+from collections.abc import Callable, Collection, Mapping, Set
+from itertools import islice
 from typing import Final
 
 from msgspec import structs
@@ -48,12 +49,10 @@ class Applier:
         state = self._state
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = state.reasoner.mentioned(subjects)
-        owners = subjects.union(
-            *(
-                entity_reading.owners(state.reasoner, state.classes, s)
-                for s in steadily(known, state.progress)
-            )
+        about = (
+            entity_reading.owners(state.reasoner, state.classes, s) for s in steadily(known, state.progress)
         )
+        owners, new = (subjects.union(*about), subjects - known) if known else (subjects, subjects)
         state.beliefs.begin()
         restores = bool(commit.undoes)
         contradicted = state.beliefs.contradicted.keys() if restores else frozenset()
@@ -62,8 +61,8 @@ class Applier:
         try:
             if not lenient:
                 self._require_agreement(commit)
-            commit = noted(self._with_effects(commit, owners, change, subjects - known))
-            del owners, subjects, known, change  # of a large commit a third of the memory that it takes
+            commit = noted(self._with_effects(commit, owners, change, new))
+            del owners, subjects, known, new, change  # of a large commit a third of the memory that it takes
             if state.follows:
                 commit = self._with_places(commit)
             if restores and state.follows:
@@ -126,20 +125,22 @@ class Applier:
         except Inconsistent as error:
             raise proofs.refusal(error) from None
 
-    def _change_in_parts(self, delete: Iterable[Triple], insert: Iterable[Triple], lenient: bool) -> Change:
+    def _change_in_parts(
+        self, delete: Collection[Triple], insert: Collection[Triple], lenient: bool
+    ) -> Change:
         """Whatever is a part of a consistent map is consistent, so nothing is refused that should not be."""
         state = self._state
         reasoner, changes = state.beliefs, list[Change]()
-        deleted, inserted = list[Triple](), list[Triple]()
+        deleted = inserted = 0
         try:
             for part in parts(delete, PART, state.progress):
                 changes.append(reasoner.change(part, (), lenient=lenient))
-                deleted += part
+                deleted += len(part)
             for part in parts(insert, PART, state.progress):
                 changes.append(reasoner.change((), part, lenient=lenient))
-                inserted += part
+                inserted += len(part)
         except BaseException:
-            reasoner.change(inserted, deleted)
+            reasoner.change(tuple(islice(insert, inserted)), tuple(islice(delete, deleted)))
             raise
         return Change.together(changes)
 

@@ -93,6 +93,8 @@ class Beliefs:
     @property
     def believed(self) -> Believed:
         """What differs since `begin`."""
+        if not any(self._net.values()):
+            return UNCHANGED
 
         def those(is_computed: bool, wanted: bool) -> tuple[Triple, ...]:
             return tuple([t for t, holds in self._net[is_computed].items() if holds is wanted])
@@ -209,7 +211,7 @@ class Beliefs:
     @property
     def newly_withheld(self) -> list[Triple]:
         """What is withheld and was not at `begin`."""
-        return sorted(fact for fact in self._newly if fact in self.withheld)
+        return sorted(self._newly.keys() & self.withheld.keys())
 
     def told(self, fact: Triple) -> str:
         """What is withheld, and why, in a sentence."""

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from typing import TypeVar
 
 from msgspec import structs
 
 from nodes.kb_node.beliefs import Beliefs, Believed
-from nodes.kb_node.entities import entity_changes, entity_reading
+from nodes.kb_node.entities import entity_changes, entity_reading, foreseeing
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.places import Places
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.relations.facts.ahead import Ahead
+from nodes.kb_node.relations.facts.foreseen import Foreseen
 from nodes.kb_node.relations.facts.place_facts import Facts
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.runtime import gc_pause
@@ -26,6 +30,7 @@ T = TypeVar("T")
 
 _STEP = 2000
 """Entities whose classes are compared in some milliseconds."""
+_HAS_CORES = (os.cpu_count() or 1) > 1
 
 
 class MapState:
@@ -157,7 +162,8 @@ class MapState:
         If it only puts things somewhere and nobody asserts where things are, it suffices to know where all of
         them are; what holds of them is worked out between other work.
         """
-        while not (self.follows and _only_places(transaction)) and self.follow_some():
+        while not self._follows_all and not (self.follows and _only_places(transaction)):
+            self.follow_some()
             self.progress()
 
     def follow_some(self) -> bool:
@@ -200,6 +206,24 @@ class MapState:
         self.follow_places()
         return None if self.beliefs.computed.is_idle else self.beliefs.computed.facts
 
+    @contextmanager
+    def places_foreseen(self, transaction: Transaction) -> Iterator[None]:
+        """Within, a process of its own works out where everything is after a large transaction."""
+        computed = self.beliefs.computed
+        if _HAS_CORES and not computed.is_idle:
+            self._foresee(transaction)
+        try:
+            yield
+        finally:
+            computed.facts.give_up_ahead()
+
+    def _foresee(self, transaction: Transaction) -> None:
+        coming, facts = foreseeing.coming(transaction, self.classes), self.beliefs.computed.facts
+        if coming is not None and len(self) <= len(coming):
+            foreseen = Foreseen(facts.space.limits, self.placed(), coming)
+            with suppress(OSError):  # then it is worked out here
+                facts.work_ahead(Ahead(foreseen, self.progress))
+
     def tidy(self) -> None:
         """What a commit leaves to be done when nobody waits for it."""
         self.beliefs.computed.facts.forget()
@@ -235,7 +259,8 @@ class MapState:
 
     def show(self, changed: Iterable[Entity]) -> None:
         """Let entities be as these."""
-        self.by_name.update((entity.name, entity) for entity in changed)
+        for entity in changed:
+            self.by_name[entity.name] = entity
 
 
 def _only_places(transaction: Transaction) -> bool:

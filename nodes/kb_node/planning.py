@@ -100,8 +100,10 @@ def _spelled_out(
     if not (remove or edit or add):
         return transaction.retract, transaction.insert, []
     draft = entity_writing.Draft(state.reasoner, state.classes, state.tbox, state.by_name)
-    draft.remove([state.entity(name) for name in state.steadily(remove)])
-    notes = list(state.places.left_behind(remove)) if remove else []
+    notes: list[str] = []
+    if remove:
+        draft.remove([state.entity(name) for name in state.steadily(remove)])
+        notes += state.places.left_behind(remove)
     for one in state.steadily(edit):
         draft.edit(state.entity(one.name), one)
         if one.carry:

@@ -13,7 +13,7 @@ _STEP: Final = 1000
 
 def steadily(items: Iterable[T], progress: Callable[[], None]) -> Iterator[T]:
     """The items; `progress` is called now and then."""
-    for i, item in enumerate(items):
+    for i, item in enumerate(items, start=1):
         if i % _STEP == 0:
             progress()
         yield item

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import Any, Final, NamedTuple, TypeVar
 
 from msgspec import structs
@@ -134,25 +135,32 @@ class SemanticMap(MapState):
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         self.follow_enough(transaction)
-        plan = planning.of(self, transaction)
+        if transaction.is_quick:
+            return self._made(transaction)
+        with gc_pause.uncollected(), self.places_foreseen(transaction):
+            return self._made(transaction)
+
+    def _made(self, transaction: Transaction) -> Commit | None:
+        plan, apply = planning.of(self, transaction), self._applier.apply
         if plan is None:
             return None
-        apply, noted = self._applier.apply, self._with_doubts
-        with gc_pause.uncollected():
-            commit = planning.signed(transaction, plan, self.seq + 1)
-            if self._look is not None:
-                return self._taken(apply(commit, self._write, noted))
-            give_up, begun = self.foretell(commit), commit_encoding.early(commit, self.digest)
-            try:
-                return self._taken(apply(commit, lambda whole: self._write(whole, begun=begun), noted))
-            except BaseException:
-                give_up()
-                if begun is not None:
-                    begun.give_up()
-                raise
+        commit = planning.signed(transaction, plan, self.seq + 1)
+        if self._look is not None:
+            return self._taken(apply(commit, self._write, self._noted))
+        give_up, begun = self.foretell(commit), commit_encoding.early(commit, self.digest)
+        write, noted = partial(self._write, begun=begun), partial(self._noted, begun=begun)
+        try:
+            return self._taken(apply(commit, write, noted))
+        except BaseException:
+            give_up()
+            if begun is not None:
+                begun.give_up()
+            raise
 
-    def _with_doubts(self, commit: Commit) -> Commit:
-        """With a word on what it says of places and is not so."""
+    def _noted(self, commit: Commit, *, begun: commit_encoding.EarlyBody | None = None) -> Commit:
+        """With a word on what it says of places and is not so. The body that was `begun` has its entities."""
+        if begun is not None:
+            begun.expect(commit)
         doubts = self.places.doubts(commit)
         return structs.replace(commit, notes=(*commit.notes, *doubts)) if doubts else commit
 
@@ -271,7 +279,7 @@ class SemanticMap(MapState):
     @property
     def checkpoint_is_urgent(self) -> bool:
         """Would the next start have to replay most of the map?"""
-        return self._schedule.is_urgent(len(self.reasoner))
+        return self._schedule.is_urgent(self.reasoner)
 
     @property
     def is_large(self) -> bool:

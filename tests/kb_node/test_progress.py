@@ -4,7 +4,7 @@ from nodes.kb_node.progress import parts, steadily
 def test_the_node_tells_that_it_lives_now_and_then():
     beats = []
     assert list(steadily(range(2500), lambda: beats.append(1))) == list(range(2500))
-    assert len(beats) == 3
+    assert len(beats) == 2
 
 
 def test_parts_are_the_whole():

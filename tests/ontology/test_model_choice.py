@@ -128,7 +128,7 @@ def own_models(tmp_path, monkeypatch):
 
 
 def forget():
-    caches = ("_said_by", "_told_by_size", "_nearest", "_logarithms")
+    caches = ("_said_by", "_told_by_size", "_logarithms")
     for cached in (model_shapes._varieties, *(getattr(model_choice, name) for name in caches)):
         cached.cache_clear()
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from operator import itemgetter
 from typing import NamedTuple
 
+from nodes.kb_node.by_property import by_property
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from ontology import stars
@@ -43,10 +43,10 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     Raises BadFile for a TBox.
     """
     triples = list(triples)
-    said = _by_property(triples)
+    said = by_property(triples)
     if _has_other_numbers(said, classes.number_kinds):
         triples = _with_numbers(triples, classes.number_kinds)
-        said = _by_property(triples)
+        said = by_property(triples)
     types_said = said.get(v.RDF_TYPE, [])
     used = set(map(itemgetter(2), types_said))
     declared = {s for s, _, o in types_said if o in _CLASSES} if used & _CLASSES else set[Term]()
@@ -71,7 +71,7 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
         gone = {s for s, _ in unknown} - {s for s, _, o in types_said if o in described}
         doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
         kept = _without(gone, [t for t in triples if t not in doubtful])
-        said = _by_property(kept)
+        said = by_property(kept)
     notes = (*_unknown_properties(said, classes), *_own_classes(declared, classes), *_halves(said, kept))
     return SortedOut(kept, words, list(notes))
 
@@ -94,7 +94,7 @@ def strangers(
     What the reasoner holds counts, too, as far as it `stays`.
     """
     relations = {s for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, v.OWL_OBJECT_PROPERTY)}
-    said = _by_property(triples)
+    said = by_property(triples)
     related = {o for p in relations & said.keys() for _, _, o in said[p]}
     related.difference_update(map(itemgetter(0), said.get(v.RDF_TYPE, ())))
     strange = {o for o in related if not any(map(stays, reasoner.asserted(o, v.RDF_TYPE, None)))}
@@ -112,13 +112,6 @@ def of_strangers(found: Mapping[Term, Triple]) -> str:
     return f"referenced but not described: {few}{more}"
 
 
-def _by_property(triples: Iterable[Triple]) -> dict[Term, list[Triple]]:
-    found = defaultdict[Term, list[Triple]](list)
-    for triple in triples:
-        found[triple[1]].append(triple)
-    return dict(found)
-
-
 def _with_subclasses(roots: frozenset[Term], below: list[Triple]) -> set[Term]:
     """Classes, and those which triples of `rdfs:subClassOf` put below them."""
     found, above = set(roots), [(s, o) for s, _, o in below]
@@ -130,9 +123,10 @@ def _with_subclasses(roots: frozenset[Term], below: list[Triple]) -> set[Term]:
 def _has_other_numbers(said: Mapping[Term, list[Triple]], kinds: Mapping[Term, Term]) -> bool:
     """Whether a number is of another kind than its property asks for."""
     return any(
-        not o.endswith(kinds[p]) and o.endswith(_NUMBERS)
-        for p in kinds.keys() & said.keys()
-        for _, _, o in said[p]
+        o.endswith(_NUMBERS)
+        for p, kind in kinds.items()
+        for _, _, o in said.get(p, ())
+        if not o.endswith(kind)
     )
 
 

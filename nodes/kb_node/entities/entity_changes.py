@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Set
-from itertools import chain, groupby
-from operator import itemgetter
+from itertools import chain
 from typing import NamedTuple
 
 from msgspec import structs
@@ -13,6 +12,7 @@ from nodes.kb_node import preconditions
 from nodes.kb_node.entities import entity_reading
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.fast_reading import Pattern, Patterns, read_at_sight
+from nodes.kb_node.progress import steadily
 from nodes.kb_node.reasoner import Change, Reasoner
 from ontology import stars
 from ontology import vocabulary as v
@@ -31,7 +31,7 @@ class Reading(NamedTuple):
     classes: ClassTable
     patterns: Patterns
     progress: Callable[[], None]
-    """Called before each entity."""
+    """Called now and then."""
 
 
 def of(
@@ -62,8 +62,7 @@ def of(
         if not reasoner.types(iri).isdisjoint(classes.spatial) or (iri not in new and known(before, iri))
     )
     moved = _moved_nodes(commit, change)
-    for iri in sorted({*at_sight, *concerned}):
-        progress()
+    for iri in steadily(sorted({*at_sight, *concerned}), progress):
         was = None if iri in new else known(before, iri)
         entity: Entity | None
         if moved and was is not None and iri not in moved:
@@ -119,16 +118,16 @@ def _read_at_sight(
     read: dict[Term, Entity] = {}
     seen: set[Term] = set()
     unseen: set[Term] = set()
-    for _, alike in groupby(change.alike, itemgetter(0)):
+    for alike in change.alike:
         pattern: Pattern | None = None
-        for star in alike:
-            individuals = star.run.individuals
+        for star in alike.stars():
+            individuals, _ = star
             entity: Entity | None = None
             if change.others.isdisjoint(individuals):
-                pattern = pattern or reading.patterns.of(star, reading.reasoner, reading.classes)
-                entity = read_at_sight(pattern, star.run, provenance, reading.classes) if pattern else None
+                pattern = pattern or reading.patterns.of(alike, star, reading.reasoner, reading.classes)
+                entity = read_at_sight(pattern, star, provenance, reading.classes) if pattern else None
             if entity is None:
-                unseen.update(star.touched)
+                unseen.update(individuals[place] for place in alike.shape.touched)
             else:
                 read[individuals[0]] = entity
                 seen.update(individuals)

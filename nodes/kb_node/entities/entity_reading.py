@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence, Set
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence, Set
 from itertools import islice
 
 from msgspec import structs
@@ -24,6 +24,8 @@ from schemas.joints import OPENING, SWITCHING
 
 _NAME = re.compile(NAME_PATTERN)
 _FEW = 16
+_MANY_TRIPLES = 100
+"""For one subject: to look through so many takes longer than to look it up."""
 _LONGEST_WAY = 8
 _IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
 _OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
@@ -34,9 +36,12 @@ Objects = Mapping[Term, Sequence[Term]]
 About = Callable[[Term], Objects]
 
 
-def about(reasoner: Reasoner, triples: Iterable[Triple], new: Set[Term]) -> About:
-    """What is asserted of each subject; of `new` ones, `triples` hold all there is."""
-    if not new:
+def about(reasoner: Reasoner, triples: Collection[Triple], new: Set[Term]) -> About:
+    """What is asserted of each subject; of `new` ones, `triples` hold all there is.
+
+    Where these are few among very many, they are looked up as well.
+    """
+    if len(triples) > _MANY_TRIPLES * len(new):
         return reasoner.about
     at_hand: dict[Term, dict[Term, list[Term]]] = {s: {} for s in new}
     for s, p, o in triples:
@@ -136,6 +141,7 @@ def entity_of(
     where the class, the name and the size say it. Raises BadRequest for one that cannot be named.
     """
     name = _name(iri, kind.class_name)
+    stated = properties or {}
     return Entity(
         name=name,
         class_=kind.class_name,
@@ -147,10 +153,10 @@ def entity_of(
         alternative_references=tuple(alternatives),
         conflict=conflict,
         tracked=tracked,
-        properties=properties or {},
-        joint_provenance=provenance if _states(properties, OPENING) else None,
-        switch_provenance=provenance if _states(properties, SWITCHING) else None,
-        grip_provenance=provenance if _states(properties, GRASPING) else None,
+        properties=stated,
+        joint_provenance=None if stated.keys().isdisjoint(OPENING) else provenance,
+        switch_provenance=None if stated.keys().isdisjoint(SWITCHING) else provenance,
+        grip_provenance=None if stated.keys().isdisjoint(GRASPING) else provenance,
         place=kind.place,
         fixed=kind.fixed,
         model=model or chosen(kind.model, name, size_m),
@@ -159,11 +165,6 @@ def entity_of(
         shape_provenance=provenance,
         reference_provenance=provenance,
     )
-
-
-def _states(properties: Mapping[str, Stated] | None, names: Iterable[str]) -> bool:
-    """Is any of these properties stated?"""
-    return properties is not None and any(name in properties for name in names)
 
 
 def model_of(known: Entity, classes: ClassTable, said: Objects, size_m: Size | None) -> str:
@@ -182,10 +183,10 @@ def stated_model(said: Objects) -> str:
 def moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
     """`known` where it is now, of whose star nothing but coordinates is otherwise. Raises BadRequest."""
     iri = v.iri(known.iri)
-    nodes = [o for _, _, o in reasoner.asserted(iri, v.HAS_POSITION, None)]
-    pose = _pose(reasoner.about, iri, nodes)
-    if known.place and (extents := [o for _, _, o in reasoner.asserted(iri, v.HAS_EXTENT, None)]):
-        pose, _ = _around(iri, extents, pose, known.size_m)
+    said = reasoner.about(iri)
+    pose = _pose(reasoner.about, iri, said.get(v.HAS_POSITION, ()))
+    if known.place and v.HAS_EXTENT in said:
+        pose, _ = _around(iri, said[v.HAS_EXTENT], pose, known.size_m)
     return structs.replace(known, pose=pose, provenance=provenance)
 
 

@@ -37,12 +37,13 @@ class Draft:
     ) -> None:
         """`entities` are those of the map by name."""
         self.retract: dict[Triple, None] = {}
-        self.insert: dict[Triple, None] = {}
+        self.insert: list[Triple] = []
         self._reasoner = reasoner
         self._classes = classes
         self._tbox = tbox
         self._entities = entities
         self._new: set[Term] = set()
+        self._known_classes: dict[str, Term] = {}
 
     def remove(self, leaving: Iterable[Entity]) -> None:
         """Entities go, with all that is only theirs and all that others say of them.
@@ -58,13 +59,12 @@ class Draft:
 
     def add(self, new: NewEntity) -> None:
         """A new entity. Raises NameTaken, UnknownClass."""
-        self._require_class(new.class_iri)
-        iri = v.entity_iri(new.name)
+        class_iri, iri = self._class(new.class_iri), v.entity_iri(new.name)
         suffix, number = "", 1
         while True:
             triples = stars.star(
                 new.name,
-                v.iri(new.class_iri),
+                class_iri,
                 pose=new.pose,
                 size_m=new.size,
                 preferred=new.ref,
@@ -80,13 +80,14 @@ class Draft:
             number += 1
             suffix = f"_{number}"
         self._new |= subjects
-        self.insert.update(dict.fromkeys(triples))
-        for prop, terms in self._typed(new.set, new.name):
-            self._come((iri, prop.iri, term) for term in terms)
+        self.insert += triples
+        if new.set:
+            for prop, terms in self._typed(new.set, new.name):
+                self._come((iri, prop.iri, term) for term in terms)
         if new.tracked:
-            self.insert[(iri, v.TRACKED_FROM, v.literal(new.tracked))] = None
+            self.insert.append((iri, v.TRACKED_FROM, v.literal(new.tracked)))
         for word in new.affordances:
-            self.insert[(iri, v.HAS_AFFORDANCE, v.dm(word))] = None
+            self.insert.append((iri, v.HAS_AFFORDANCE, v.dm(word)))
 
     def edit(self, entity: Entity, edit: Edit) -> None:
         """What is given of an entity changes, in the individuals of its star unless others use them, too.
@@ -108,9 +109,9 @@ class Draft:
                 entity, said.get(v.HAS_POSITION, ()), edit.pose_after(entity.pose), edit.size or entity.size_m
             )
         if edit.class_iri is not None and v.iri(edit.class_iri) != self._classes.iris.get(entity.class_):
-            self._require_class(edit.class_iri)
+            class_iri = self._class(edit.class_iri)
             self._go((iri, v.RDF_TYPE, o) for o in said.get(v.RDF_TYPE, ()) if o != v.OWL_NAMED_INDIVIDUAL)
-            self._come([(iri, v.RDF_TYPE, v.iri(edit.class_iri))])
+            self._come([(iri, v.RDF_TYPE, class_iri)])
         if edit.size is not None:
             self._resize(entity, said.get(v.HAS_SIZE, ()), edit.size)
         if edit.ref is not None and edit.ref != entity.preferred_reference:
@@ -283,10 +284,16 @@ class Draft:
     def _is_described(self, term: Term) -> bool:
         return any(t not in self.retract for t in self._reasoner.asserted(term))
 
-    def _require_class(self, iri: str) -> None:
-        """Raises UnknownClass. The TBox may have been replaced since the class was looked up."""
-        if v.iri(iri) not in self._classes.spatial:
-            raise errors.UnknownClass(f"the TBox has no class <{iri}> of things in space")
+    def _class(self, iri: str) -> Term:
+        """The term of a class, one object for all who are of it.
+
+        Raises UnknownClass. The TBox may have been replaced since the class was looked up.
+        """
+        if (term := self._known_classes.get(iri)) is None:
+            if (term := v.iri(iri)) not in self._classes.spatial:
+                raise errors.UnknownClass(f"the TBox has no class <{iri}> of things in space")
+            self._known_classes[iri] = term
+        return term
 
     def _go(self, triples: Iterable[Triple]) -> None:
         self.retract.update(dict.fromkeys(triples))
@@ -296,4 +303,4 @@ class Draft:
         self._come(changes[1])
 
     def _come(self, triples: Iterable[Triple]) -> None:
-        self.insert.update(dict.fromkeys(triples))
+        self.insert += triples

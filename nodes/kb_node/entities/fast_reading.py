@@ -13,13 +13,15 @@ from weakref import WeakKeyDictionary
 
 from nodes.kb_node.entities.class_table import ClassTable, Kind
 from nodes.kb_node.entities.entity_reading import entity_of
-from nodes.kb_node.reasoner import Alike, Reasoner, Run
+from nodes.kb_node.reasoner import Alike, Form, Reasoner
 from ontology import vocabulary as v
 from schemas.entities import REACH_M, Entity, Pose, Provenance
 from schemas.explanations import Term
 
 _EXTENT: Final = frozenset((v.HAS_EXTENT,))
 Places = tuple[int, ...]
+_Star = tuple[Sequence[Term], Sequence[Term]]
+"""The individuals of a run, the entity first, and its other objects."""
 """Which of a run's other objects."""
 
 _OF_FEW = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM, v.MODEL)
@@ -62,21 +64,26 @@ class Patterns:
     def __init__(self) -> None:
         self._known: WeakKeyDictionary[object, Pattern | None] = WeakKeyDictionary()
 
-    def of(self, alike: Alike, reasoner: Reasoner, classes: ClassTable) -> Pattern | None:
-        """Where the parts of an entity are in all runs of a shape; None if it is not to be told at sight."""
+    def of(self, alike: Alike, star: _Star, reasoner: Reasoner, classes: ClassTable) -> Pattern | None:
+        """Where the parts of an entity are in all stars of a shape, of which this is one.
+
+        None if it is not to be told at sight.
+        """
         try:
             return self._known[alike.shape]
         except KeyError:
-            found = self._known[alike.shape] = _pattern(alike.run, reasoner, classes)
+            found = self._known[alike.shape] = _pattern(alike.form, star, reasoner, classes)
             return found
 
 
-def read_at_sight(pattern: Pattern, run: Run, provenance: Provenance, classes: ClassTable) -> Entity | None:
-    """The entity that a run is the star of; None if it is not to be told at sight.
+def read_at_sight(
+    pattern: Pattern, star: _Star, provenance: Provenance, classes: ClassTable
+) -> Entity | None:
+    """The entity that this is the star of; None if it is not to be told at sight.
 
     Raises BadRequest for one that cannot be named.
     """
-    names, others = run.individuals, run.others
+    names, others = star
     try:
         position = _numbers(pattern.position, others)
         size = _numbers(pattern.size, others)
@@ -127,15 +134,16 @@ def _texts(texts: Sequence[_Text], names: Sequence[Term], others: Sequence[Term]
     return [v.lexical(others[text.place]) for text in texts]
 
 
-def _pattern(run: Run, reasoner: Reasoner, classes: ClassTable) -> Pattern | None:
-    """The pattern of all runs that are alike this one; None for an irregular one."""
-    are_entities = [not reasoner.types(term).isdisjoint(classes.spatial) for term in run.individuals]
-    if not are_entities[0] or any(are_entities[1:]):
+def _pattern(form: Form, star: _Star, reasoner: Reasoner, classes: ClassTable) -> Pattern | None:
+    """The pattern of all stars that are alike this one; None for an irregular one."""
+    names, others = star
+    entity, *nodes = map(reasoner.types, names)
+    if entity.isdisjoint(classes.spatial) or not all(map(classes.spatial.isdisjoint, nodes)):
         return None
-    said = _Said(run)
+    said = _Said(form, others)
     if said.is_out_of_the_ordinary or said.speaks(classes.first_words) or said.speaks(_EXTENT):
         return None
-    kind = classes.kind(reasoner.types(said.entity), frozenset(said.classes))
+    kind = classes.kind(entity, frozenset(said.classes))
     assert kind is not None
     try:
         coordinates, size = said.node(v.HAS_POSITION), said.node(v.HAS_SIZE)
@@ -153,23 +161,20 @@ def _pattern(run: Run, reasoner: Reasoner, classes: ClassTable) -> Pattern | Non
 
 
 class _Said:
-    """What a run says of its first individual and of the others, by place."""
+    """What a star says of its first individual and of the others, by place."""
 
-    def __init__(self, run: Run) -> None:
-        self._others = run.others
-        self.entity = run.individuals[0]
+    def __init__(self, form: Form, others: Sequence[Term]) -> None:
+        self._others = others
         self.classes: list[Term] = []
         """Those asserted of the entity."""
         self._nodes: dict[tuple[int, Term], list[int]] = {}
         self._places: dict[tuple[int, Term], list[int]] = {}
         place = count()
-        places = run.places
-        for s, p, o in run.triples:
-            subject = places[s]
-            if p == v.RDF_TYPE:
+        for subject, p, o in form.words:
+            if isinstance(o, str):
                 self.classes += [o] if subject == 0 else []
-            elif o in places:
-                self._nodes.setdefault((subject, p), []).append(places[o])
+            elif o is not None:
+                self._nodes.setdefault((subject, p), []).append(o)
             else:
                 self._places.setdefault((subject, p), []).append(next(place))
 

@@ -58,7 +58,7 @@ class Loading:
     def _load(self, load: LoadDocument) -> Loaded:
         content = unpacked(load.content, load.filename)
         if rdf.syntax_of(content) == "turtle" and not (load.replace or load.parts or load.dry_run):
-            self._sparql.foresee(load.id, content, v.ABOX)
+            self._sparql.foresee(load.id, content, v.ABOX, packed=load.content)
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
         with self._telling_of(f"loading {load.filename or 'a file'}") as tell:
             triples = rdf.parse(
@@ -80,7 +80,8 @@ class Loading:
                     skipped=tuple(sorted_out.skipped),
                     notes=tuple(sorted_out.notes),
                 )
-            del triples
+            skipped, notes = tuple(sorted_out.skipped), sorted_out.notes
+            del triples, sorted_out  # of very many triples each list takes its memory
             parts = load_parts.in_parts(transaction) if load.parts else [transaction]
             commit = partial(self._commit, told=load.told)
             commits = load_parts.commit_each(parts, commit, tell if load.parts else lambda _: None)
@@ -88,8 +89,8 @@ class Loading:
                 commit=effects(commits[-1] if commits else None),
                 parts=len(commits),
                 names=tuple(dict.fromkeys(name for commit in commits for name in _described(commit))),
-                skipped=tuple(sorted_out.skipped),
-                notes=(*sorted_out.notes, *(note for earlier in commits[:-1] for note in earlier.notes)),
+                skipped=skipped,
+                notes=(*notes, *(note for earlier in commits[:-1] for note in earlier.notes)),
             )
 
     def _tried_load(self, transaction: Transaction) -> tuple[tuple[str, ...], Effects | None]:

@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from nodes.kb_node.reasoner.change import Change
     from nodes.kb_node.reasoner.entailment import entails
-    from nodes.kb_node.reasoner.fastpaths.runs import Run
+    from nodes.kb_node.reasoner.fastpaths.runs import Form
     from nodes.kb_node.reasoner.fastpaths.shapes import Alike
     from nodes.kb_node.reasoner.reasoner import Held, Inconsistent, Reasoner
     from nodes.kb_node.reasoner.refutation import refute
 
-__all__ = ["Alike", "Change", "Held", "Inconsistent", "Reasoner", "Run", "entails", "refute"]
+__all__ = ["Alike", "Change", "Form", "Held", "Inconsistent", "Reasoner", "entails", "refute"]
 
 _WHERE = {
     "Alike": "fastpaths.shapes",
     "Change": "change",
+    "Form": "fastpaths.runs",
     "Held": "reasoner",
     "Inconsistent": "reasoner",
     "Reasoner": "reasoner",
-    "Run": "fastpaths.runs",
     "entails": "entailment",
     "refute": "refutation",
 }

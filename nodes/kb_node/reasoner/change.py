@@ -32,4 +32,4 @@ class Change(NamedTuple):
     @property
     def touched(self) -> frozenset[Term]:
         """All of them."""
-        return self.others.union(*(star.touched for star in self.alike))
+        return self.others.union(*(stars.touched for stars in self.alike))

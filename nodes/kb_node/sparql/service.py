@@ -129,10 +129,13 @@ class SparqlService:
         worker.send(Demanded(demand=demand, query=query))
         return demand
 
-    def foresee(self, commit_id: str, turtle: bytes, base: str) -> None:
-        """What a Turtle document says will be inserted by a commit of that id, unless `forget` comes."""
+    def foresee(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
+        """What a Turtle document says will be inserted by a commit of that id, unless `forget` comes.
+
+        `packed` is the same as it came, if that was packed.
+        """
         if self._large is not None and not self._infers and self._since_filling is None:
-            self._large.foresee(commit_id, turtle, base)
+            self._large.foresee(commit_id, turtle, base, packed=packed)
 
     def forget(self) -> None:
         """What was foreseen does not come."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sized
 from typing import Final
 
 from nodes.kb_node.storage.journal import Journal
@@ -40,10 +41,10 @@ class CheckpointSchedule:
             return True
         return seq - self._checkpointed >= (CHECKPOINT_EVERY if quiet else CHECKPOINT_AT_LATEST)
 
-    def is_urgent(self, triples: int) -> bool:
-        """Would the next start have to replay most of a map of so many triples?"""
+    def is_urgent(self, triples: Sized) -> bool:
+        """Would the next start have to replay most of a map of these triples?"""
         changed = self._changed - self._changed_then
-        return changed > CHECKPOINT_EVERY_TRIPLES and 2 * changed >= triples
+        return changed > CHECKPOINT_EVERY_TRIPLES and 2 * changed >= len(triples)
 
     def is_written(self, seq: int) -> bool:
         """Is there a checkpoint of the map after commit `seq`?"""

@@ -12,7 +12,7 @@ from schemas.entities import Pose
 
 
 class NoSparql:
-    def foresee(self, *document):
+    def foresee(self, *document, packed):
         """Nothing."""
 
     def forget(self):

@@ -185,8 +185,8 @@ class Store:
         for at in layout.values:
             self.source[edges[at]] = VALUE
 
-    def append(self, layout: Layout, individuals: Sequence[Terms], others: Sequence[Terms]) -> None:
-        """Like `write` for many, in new rows side by side; the other objects are there.
+    def append(self, layout: Layout, individuals: Sequence[Terms], others: Sequence[list[int]]) -> None:
+        """Like `write` for many, in new rows side by side; the other objects are there, and told as nodes.
 
         `individuals` and `others` are column by column.
         """
@@ -203,12 +203,17 @@ class Store:
             if kind.mask:
                 _put(self.places, here, range(len(kind.nodes), len(kind.nodes) + count))
                 kind.nodes.extend(here)
-        nodes += [list(map(self.numbers.__getitem__, terms)) for terms in others]
+        nodes += others
+        entered = set[int]()
         for at, (s, p, o) in enumerate(layout.edges):
             here = edges[at::length]
             _put(self.subject, here, nodes[s])
             _put(self.object, here, nodes[o])
-            self.into.link_each(nodes[o], here, p)
+            if o < width and o not in entered:  # nothing leads to a new individual yet
+                _put(self.into.heads, rows[o::width], here)
+            else:
+                self.into.link_each(nodes[o], here, p)
+            entered.add(o)
         for place, at in layout.heads:
             _put(self.out.heads, rows[place::width], edges[at::length])
         for at, to in layout.groups:
@@ -248,13 +253,16 @@ class Store:
         self.into.link_each(objects, edges, predicate)
         return edges
 
-    def add_literals(self, kinds: Mapping[Term, Kind]) -> None:
-        """Make room for literals, of known kinds, that edges will enter; what is there already stays."""
-        new = [term for term in kinds if term not in self.numbers]
+    def add_literals(self, kinds: Mapping[Term, Kind]) -> dict[Term, int]:
+        """The nodes of literals, of known kinds, that edges will enter; room is made for new ones."""
+        nodes = dict(zip(kinds, map(self.numbers.get, kinds), strict=True))
+        new = [term for term, node in nodes.items() if node is None]
         rows = self._more_nodes(len(new))
-        self.numbers.update(zip(new, rows, strict=True))
+        made = dict(zip(new, rows, strict=True))
+        self.numbers.update(made)
         _put(self.terms, rows, new)
         _put(self.kind, rows, [kinds[term] for term in new])
+        return {term: made[term] if node is None else node for term, node in nodes.items()}
 
     def _free_edges_for(self, count: int) -> list[int]:
         """At least so many free numbers to pop; such edges are in no list, and asserted."""

@@ -6,17 +6,17 @@ column: for all that stands at one place of all runs of a form.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import chain, compress, repeat
+from collections.abc import Iterable, Sequence
+from itertools import chain, compress
 from typing import NamedTuple
 
 from nodes.kb_node.reasoner.abox.kinds import Kind
 from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.fastpaths.runs import Form, Run, Runs, Terms
+from nodes.kb_node.reasoner.fastpaths.runs import Form, Runs, Terms
 
 _MANY = 16
 """Runs that are worth it."""
-_MOST = 1000
+_MOST = 2000
 """Runs read together; all of them are read singly where one is not so plain."""
 
 
@@ -27,22 +27,19 @@ class Batch(NamedTuple):
     kinds: tuple[Kind, ...]
     individuals: Sequence[Terms]
     others: Sequence[Terms]
-    triples: Sequence[Sequence[Triple]]
 
-    def runs(self) -> Iterator[Run]:
-        """Each by itself."""
-        others = zip(*self.others, strict=True) if self.others else repeat(())
-        individuals = zip(*self.individuals, strict=True)
-        return map(Run, repeat(self.form), self.triples, individuals, others, repeat(self.kinds))
+    @property
+    def size(self) -> int:
+        """How many they are."""
+        return len(self.individuals[0])
 
-    def of_kinds(self, kinds: tuple[Kind, ...], each: Sequence[tuple[Kind, ...]]) -> Batch:
-        """Those whose other objects are of these kinds, where these are the kinds of each."""
-        wanted = [of_one == kinds for of_one in each]
+    def where(self, wanted: Sequence[bool]) -> Batch:
+        """Some of them."""
         individuals, others = (
             [tuple(compress(column, wanted)) for column in columns]
             for columns in (self.individuals, self.others)
         )
-        return Batch(self.form, kinds, individuals, others, list(compress(self.triples, wanted)))
+        return self._replace(individuals=individuals, others=others)
 
 
 class Batches(NamedTuple):
@@ -59,7 +56,7 @@ def batches(runs: Runs, triples: Sequence[Triple], start: int) -> tuple[Batches 
     None where they are few, or one of them is about an individual that is known or in another of them.
     """
     found, end = _by_form(runs, triples, start)
-    if sum(len(batch.triples) for batch in found) < _MANY:
+    if sum(batch.size for batch in found) < _MANY:
         return None, end
     names = list(chain.from_iterable(column for batch in found for column in batch.individuals))
     terms = set[Term]().union(*(column for batch in found for column in batch.others))
@@ -72,22 +69,21 @@ def batches(runs: Runs, triples: Sequence[Triple], start: int) -> tuple[Batches 
 
 def _by_form(runs: Runs, triples: Sequence[Triple], start: int) -> tuple[list[Batch], int]:
     """The runs of each form, of no kinds yet; none where one has another form than its predicates promise."""
-    rows: dict[Form, list[tuple[Terms, Sequence[Triple]]]] = {}
+    rows: dict[Form, list[Terms]] = {}
     end = start
     for _ in range(_MOST):
         if end == len(triples) or (guess := runs.guess(triples, end)) is None:
             break
-        form, said, here = guess
-        rows.setdefault(form, []).append((said, here))
+        form, said = guess
+        rows.setdefault(form, []).append(said)
         end += form.length
     found = []
     for form, row in rows.items():
-        said, here = zip(*row, strict=True)
         classes = [(cls,) * len(row) for cls in form.classes]
-        parts = form.parts(tuple(zip(*said, strict=True)), tuple(classes))
+        parts = form.parts(tuple(zip(*row, strict=True)), tuple(classes))
         if parts is None:
             return [], end
-        found.append(Batch(form, (), *parts, here))
+        found.append(Batch(form, (), *parts))
     return found, end
 
 
@@ -99,4 +95,4 @@ def _by_shape(batch: Batch, kind_of: dict[Term, Kind]) -> Iterable[Batch]:
     shapes = dict.fromkeys(each)
     if len(shapes) == 1:
         return [batch._replace(kinds=each[0])]
-    return [batch.of_kinds(kinds, each) for kinds in shapes]
+    return [batch.where([of == kinds for of in each])._replace(kinds=kinds) for kinds in shapes]

@@ -95,10 +95,11 @@ class FastPaths(PlainPaths):
             for run in shapes.runs(triples, at, end):
                 at += len(run.triples)
                 is_mixed = self._abox.is_mixed
-                known = None if is_mixed or run.form is None else shapes.known.get(run.shape, run)
-                if isinstance(known, Written) and shapes.write(known, run):
+                form = run.form
+                known = None if is_mixed or form is None else shapes.known.get(run.shape, run)
+                if form is not None and isinstance(known, Written) and shapes.write(known, run):
                     added += run.triples
-                    alike.append(Alike(known, run))
+                    alike.append(Alike(known, form, list(zip(run.individuals)), list(zip(run.others))))
                 elif known is run:
                     work_out(run.triples)
                     shapes.learn(run)

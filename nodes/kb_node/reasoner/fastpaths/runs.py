@@ -42,9 +42,11 @@ class Form:
         "beginning",
         "classes",
         "length",
+        "words",
     )
 
     def __init__(self, words: Words) -> None:
+        self.words = words
         self.length = len(words)
         self.beginning = _beginning(*words[0][1:])
         self._predicates = tuple([p for _, p, _ in words])
@@ -130,17 +132,16 @@ class Runs:
                 return Run(form, here, *parts, kinds)
         return None
 
-    def guess(self, triples: Sequence[Triple], start: int) -> tuple[Form, Terms, Sequence[Triple]] | None:
-        """The form that the run there has by its predicates, with what it says and its triples.
+    def guess(self, triples: Sequence[Triple], start: int) -> tuple[Form, Terms] | None:
+        """The form that the run there has by its predicates, with what it says.
 
         Of a form that is the beginning of another's there may be more; then it is the other one's run.
         """
         for form in self._begun_by(triples[start]):
             end = start + form.length
-            here = triples[start:end]
-            said = form.said(here)
+            said = form.said(triples[start:end])
             if said is not None and (end >= len(triples) or triples[end][0] not in said):
-                return form, said, here
+                return form, said
         return None
 
     def _begun_by(self, triple: Triple) -> tuple[Form, ...]:

@@ -18,7 +18,7 @@ from nodes.kb_node.reasoner.explain.proof import Proof
 from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from nodes.kb_node.reasoner.fastpaths.batches import batches
 from nodes.kb_node.reasoner.fastpaths.layout import Layout
-from nodes.kb_node.reasoner.fastpaths.runs import Run, Runs, Shape
+from nodes.kb_node.reasoner.fastpaths.runs import Form, Run, Runs, Shape, Terms
 from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.reasoner.terms import TYPE
 
@@ -40,15 +40,25 @@ class Written:
 
 
 class Alike(NamedTuple):
-    """A run and its shape. Runs of one shape have their triples in one order, and their objects by kind."""
+    """Runs of one shape: their triples are in one order, and their objects of the same kinds.
+
+    A column is what one place holds, run by run: so many runs are few objects.
+    """
 
     shape: Written
-    run: Run
+    form: Form
+    individuals: Sequence[Terms]
+    others: Sequence[Terms]
+
+    def stars(self) -> Iterator[tuple[Terms, Terms]]:
+        """Of each run the individuals, and the other objects."""
+        others = zip(*self.others, strict=True) if self.others else repeat(())
+        return zip(zip(*self.individuals, strict=True), others, strict=False)
 
     @property
-    def touched(self) -> list[Term]:
-        """Those of its individuals that are subjects or have a named class."""
-        return [self.run.individuals[place] for place in self.shape.touched]
+    def touched(self) -> set[Term]:
+        """Those of their individuals that are subjects or have a named class."""
+        return set().union(*(self.individuals[place] for place in self.shape.touched))
 
 
 class Contradiction(NamedTuple):
@@ -93,12 +103,13 @@ class Shapes:
             if not isinstance(shape, Written) or not self._has_constants(shape):
                 return [], end
             shapes.append(shape)
-        store.add_literals(found.kind_of)
+        node_of = store.add_literals(found.kind_of)
         alike: list[Alike] = []
         for shape, batch in zip(shapes, found.of_shape, strict=True):
-            constants = [(term,) * len(batch.triples) for term in shape.constants]
-            store.append(shape.layout, batch.individuals, [*batch.others, *constants])
-            alike += map(Alike, repeat(shape), batch.runs())
+            others = [list(map(node_of.__getitem__, terms)) for terms in batch.others]
+            constants = [[store.numbers[term]] * batch.size for term in shape.constants]
+            store.append(shape.layout, batch.individuals, others + constants)
+            alike.append(Alike(shape, batch.form, batch.individuals, batch.others))
         return alike, end
 
     def write(self, written: Written, run: Run) -> bool:

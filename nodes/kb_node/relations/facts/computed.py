@@ -161,6 +161,8 @@ class Computed:
         elif self._said:
             for name in self.facts.upward({*touched, *(fact[0] for fact in facts)}):
                 looked_at.update(self._said.get(name, ()))
+        if not looked_at:
+            return set(), set()
         denied = {triple for triple in looked_at if self._is_so_no_more(triple, known)}
         newly, no_longer = denied - self.denied, (looked_at & self.denied) - denied
         self.denied |= newly

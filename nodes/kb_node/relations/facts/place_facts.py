@@ -11,6 +11,8 @@ from itertools import chain, islice
 from typing import NamedTuple
 
 from nodes.kb_node.progress import parts
+from nodes.kb_node.relations.facts.ahead import Ahead
+from nodes.kb_node.relations.facts.foreseen import Found
 from nodes.kb_node.relations.facts.rules import RULES, About, Rule
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.geometry.solids import Solid, solid_of
@@ -52,8 +54,23 @@ class Facts:
         self._to_forget = 0
         self._waiting: dict[str, Solid] = {}
         """While `filling`: those that have been placed, and nothing else."""
+        self._ahead: Ahead | None = None
         self.shifted: frozenset[str] = frozenset()
         """Who came to count in a crowd by the last update, or does not any more, because of others."""
+
+    def work_ahead(self, ahead: Ahead) -> None:
+        """The next update is about those who are foreseen, and `ahead` works out what will hold."""
+        self._ahead = ahead
+
+    def give_up_ahead(self) -> None:
+        """That update does not come."""
+        ahead, self._ahead = self._ahead, None
+        if ahead is not None:
+            ahead.give_up()
+
+    def by_rule(self) -> tuple[Found, ...]:
+        """All that hold, by rule and name."""
+        return tuple(kept.of for kept in self._kept)
 
     def __iter__(self) -> Iterator[Fact]:
         """All that hold."""
@@ -154,8 +171,12 @@ class Facts:
                     if survey is None:
                         kept.work_out(space, [solid.name for solid in some], gone, come)
                     else:
-                        kept.take(space, some, survey, gone, come)
+                        kept.take(space, some, kept.rule.of_many(survey), gone, come)
             yield
+
+    def _worked_out_ahead(self, came: Iterable[Entity | Placed]) -> Sequence[Found] | None:
+        ahead, self._ahead = self._ahead, None
+        return None if ahead is None else ahead.facts(came)
 
     def forget(self) -> None:
         """Let some solids, in turn, forget what can be worked out again: more of them than updates touched.
@@ -178,6 +199,9 @@ class Facts:
     def update(self, changed: Iterable[Entity | Placed], removed: Iterable[str] = ()) -> Changed:
         """Some entities came or are otherwise now, others went."""
         changed, removed = list(changed), list(removed)
+        if not (changed or removed):
+            self.shifted = frozenset()
+            return Changed(set(), set())
         if self._waiting:
             self._see_to_those_concerned(changed, removed)
         space = self.space
@@ -212,8 +236,12 @@ class Facts:
                 left_over = concerned.keys() - {solid.name for solid in things}
                 for kept in self._kept:
                     kept.work_out(space, left_over, gone, come)
-            for _ in self._working_out(things, gone, come, _MOST_AT_ONCE):
-                pass
+            if (found := self._worked_out_ahead(changed)) is None:
+                for _ in self._working_out(things, gone, come, _MOST_AT_ONCE):
+                    pass
+            else:
+                for kept, of in zip(self._kept, found, strict=True):
+                    kept.take(space, things, [of.get(solid.name, ()) for solid in things], gone, come)
         self._to_forget = min(self._to_forget + _FORGOTTEN * len(moved), len(space.solids))
         if self._to_forget > _MOST_TO_FORGET:
             self.forget()
@@ -267,11 +295,15 @@ class _Kept:
                 yield name, relation, other
 
     def take(
-        self, space: Space, solids: Sequence[Solid], survey: Survey, gone: set[Fact], come: set[Fact]
+        self,
+        space: Space,
+        solids: Sequence[Solid],
+        found: Sequence[tuple[About, ...] | None],
+        gone: set[Fact],
+        come: set[Fact],
     ) -> None:
-        """Have the facts of those who were surveyed, and add what is otherwise to `gone` and `come`."""
+        """Have what was found of some, and add what is otherwise to `gone` and `come`; None is measured."""
         facts, of, about = self.rule.facts, self.of, self.about
-        found = self.rule.of_many(survey)
         if not of and found.count(()) == len(found):
             return
         for solid, known in zip(solids, found, strict=True):

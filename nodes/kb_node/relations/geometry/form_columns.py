@@ -172,7 +172,7 @@ class FormColumns(Extents):
         greatest = np.where(is_lowest[:, :, None], high[:, :, :2], -np.inf).max(axis=1)
         beyond = (_BEYOND / 2 if any(part.round for part in shape.parts) else 0.0) * (greatest - least)
         self.base[of] = np.concatenate([least - beyond, greatest + beyond], axis=1)
-        stands_on_one = is_lowest.sum(axis=1) == 1
+        stands_on_one = np.count_nonzero(is_lowest, axis=1) == 1
         self.footing[of] = np.where(stands_on_one, parts.first[of] + is_lowest.argmax(axis=1), -1)
 
 
@@ -300,15 +300,20 @@ def _lowest(centre: Floats, straight: Floats, round_: Floats) -> tuple[Floats, B
     """(N, P, 2) where the lowest point is, NaN if not for certain; whether it is; what is round is level."""
     rises = straight[:, :, :, 2:]
     away = np.where(np.abs(rises) > _STEEP_M, np.sign(rises) * straight[:, :, :, :2], 0.0)
-    lowest = centre[:, :, :2] - away.sum(axis=2)
+    lowest = centre[:, :, :2] - _added(away)
     steepness = np.abs(rises[:, :, :, 0])
     is_sure = ((steepness <= _LEVEL_M) | (steepness > _STEEP_M)).all(axis=2)
-    rise = np.sqrt((round_[:, :, :, 2] ** 2).sum(axis=2))
+    rise = np.sqrt(_added(round_[:, :, :, 2] ** 2))
     is_level: Bools = rise <= _LEVEL_M
     is_sure = is_sure & (is_level | (rise > _STEEP_M))
-    along = (round_[:, :, :, :2] * round_[:, :, :, 2:]).sum(axis=2) / np.maximum(rise, _LEVEL_M)[:, :, None]
+    along = _added(round_[:, :, :, :2] * round_[:, :, :, 2:]) / np.maximum(rise, _LEVEL_M)[:, :, None]
     lowest -= np.where(is_level[:, :, None], 0.0, along)
     return np.where(is_sure[:, :, None], lowest, np.nan), is_sure, is_level
+
+
+def _added(few: Floats) -> Floats:
+    """(N, P, ...) sums along the third axis, which is short: NumPy's own take five times as long for that."""
+    return sum(np.moveaxis(few, 2, 0), start=np.zeros((*few.shape[:2], *few.shape[3:])))
 
 
 def _hollows(shape: ModelShape, stretch: Floats, rotation: Floats) -> list[Floats]:

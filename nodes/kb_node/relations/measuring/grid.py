@@ -157,6 +157,8 @@ class Grid:
 
         What is beside a cell that is told of is left out.
         """
+        if not self.crowds:
+            return []
         found = [
             (-len(crowd), (0, 0) if cell is None else cell, cell is None)
             for cell, crowd in self.crowds.items()

@@ -1,17 +1,18 @@
-"""Fills a store on disk from stdin: `python -m nodes.kb_node.sparql.triples.filling PATH [BASE]`.
+"""Fills a store on disk from stdin: `python -m nodes.kb_node.sparql.triples.filling PATH [BASE [packed]]`.
 
 There are triples in frames, each a MessagePack list behind its length. With a base IRI, a Turtle document
-follows behind an empty frame. Says on stdout how many triples the store has: fewer than came where two differ
-in the spelling of a number.
+follows behind an empty frame, with gzip if it is packed. Says on stdout how many triples the store has: fewer
+than came where two differ in the spelling of a number.
 """
 
 from __future__ import annotations
 
+import gzip
 import io
 import os
 import sys
 from collections.abc import Sequence
-from typing import Any, BinaryIO, Final
+from typing import IO, Any, BinaryIO, Final
 
 import pyoxigraph as ox
 from msgspec import msgpack
@@ -25,6 +26,7 @@ _triples = codec.decoder(list[tuple[str, str, str]])
 
 END: Final = bytes(_LENGTH_BYTES)
 """An empty frame."""
+PACKED: Final = "packed"
 
 
 def frame(triples: Triples) -> bytes:
@@ -57,14 +59,17 @@ class _Text(io.RawIOBase):
         return count
 
 
-def main(path: str, base: str | None = None) -> None:
+def main(path: str, base: str | None = None, form: str = "") -> None:
     """Read to the end, then say."""
-    os.nice(5)  # the map itself comes first
+    os.nice(15)  # the map itself comes first
     store = ox.Store(path)
     text = io.BufferedReader(_Text(sys.stdin.buffer), 1 << 20)
-    store.bulk_load(input=text, format=ox.RdfFormat.N_TRIPLES)
+    store.bulk_load(input=text, format=ox.RdfFormat.N_TRIPLES, lenient=True)  # it was checked for the map
     if base is not None:
-        store.bulk_load(input=sys.stdin.buffer, format=ox.RdfFormat.TURTLE, base_iri=base)
+        document: IO[bytes] = sys.stdin.buffer
+        if form == PACKED:
+            document = io.BufferedReader(gzip.GzipFile(fileobj=document), 1 << 20)
+        store.bulk_load(input=document, format=ox.RdfFormat.TURTLE, base_iri=base)
     store.flush()
     print(len(store), flush=True)
 

@@ -91,16 +91,17 @@ class LargeMap:
             return Filled(path, number, number), [delta_of(c) for c in self._journal.commits(after=number)]
         return None
 
-    def foresee(self, commit_id: str, turtle: bytes, base: str) -> None:
+    def foresee(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
         """What a document says will be inserted by a commit of that id: begin its store if that is worth it.
 
+        `packed` is the same as it came, if that was packed: so much is kept until the store is filled.
         Whoever finds that it is not so, or that there will be no commit, has to `forget` it.
         """
         is_much = len(turtle) > self._large * _BYTES_OF_A_TRIPLE and not any(
             map(turtle.__contains__, _OTHERWISE)
         )
         if is_much and not self.is_large:
-            self._begin(commit_id, (), turtle, base)
+            self._begin(commit_id, (), packed or turtle, base)
 
     def foretell(self, commit: Commit) -> Callable[[], None]:
         """A commit will be made if it stands the check: begin its store if that is worth it.

@@ -11,9 +11,10 @@ from concurrent.futures import Future
 from contextlib import suppress
 from pathlib import Path
 
-from nodes.kb_node.sparql.triples.filling import END, frame
+from nodes.kb_node.sparql.triples.filling import END, PACKED, frame
 from schemas import errors
 from schemas.explanations import Triple
+from schemas.packing import is_packed
 
 
 class StoreFiller:
@@ -22,7 +23,10 @@ class StoreFiller:
     def __init__(
         self, path: Path, pieces: Iterable[Sequence[Triple]], turtle: bytes = b"", *, base: str = ""
     ) -> None:
-        """`pieces` are iterated over by the thread; what is said in `turtle`, of that base, comes, too."""
+        """`pieces` are iterated over by the thread; what is said in `turtle`, of that base, comes, too.
+
+        That may be packed: then less memory is taken until the process has read it.
+        """
         self.path = path
         self._turtle = turtle
         self._base = base
@@ -52,7 +56,8 @@ class StoreFiller:
 
     def _pump(self, pieces: Iterable[Sequence[Triple]]) -> tuple[int, int]:
         command = [sys.executable, "-P", "-m", "nodes.kb_node.sparql.triples.filling", str(self.path)]
-        command += [self._base] if self._turtle else []
+        if self._turtle:
+            command += [self._base, PACKED] if is_packed(self._turtle) else [self._base]
         with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
             self._process = process
             assert process.stdin is not None

@@ -1,8 +1,8 @@
 """A commit as it stands in the journal, made while the rest of it is worked out.
 
-The triples of a large commit are most of it, and known before the entities that they change: another thread
-encodes and compresses them meanwhile, some thousand at a time, so that the whole is never in memory but
-compressed. The outcome is what `dense.encode` makes of the whole.
+The triples of a large commit are most of it, and known before the entities that they change, and these before
+it is worked out where they are. Another thread encodes and compresses them meanwhile, some thousand at a
+time, so that the whole is never in memory but compressed. The outcome is what `dense.encode` makes of it.
 """
 
 from __future__ import annotations
@@ -19,13 +19,16 @@ from nodes.kb_node.progress import parts
 from nodes.kb_node.storage.encoding import dense
 from schemas import codec
 from schemas.commits import Commit
+from schemas.entities import Entity
 
 _MANY: Final = 1000
 """Triples; a thread for fewer takes longer than it saves."""
 _PIECE: Final = 10_000
 """Elements of a list that are encoded together: some megabytes, and a few milliseconds."""
 _FIELDS: Final = Commit.__struct_encode_fields__
-_EFFECTS: Final = ("changed", "removed", "notes")
+_CHANGED: Final = ("changed",)
+_OTHERS: Final = ("removed", "notes")
+_EFFECTS: Final = (*_CHANGED, *_OTHERS)
 """The end of a commit."""
 _BEGINNING: Final = _FIELDS[: -len(_EFFECTS)]
 assert (*_BEGINNING, *_EFFECTS) == _FIELDS == Commit.__struct_fields__
@@ -40,10 +43,19 @@ class EarlyBody:
         self._beside = ThreadPoolExecutor(1)
         beginning = chain([_heading(_MAP, len(_FIELDS))], _encoded(commit, _BEGINNING))
         self._head = self._beside.submit(self._compressed, beginning)
+        self._without = self._deflate
+        """What has compressed no more than the head."""
+        self._changed: Sequence[Entity] | None = None
+        self._middle: Future[bytes]
+
+    def expect(self, commit: Commit) -> None:
+        """It is likely to change the entities that it has now."""
+        self._changed = commit.changed
+        self._middle = self._beside.submit(self._expected, _encoded(commit, _CHANGED))
 
     def finish(self, commit: Commit) -> Future[bytes]:
         """The whole, now that the effects are known."""
-        whole = self._beside.submit(self._whole, _encoded(commit, _EFFECTS))
+        whole = self._beside.submit(self._whole, commit)
         self._beside.shutdown(wait=False)
         return whole
 
@@ -51,8 +63,16 @@ class EarlyBody:
         """Nobody wants it any more."""
         self._is_wanted = False
 
-    def _whole(self, effects: Iterator[bytes]) -> bytes:
-        return self._head.result() + self._compressed(effects) + self._deflate.flush()
+    def _expected(self, changed: Iterator[bytes]) -> bytes:
+        self._without = self._deflate.copy()
+        return self._compressed(changed)
+
+    def _whole(self, commit: Commit) -> bytes:
+        if commit.changed is self._changed:
+            begun = self._head.result() + self._middle.result()
+            return begun + self._compressed(_encoded(commit, _OTHERS)) + self._deflate.flush()
+        self._deflate = self._without
+        return self._head.result() + self._compressed(_encoded(commit, _EFFECTS)) + self._deflate.flush()
 
     def _compressed(self, pieces: Iterator[bytes]) -> bytes:
         found = bytearray()

@@ -1,5 +1,6 @@
 """A large map's triples for SPARQL: in a store on disk, made beside other work, kept, cloned and followed."""
 
+import gzip
 import queue
 
 import pyoxigraph as ox
@@ -220,12 +221,14 @@ def turtle(triples):
     return "".join(f"{s} {p} {o} .\n" for s, p, o in triples).encode()
 
 
-def test_the_store_is_filled_from_a_document_while_it_is_read(tmp_path, monkeypatch):
+@pytest.mark.parametrize("is_packed", [False, True])
+def test_the_store_is_filled_from_a_document_while_it_is_read(tmp_path, monkeypatch, is_packed):
     node = Node(new_map(tmp_path), large=50)
     node.map.commit(transaction("one", chair("one")))
     try:
         said = [*chairs(30), *chairs(2), *chair("one")]  # some of it twice, and some that is there already
-        node.service.foresee("many", turtle(said), v.ABOX)
+        packed = gzip.compress(turtle(said)) if is_packed else b""
+        node.service.foresee("many", turtle(said), v.ABOX, packed=packed)
         monkeypatch.setattr(node.map.reasoner, "by_subject", None)  # nothing is read again
         monkeypatch.setattr(large_map, "_frames", None)
         node.commit("many", said)

@@ -27,6 +27,17 @@ def test_a_body_that_was_begun_is_the_whole(semantic_map):
     assert len(body) < len(codec.encode(whole)) / 10
 
 
+@pytest.mark.parametrize("comes", [0, 1, 2])
+def test_effects_are_those_that_were_expected_or_others(semantic_map, comes):
+    changed = semantic_map.commit(transaction("a", chair())).changed * 300
+    triples = [(v.entity_iri(f"c{i}"), v.RDF_TYPE, v.dm("Chair")) for i in range(2000)]
+    begun = commit_encoding.early(commit(*triples), "")
+    begun.expect(commit(*triples, changed=changed))
+    departed = (Departed(name="b", types=("Chair",)),)
+    whole = commit(*triples, changed=(changed, changed[1:], ())[comes], removed=departed, notes=("x",))
+    assert zlib.decompress(begun.finish(whole).result()) == codec.encode(whole)
+
+
 def test_one_without_effects(semantic_map):
     whole = commit(*[(v.entity_iri(f"c{i}"), v.RDFS_LABEL, v.literal("x")) for i in range(2000)])
     assert zlib.decompress(commit_encoding.early(whole, "").finish(whole).result()) == codec.encode(whole)
