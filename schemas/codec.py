@@ -105,7 +105,8 @@ def convert(values: Any, kind: type[T], *, strict: bool = True) -> T:
 
 def looks_like_json(payload: bytes | bytearray) -> bool:
     """A JSON object begins with a brace, which no MessagePack map does."""
-    return payload[:1] == b"{" or _JSON.match(payload) is not None
+    first = payload[:1]
+    return first == b"{" or (first.isspace() and _JSON.match(payload) is not None)
 
 
 def encoding_of(message: Any) -> str:

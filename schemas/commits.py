@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import ClassVar, Final
 
 from msgspec import Struct, structs
@@ -26,6 +27,8 @@ from schemas.entities import (
 )
 from schemas.explanations import Term, Triple
 from schemas.scene_files import pose_of
+
+_NAME: Final = attrgetter("name")
 
 
 class Statement(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
@@ -180,7 +183,7 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     @property
     def names(self) -> tuple[str, ...]:
         """The names of the entities that it touched."""
-        return tuple(dict.fromkeys([*(e.name for e in self.changed), *(gone.name for gone in self.removed)]))
+        return tuple(dict.fromkeys(map(_NAME, (*self.changed, *self.removed))))
 
 
 class Trial(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -236,7 +239,7 @@ class Effects(Struct, frozen=True, kw_only=True):
     @property
     def names(self) -> tuple[str, ...]:
         """The names of the entities that it touched."""
-        return tuple(dict.fromkeys([*(e.name for e in self.changed), *(gone.name for gone in self.removed)]))
+        return tuple(dict.fromkeys(map(_NAME, (*self.changed, *self.removed))))
 
 
 _FEW: Final = 1000
@@ -285,8 +288,8 @@ class Transaction(
 
     @property
     def is_quick(self) -> bool:
-        """Where it changes few entities."""
-        return len(self.add) + len(self.remove) + len(self.edit) <= _FEW
+        """Where it changes few entities and triples."""
+        return sum(map(len, (self.add, self.remove, self.edit, self.retract, self.insert))) <= _FEW
 
 
 MANY_ENTITIES = 10_000

@@ -41,6 +41,12 @@ NODES = ("kb_node", "coordinator", "sim_node", "perception_node", "recorder")
 WEB = "web"
 """The page, which `semmap up --web` starts beside the nodes; it is a client like any other."""
 
+ROS = "ros"
+"""The bridge that `semmap ros` runs beside the nodes; a client, too."""
+
+CLIENTS = (WEB, ROS)
+"""Clients whose hearts beat, too. Any number may run, and it is no fault when one has ended."""
+
 ROUTER = "router"
 """The process that everybody, nodes included, is connected to under `semmap up --secure`."""
 

@@ -27,15 +27,20 @@ _GZIP: Final = 31
 
 def packed(content: bytes) -> bytes:
     """The content of a file as a message carries it: with gzip if it is large."""
-    if len(content) < PACKED_FROM or content.startswith(_MAGIC):
+    if len(content) < PACKED_FROM or is_packed(content):
         return content
     return zlib.compress(content, 1, wbits=_GZIP)
+
+
+def is_packed(content: bytes) -> bool:
+    """Did it come packed?"""
+    return content.startswith(_MAGIC)
 
 
 def unpacked(content: bytes, filename: str) -> bytes:
     """The content of a file, whether it came packed or not. Raises BadFile for what cannot be unpacked."""
     members: list[bytes] = []
-    size, rest = 0, content if content.startswith(_MAGIC) else b""
+    size, rest = 0, content if is_packed(content) else b""
     largest = min(LARGEST, _FREE + _AT_MOST * len(content))
     try:
         while rest:
@@ -58,7 +63,7 @@ def unpacked(content: bytes, filename: str) -> bytes:
 
 def beginning(content: bytes, size: int, filename: str) -> bytes:
     """The first `size` bytes of what `unpacked` gives. Raises BadFile for what cannot be unpacked."""
-    if not content.startswith(_MAGIC):
+    if not is_packed(content):
         return content[:size]
     try:
         return zlib.decompressobj(wbits=_GZIP).decompress(content, size)

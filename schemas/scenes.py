@@ -67,6 +67,8 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     held_by: str = ""
     grip: Pose | None = None
     grip_commit: int = -1
+    in_the_way: str = ""
+    """The body that fills the place of a ghost, where it is one of the scene."""
     robot: bool = False
     """It was put there by `semmap up --robot`: it becomes an entity whatever the truth is, and is tracked."""
 

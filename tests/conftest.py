@@ -43,7 +43,7 @@ settings.load_profile("busy")
 _BIN = Path(sys.executable).parent
 _START_S = 120.0
 _END_S = 30.0
-PATIENCE_S = 30.0
+PATIENCE_S = 60.0
 
 
 @contextlib.contextmanager

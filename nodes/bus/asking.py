@@ -168,7 +168,7 @@ def _ask(
             for reply in replies if meanwhile is None or last is None else _polled(replies, meanwhile):
                 if lifelines is not None:
                     lifelines.look(servers)
-                if lifelines is None or _is_late(reply) or lifelines.vouch(servers, reply):
+                if lifelines is None or lifelines.vouch(servers, reply) or _is_late(reply):
                     if (whole := read_reply(key, reply, kind, round_s, gathered)) is not None:
                         return whole.decode()
                     continue
@@ -284,7 +284,7 @@ def ask_later(
     gathered = pieces.Gathered()
 
     def on_reply(reply: zenoh.Reply) -> None:
-        if lifelines is not None and not _is_late(reply) and not lifelines.vouch(servers, reply):
+        if lifelines is not None and not lifelines.vouch(servers, reply) and not _is_late(reply):
             foreign.append(reply)
         elif not waiting:
             return

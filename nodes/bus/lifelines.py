@@ -38,7 +38,7 @@ class Lifelines:
 
     def has_seen(self, nodes: tuple[str, ...]) -> bool:
         """Has a process of any of these nodes been ready since this session began?"""
-        return any(node in self._instances for node in nodes)
+        return not self._instances.keys().isdisjoint(nodes)
 
     def look(self, nodes: tuple[str, ...]) -> None:
         """Wait until it is known which of these nodes are there, if none has been seen yet.
@@ -55,9 +55,9 @@ class Lifelines:
 
     def vouch(self, nodes: tuple[str, ...], reply: zenoh.Reply) -> bool:
         """Is the reply by one of these nodes? Of whom none is ready, nobody can tell."""
-        ready = [there for node in nodes if (there := self._instances.get(node))]
+        ready = {instance for node in nodes for instance in self._instances.get(node, ())}
         replier = reply.replier_id if ready else None
-        return replier is None or any(str(replier.zid) in there for there in ready)
+        return replier is None or str(replier.zid) in ready
 
     def is_news(self, key: str) -> bool:
         """Is it the first time that somebody else was found to answer on this key?"""

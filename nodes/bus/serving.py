@@ -77,9 +77,10 @@ def _request_of_query(
     """None for a piece after which others come. Raises what the query is to be refused with."""
     asked = str(query.key_expr)
     verb, who = keys.last_chunk(asked), keys.asked_as(asked) if prefix == keys.commands_as() else ""
-    if query.payload is not None and len(query.payload) > pieces.MESSAGE:
-        raise pieces.too_large(len(query.payload), pieces.MESSAGE)
-    payload: bytes | bytearray = query.payload.to_bytes() if query.payload is not None else b""
+    sent = query.payload
+    if sent is not None and len(sent) > pieces.MESSAGE:
+        raise pieces.too_large(len(sent), pieces.MESSAGE)
+    payload: bytes | bytearray = sent.to_bytes() if sent is not None else b""
     done = _nothing_to_do
     if (piece := pieces.piece_of(query.attachment)) is not None:
         whole = arrivals.take(piece, bytes(payload), most(verb))

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import Future
-from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 from nodes.runtime.futures import OwnFuture
 from schemas import errors
@@ -50,34 +49,26 @@ def hold(talk: Talk[T], ask: Ask) -> T:
 
 def hold_later(talk: Talk[T], ask_later: AskLater) -> Future[T]:
     """The result of a talk that goes on whenever an answer comes, on the thread that brings it."""
-    held = _Held(talk, ask_later, OwnFuture())
-    held.go_on(None)
-    return held.future
+    future: Future[T] = OwnFuture()
+    _hold_on(talk, ask_later, future, None)
+    return future
 
 
-@dataclass(frozen=True)
-class _Held(Generic[T]):
-    """A talk under way. It refers to itself nowhere, so that what it is about goes when it ends."""
-
-    talk: Talk[T]
-    ask_later: AskLater
-    future: Future[T]
-
-    def go_on(self, answer: Answer) -> None:
-        """Give it the answer, and ask what it asks next."""
+def _hold_on(talk: Talk[T], ask_later: AskLater, future: Future[T], answer: Answer) -> None:
+    """Give it the answer, and ask what it asks next. Nothing of it is kept when it ends."""
+    try:
+        call = _go_on(talk, answer)
+    except StopIteration as end:
+        future.set_result(end.value)
+    except Exception as error:
+        future.set_exception(error)
+    else:
         try:
-            call = _go_on(self.talk, answer)
-        except StopIteration as end:
-            self.future.set_result(end.value)
-        except Exception as error:
-            self.future.set_exception(error)
+            asked = ask_later(call)
+        except Exception as error:  # whatever it is, the talk is told of it, and ends
+            _hold_on(talk, ask_later, future, error)
         else:
-            try:
-                asked = self.ask_later(call)
-            except Exception as error:  # whatever it is, the talk is told of it, and ends
-                self.go_on(error)
-            else:
-                asked.add_done_callback(lambda done: self.go_on(_answer_of(done.result)))
+            asked.add_done_callback(lambda done: _hold_on(talk, ask_later, future, _answer_of(done.result)))
 
 
 def alone(talk: Talk[T]) -> Talk[list[T | Exception]]:

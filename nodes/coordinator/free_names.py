@@ -23,12 +23,11 @@ class FreeNames:
         self._first[stem] = number
         return f"{stem}{number}"
 
-    def freed(self, names: Iterable[str]) -> None:
-        """These may be given again."""
-        for name in names:
-            for stem, number in _readings(name):
-                if number < self._first.get(stem, 0):
-                    self._first[stem] = number
+    def freed(self, name: str) -> None:
+        """It may be given again."""
+        for stem, number in _readings(name):
+            if number < self._first.get(stem, 0):
+                self._first[stem] = number
 
 
 def _readings(name: str) -> Iterable[tuple[str, int]]:

@@ -18,7 +18,8 @@ _NODES = 50
 class HealthView:
     """The last heartbeat of each node on each host, and when it came.
 
-    A page is no node that has to be there: any number may be, and one that has ended is not told any more.
+    A page or a bridge to ROS is no node that has to be there: any number may be, and one that has ended is
+    not told any more.
     """
 
     def __init__(self) -> None:
@@ -27,8 +28,8 @@ class HealthView:
 
     def take(self, health: Health) -> None:
         """Remember a heartbeat; of strange nodes no more than a few."""
-        self._forget_pages()
-        which = health.node, health.host, health.pid if health.node == keys.WEB else 0
+        self._forget_clients()
+        which = health.node, health.host, health.pid if health.node in keys.CLIENTS else 0
         if which not in self._last and len(self._last) >= _NODES:
             return
         self._last[which] = (health, time.monotonic())
@@ -44,14 +45,14 @@ class HealthView:
 
     def nodes(self) -> tuple[NodeStatus, ...]:
         """One row a node, by its name and its host's."""
-        self._forget_pages()
+        self._forget_clients()
         return tuple(self._status(health, at) for _, (health, at) in sorted(self._last.items()))
 
-    def _forget_pages(self) -> None:
+    def _forget_clients(self) -> None:
         """Those that were not heard of lately."""
         now_s = time.monotonic()
         for which, (health, at) in list(self._last.items()):
-            if health.node == keys.WEB and now_s - at >= SILENT_AFTER_S:
+            if health.node in keys.CLIENTS and now_s - at >= SILENT_AFTER_S:
                 del self._last[which]
 
     def _status(self, health: Health, at: float) -> NodeStatus:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from concurrent.futures import Future
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from nodes import bus
-from nodes.runtime.futures import OwnFuture, settle
+from nodes.runtime.futures import OwnFuture
 from nodes.runtime.loop import Node
 from schemas import errors, keys
 from schemas.calls import Call, Relay
@@ -44,11 +44,13 @@ class Bridge:
         if not call.is_quick:
             return self.change_later(call)
         future: Future[R] = OwnFuture()
-        settle(
-            future,
-            lambda: self._node.ask(keys.BRIDGE, call, timeout_s=_AT_ONCE_S, patience_s=0.0),
-        )
-        return self.change_later(call) if _is_unanswered(future) else future
+        try:
+            future.set_result(self._node.ask(keys.BRIDGE, call, timeout_s=_AT_ONCE_S, patience_s=0.0))
+        except errors.NoAnswer:
+            return self.change_later(call)
+        except Exception as error:
+            future.set_exception(error)
+        return future
 
     def change_later(self, call: Call[R]) -> Future[R]:
         """The answer when it comes; while nobody serves the key it is asked again, over a restart.
@@ -61,7 +63,3 @@ class Bridge:
     def relay(self, command: Command[R]) -> Relay[R]:
         """Let the knowledge base answer a command itself."""
         return Relay(keys.BRIDGE, command, _BUSY_S)
-
-
-def _is_unanswered(asked: Future[Any]) -> bool:
-    return isinstance(asked.exception(), errors.NoAnswer)

@@ -88,6 +88,8 @@ class Turns:
 
         None of them begin beside a larger group: more will have come when that is done.
         """
+        if not self._under_way and len(self._waiting) == 1:  # as most come
+            return [change for change, _, _ in self._waiting if change is not None]
         if len(self._under_way) == AT_ONCE or any(None in group for group in self._under_way):
             return []
         names = {name for group in self._under_way for name in group}
@@ -112,9 +114,12 @@ class Turns:
             for i, (_, _, future) in enumerate(members):
                 settle(future, lambda i=i: _result(done.result()[i]))  # type: ignore[misc]
 
-        results: Future[Results] = OwnFuture()
+        try:
+            results = self._together(changes)
+        except Exception as error:  # whatever it is, those who wait are told of it
+            results = OwnFuture()
+            results.set_exception(error)
         results.add_done_callback(on_done)
-        settle(results, lambda: self._together(changes))
 
 
 def _entity(change: Change) -> str | None:

@@ -44,6 +44,11 @@ class FairQueue(Generic[T]):
         """How many things wait, urgent ones apart."""
         return self._count
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing waits, not even something urgent."""
+        return not self._count and not self._urgent
+
     def put(self, asker: str, item: T, *, size: int = 0, urgent: bool = False) -> float | None:
         """Let `item`, of `size` bytes, wait; or, when it is full, after how long [s] to come again.
 
@@ -71,8 +76,6 @@ class FairQueue(Generic[T]):
 
     def take(self, *, urgent_only: bool = False) -> T | None:
         """The next one, if there is one."""
-        if not self._count and not self._urgent:
-            return None
         with self._lock:
             if self._urgent:
                 return self._urgent.popleft()[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from concurrent.futures import Future, InvalidStateError
-from typing import TypeVar
+from typing import Any, TypeVar
 
 log = logging.getLogger(__name__)
 
@@ -62,18 +62,16 @@ class OwnFuture(Future[T]):
 
     def set_result(self, result: T) -> None:
         """Resolve it. Raises InvalidStateError the second time."""
-        self._require_open()
-        self._value = result
-        self._resolve()
+        self._resolve(result, None)
 
     def set_exception(self, exception: BaseException | None) -> None:
         """Resolve it with an error. Raises InvalidStateError the second time."""
-        self._require_open()
-        self._error = exception
-        self._resolve()
+        self._resolve(None, exception)
 
-    def _resolve(self) -> None:
-        self._is_done = True
+    def _resolve(self, value: Any, error: BaseException | None) -> None:
+        if self._is_done:
+            raise InvalidStateError("it is resolved already")
+        self._is_done, self._value, self._error = True, value, error
         callbacks, self._callbacks = self._callbacks, []
         for callback in callbacks:
             self._call(callback)
@@ -87,10 +85,6 @@ class OwnFuture(Future[T]):
     def _require_done(self) -> None:
         if not self._is_done:
             raise InvalidStateError("it is not resolved yet, and its own thread cannot wait for that")
-
-    def _require_open(self) -> None:
-        if self._is_done:
-            raise InvalidStateError("it is resolved already")
 
 
 def settle(future: Future[T], execute: Callable[[], T | Future[T]]) -> None:

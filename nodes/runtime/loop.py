@@ -371,7 +371,6 @@ class Node:
             if self._events.empty():
                 for handle in self._idle:
                     self._guard(handle)
-                heartbeat.beat()
                 if len(self._requests) and not self._is_at_once and self._has_room():
                     continue
             due_s = min(heartbeat.due_s, self._timers[0][0] if self._timers else math.inf)
@@ -387,7 +386,7 @@ class Node:
 
     def _take_request(self) -> bool:
         """Handle the request whose turn it is, if there is one, and room for it."""
-        if self._is_at_once:  # which came before those that wait
+        if self._is_at_once or self._requests.is_empty:  # what is at once came before those that wait
             return False
         handle = self._requests.take(urgent_only=not self._has_room())
         if handle is not None:

@@ -39,6 +39,8 @@ class BodyRecord:
     entity: bool
     masks: list[tuple[int, int]]
     ghost: bool = False
+    in_the_way: str = ""
+    """What fills the place of a ghost."""
     commit: int = 0
     shape_commit: int = 0
     joints: tuple[Joint, ...] = ()
@@ -70,6 +72,7 @@ class BodyRecord:
             fixed=self.fixed,
             entity=self.entity,
             ghost=self.ghost,
+            in_the_way=self.in_the_way if self.ghost else "",
             resting=resting,
             commit=self.commit,
             shape_commit=self.shape_commit,

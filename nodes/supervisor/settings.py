@@ -128,7 +128,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         if self.robot is not None and not self.sim and not self.only:
             raise ValueError("--robot puts a robot into the simulator; leave out --no-sim")
         for endpoint in (self.listen, *self.connect):
-            if not _is_endpoint(endpoint):
+            if not is_endpoint(endpoint):
                 raise ValueError(f"'{endpoint}' is not a valid Zenoh endpoint; example: {DEFAULT_ENDPOINT}")
         decides = not self.only or "coordinator" in self.only  # else another host says what the truth is
         if decides and self.perception and self.sim and self.camera_hz and self.truth != "perceived":
@@ -200,7 +200,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return self.listen.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
 
 
-def _is_endpoint(text: str) -> bool:
+def is_endpoint(text: str) -> bool:
     """Is it a protocol and an address, with a port that there can be, if with one?"""
     protocol, _, address = text.partition("/")
     port = address.rpartition(":")[2]

@@ -356,7 +356,8 @@ def _require_free(endpoint: str) -> None:
             probe.bind((host, port))
         except OSError as error:
             raise errors.Refused(
-                f"cannot listen on {endpoint}: {error.strerror}; choose another with --listen"
+                f"cannot listen on {endpoint}: {error.strerror}; choose another, such as"
+                f" --listen tcp/{match[1]}:{port + 1}"
             ) from None
 
 

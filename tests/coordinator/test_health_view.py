@@ -1,5 +1,7 @@
 """Who is alive."""
 
+import pytest
+
 from nodes.coordinator import health_view
 from nodes.coordinator.health_view import HealthView
 from schemas.health import Health
@@ -42,11 +44,12 @@ def test_just_after_a_start_a_node_that_was_not_heard_of_may_be_there(monkeypatc
     assert view.may_be_there("kb_node")
 
 
-def test_there_may_be_any_number_of_pages_and_one_that_has_ended_is_told_no_more(monkeypatch):
+@pytest.mark.parametrize("client", ["web", "ros"])
+def test_there_may_be_any_number_of_clients_and_one_that_has_ended_is_told_no_more(monkeypatch, client):
     view = HealthView()
     for pid in (7, 8):
-        view.take(beat("ready", pid, node="web"))
+        view.take(beat("ready", pid, node=client))
     view.take(beat("ready", 9))
-    assert [(row.node, row.pid) for row in view.nodes()] == [("kb_node", 9), ("web", 7), ("web", 8)]
+    assert [(row.node, row.pid) for row in view.nodes()] == [("kb_node", 9), (client, 7), (client, 8)]
     monkeypatch.setattr(health_view, "SILENT_AFTER_S", 0.0)
     assert [(row.node, row.state) for row in view.nodes()] == [("kb_node", "silent")]

@@ -109,6 +109,7 @@ def test_a_port_in_use_is_told(tmp_path):
         status, line = up(tmp_path, "--listen", endpoint)
     assert status == 1
     assert f"cannot listen on {endpoint}" in line
+    assert "such as --listen tcp/127.0.0.1:" in line
 
 
 @pytest.mark.parametrize(
@@ -123,6 +124,7 @@ def test_a_port_in_use_is_told(tmp_path):
         (("--threshold", "-1"), "--threshold must be"),
         (("--camera-size", "0", "0"), "--camera-size: the 1st must be"),
         (("--truth", "god"), "god"),
+        (("--listen", "7450"), "'7450' is not a valid Zenoh endpoint; example: tcp/127.0.0.1:7447"),
         (("--connect", "tcp/127.0.0.1:99999"), "'tcp/127.0.0.1:99999' is not a valid Zenoh endpoint"),
         (("--data", "/etc/hosts"), "/etc/hosts"),
     ],

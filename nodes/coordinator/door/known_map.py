@@ -84,9 +84,10 @@ class KnownMap(map_replica.MapReplica[Effects]):
     def _apply(self, commit: Effects) -> None:
         """See `MapReplica._apply`."""
         super()._apply(commit)
-        self.touched.update(commit.names)
-        self._names.freed(gone.name for gone in commit.removed)
+        names = commit.names
+        self.touched.update(names)
         for gone in commit.removed:
+            self._names.freed(gone.name)
             self.tracked.pop(gone.name, None)
             self.held.pop(gone.name, None)
         for changed in commit.changed:
@@ -99,9 +100,9 @@ class KnownMap(map_replica.MapReplica[Effects]):
             elif changed.name in self.held:
                 del self.held[changed.name]
         if self._floor is not None:
-            self._floor.touch(commit.names)
+            self._floor.touch(names)
         if self._places is not None:
-            for name in commit.names:
+            for name in names:
                 entity = self.entities.get(name)
                 if entity is not None and entity.place:
                     self._places[name] = entity

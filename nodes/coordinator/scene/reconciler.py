@@ -52,7 +52,6 @@ T = TypeVar("T")
 _PART_OF = "isDirectPartOf"
 _CALM_S = 2.0
 """So long the map waits for what is inside a thing to rest, too."""
-GHOSTLY = "overlaps another body, so it does not collide until there is room"
 
 
 class AskSim(Protocol):
@@ -221,7 +220,7 @@ class Keeping:
         if body is not None:
             return BodyState(
                 status="ghost" if body.ghost else "present",
-                detail=GHOSTLY if body.ghost else "",
+                detail=ghostly(body) if body.ghost else "",
                 model=body.model,
                 joints=body.joints,
                 openness=openness(body.joints),
@@ -592,6 +591,11 @@ class Keeping:
                 failed(error)
 
         self._change(change).add_done_callback(on_done)
+
+
+def ghostly(body: Body) -> str:
+    """What is said of a ghost."""
+    return f"overlaps {body.in_the_way or 'another body'}, so it does not collide until there is room"
 
 
 def _only(names: Collection[str], of: Mapping[str, T]) -> dict[str, T]:

@@ -10,7 +10,7 @@ from typing import TypeVar
 from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
 from nodes.coordinator.plausibility import require_carrying
-from nodes.coordinator.scene.reconciler import GHOSTLY, AskSim, Keeping
+from nodes.coordinator.scene.reconciler import AskSim, Keeping, ghostly
 from nodes.runtime.futures import OwnFuture, settle, then
 from schemas import commands as c
 from schemas import errors, wording
@@ -147,7 +147,7 @@ def _let_go(command: c.Move, body: Body) -> str:
     """Where the hand let go: where it was told to, or above, where there is room."""
     (x, y, z), room_z_m = command.at, body.pose.position_m[2]
     if body.ghost:
-        return f"put {body.name} at ({x:g}, {y:g}, {z:g}), where it {GHOSTLY}"
+        return f"put {body.name} at ({x:g}, {y:g}, {z:g}), where it {ghostly(body)}"
     if room_z_m - z > _LIFTED_M:
         return (
             f"put {body.name} at ({x:g}, {y:g}, {room_z_m:.2f}), the lowest free place there, and released it"

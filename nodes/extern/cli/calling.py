@@ -6,7 +6,7 @@ import functools
 import os
 import sys
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -144,6 +144,9 @@ def run_words(app: click.Command, words: list[str], client: Client | None = None
     except click.NoSuchOption as error:
         complain(f"{where}{_no_such_option(error)}")
         return 2
+    except click.BadOptionUsage as error:
+        complain(f"{where}{_wanted(error, app, words[0])}")
+        return 2
     except click.ClickException as error:
         complain(f"{where}{error.format_message()}")
         return 2
@@ -173,9 +176,24 @@ def print_lines(lines: Iterable[str]) -> None:
         say(line)
 
 
+class _Metres(click.ParamType[float]):
+    """A number of metres, without a unit."""
+
+    name = "metres"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        try:
+            return float(value)
+        except ValueError:
+            self.fail(f"'{value}' is not a number; write metres without a unit, as in 0.76", param, ctx)
+
+
+_METRES: Final = _Metres()
+
+
 def vector_option(*names: str, **options: Any) -> Callable[[Any], Any]:
-    """An option of three numbers."""
-    return click.option(*names, nargs=3, type=float, **options)
+    """An option of three numbers [m]."""
+    return click.option(*names, nargs=3, type=_METRES, **options)
 
 
 def frame_option(what: str) -> Callable[[Any], Any]:
@@ -209,6 +227,16 @@ def complain(text: str) -> None:
 def _plainly(text: str) -> str:
     """A user knows of no message."""
     return text.removeprefix("malformed message: ")
+
+
+def _wanted(error: click.BadOptionUsage, app: click.Command, verb: str) -> str:
+    """What an option of several values takes that was given fewer; click does not say of which command."""
+    command = app.get_command(click.Context(app), verb) if isinstance(app, click.Group) else app
+    for option in command.params if command is not None else ():
+        if option.nargs > 1 and error.option_name in option.opts:
+            values = f"{error.option_name} {option.metavar}"
+            return f"{error.option_name} takes {option.nargs} values, with spaces between: {values}"
+    return error.format_message()
 
 
 def _no_such_option(error: click.NoSuchOption) -> str:

@@ -76,7 +76,6 @@ def read(
             for stamp_ns, pictures in _taken(bag, chosen, found.taken, depths_ns):
                 try:
                     rgb, depth_m, matrix = camera.frame(*pictures)
-                    check_unit(depth_m)
                     pose = None
                     if where is not None:
                         pose = known.tree.pose(known.frames[chosen.depth], where, stamp_ns)
@@ -149,6 +148,7 @@ class _Camera:
         if intrinsics is not None:
             told = read_pinhole(intrinsics)
             self._matrix, self._scale_m = of_centres(told.fx, told.fy, told.cx, told.cy), told.depth_scale
+            self._size = told.size
             self.whence = str(intrinsics)
             return
         topic = next((topic for topic in chosen.infos if topic in known.infos), None)
@@ -168,6 +168,8 @@ class _Camera:
     ) -> tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.float64]]:
         """Colour and depth of one size, that of the depth, and the intrinsics of that. Raises BadRequest."""
         rgb, depth_m = colour_of(colour), depth_of(depth, self._scale_m)
+        if self._scale_m is None:
+            check_unit(depth_m, 1.0 if "32FC1" in encoding_of(depth) else 0.001)
         height, width = depth_m.shape
         try:
             matrix = scaled(self._matrix, self._size or (width, height), (width, height))

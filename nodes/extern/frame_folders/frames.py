@@ -12,13 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from nodes.perception_node.input.cloud import FARTHEST_M
+from nodes.perception_node.input.files import units
 from schemas.errors import BadFile, BadRequest, SemmapError
 
 _MM = 1000.0
 _FARTHEST_MM = 65_535
-_LEAST_M = 0.1
-"""Something in a picture is farther away."""
 _DIGITS = 9
 """Of the seconds in a folder's name: in the order of names frames are in the order of time."""
 
@@ -53,21 +51,14 @@ class Recording:
     notes: Sequence[str] = ()
 
 
-def check_unit(depth_m: NDArray[np.float32]) -> None:
-    """Raises BadFile for depth (H, W) [m] that no camera measures: its numbers are in another unit."""
-    seen = depth_m[np.isfinite(depth_m) & (depth_m > 0)]
-    if not len(seen):
-        return
-    if np.median(seen) > FARTHEST_M:
-        what, unit, scale = f"half of its depth is beyond {np.median(seen):.0f} m", "millimetres", 0.001
-    elif seen.max() < _LEAST_M:
-        what, unit, scale = f"its depth ends at {seen.max():.3f} m", "metres", 1
-    else:
-        return
-    raise BadFile(
-        f"{what}, as if its numbers were {unit}: say so by --intrinsics FILE.json with fx, fy, cx, cy and"
-        f' "depth_scale": {scale}'
-    )
+def check_unit(depth_m: NDArray[np.float32], scale_m: float) -> None:
+    """Raises BadFile for depth (H, W) [m] that is in another unit, it seems, than `scale_m` metres."""
+    told = units.doubt(depth_m / scale_m, scale_m)
+    if told is not None:
+        raise BadFile(
+            f"{told}: say so by --intrinsics FILE.json with fx, fy, cx, cy and"
+            f' "depth_scale": {told.scale_m:g}'
+        )
 
 
 def check_free(folder: Path) -> None:

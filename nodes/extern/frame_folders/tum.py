@@ -58,7 +58,7 @@ def read(folder: Path, *, within_s: float, every_s: float, intrinsics: Path | No
                         f"{of.name} is {rgb.shape[1]} x {rgb.shape[0]} pixels,"
                         f" {of_depth.name} {depth_m.shape[1]} x {depth_m.shape[0]}"
                     )
-                check_unit(depth_m)
+                check_unit(depth_m, scale_m)
                 pose = None if poses is None else poses.at(stamp_ns)
                 size = (depth_m.shape[1], depth_m.shape[0])
                 yield RecordedFrame(stamp_ns, rgb, depth_m, pinhole(size), pose)
@@ -118,14 +118,15 @@ def _camera(
             of_centres(camera.fx, camera.fy, camera.cx, camera.cy),
             camera.depth_scale or _SCALE_M,
         )
-        whence = str(intrinsics)
+        whence, of_size = str(intrinsics), camera.size
     else:
         assert told is not None
         matrix, scale_m, whence = of_centres(*_CALIBRATED[told[1]]), _SCALE_M, f"TUM's freiburg{told[1]}"
+        of_size = _SIZE
 
     def of(size: tuple[int, int]) -> NDArray[np.float64]:
         try:
-            return scaled(matrix, size if intrinsics is not None else _SIZE, size)
+            return scaled(matrix, of_size or size, size)
         except ValueError as error:
             raise BadFile(f"{whence}: {error}") from None
 

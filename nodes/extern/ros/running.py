@@ -15,7 +15,7 @@ from nodes.extern.ros.bridge import Bridge, topics
 from nodes.extern.ros.cameras import CameraTopics
 from nodes.extern.ros.inbound import Inbound
 from nodes.runtime.loop import Node
-from schemas import errors
+from schemas import errors, keys
 
 ROUTER: Final = "tcp/127.0.0.1:7447"
 """Where rmw_zenoh's router listens when nothing else is said."""
@@ -44,7 +44,7 @@ def run(
     session: bus.Session, commands: str, config: RosConfig, tell: Callable[[str], None] = lambda _: None
 ) -> None:
     """Bridge until stopped. Raises NoAnswer where no router of ROS listens, BadRequest for no endpoint."""
-    node = Node("ros", session, commands)
+    node = Node(keys.ROS, session, commands)
     with ros_session(config.router) as other, _stopped_by_signals(node.stop):
         ros = RosNode(other, config.name, config.domain)
         Bridge(
@@ -72,6 +72,11 @@ def ros_session(router: str) -> Iterator[bus.Session]:
     """A session in ROS's network."""
     try:
         with bus.open_session(bus.Network(connect=(router,), mode="client")) as session:
+            if not session.info.routers_zid():
+                raise errors.BadRequest(
+                    f"what listens at {router} is no router but a peer, as semmap is itself; start ROS's"
+                    " (ros2 run rmw_zenoh_cpp rmw_zenohd), and say where it is with --router"
+                )
             yield session
     except errors.NoAnswer:
         raise errors.NoAnswer(

@@ -337,9 +337,15 @@ class Engine:
                 sleep.wake(self.data, self.index.tree[self.index.row[name]])
 
     def disturb(self, rows: Sequence[int]) -> None:
-        """These bodies were taken in hand: those that are free do not rest before they were still anew."""
-        self._rest.disturb(list(rows), self.data.time)
-        self.resting[list(rows)] = self.index.tree[list(rows)] < 0
+        """These bodies were taken in hand: those that are free do not rest before they were still anew.
+
+        Nor does what moves along with them, as a robot's gripper does.
+        """
+        tree = self.index.tree
+        along = np.flatnonzero((tree >= 0) & np.isin(tree, tree[list(rows)]))
+        taken = [*rows, *along.tolist()]
+        self._rest.disturb(taken, self.data.time)
+        self.resting[taken] = tree[taken] < 0
 
     def _calm(self, before: Floats) -> None:
         """A body whose motion ran out of bounds stops where it was a step ago."""

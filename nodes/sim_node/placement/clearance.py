@@ -16,10 +16,11 @@ from nodes.sim_node.placement.obstacles import CLEARANCE_M, GROUND, Stage
 
 @dataclass(frozen=True)
 class Placed:
-    """What became of one body: lifted by `rise_m`, or a ghost."""
+    """What became of one body: lifted by `rise_m`, or a ghost, as the body `in_the_way` fills its place."""
 
     rise_m: float = 0.0
     ghost: bool = False
+    in_the_way: int | None = None
 
 
 def place(stage: Stage, rows: Sequence[int]) -> dict[int, Placed]:
@@ -48,7 +49,9 @@ def place(stage: Stage, rows: Sequence[int]) -> dict[int, Placed]:
             pushed.update(sharing)
             stage.standing[sharing] = False
             queue.extend(sharing)
-        verdicts[row] = Placed(rise_m=rise or 0.0, ghost=not stage.standing[row])
+        ghost = not stage.standing[row]
+        filling = next((other for other in (*hits, *onto) if other != GROUND), None) if ghost else None
+        verdicts[row] = Placed(rise_m=rise or 0.0, ghost=ghost, in_the_way=filling)
     return verdicts
 
 

@@ -92,6 +92,9 @@ class Settling:
         turned: dict[str, Pose] = {}
         for row, placed in place(stage, rows).items():
             record = engine.index.records[row]
+            in_the_way = "" if placed.in_the_way is None else engine.index.names[placed.in_the_way]
+            self.version += in_the_way != record.in_the_way
+            record.in_the_way = in_the_way
             if placed.ghost != record.ghost:
                 record.ghost = placed.ghost
                 turned[record.name] = pose_of(poses[row] + (0.0, 0.0, placed.rise_m, 0.0, 0.0, 0.0, 0.0))

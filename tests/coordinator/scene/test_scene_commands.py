@@ -11,7 +11,7 @@ from schemas.entities import Pose
 from schemas.scenes import BodiesMoved, Body
 
 
-def cup(z: float, *, ghost: bool = False) -> Body:
+def cup(z: float, *, ghost: bool = False, in_the_way: str = "") -> Body:
     return Body(
         name="cup1",
         class_="Cup",
@@ -21,6 +21,7 @@ def cup(z: float, *, ghost: bool = False) -> Body:
         fixed=False,
         entity=True,
         ghost=ghost,
+        in_the_way=in_the_way,
         resting=False,
         commit=1,
         shape_commit=1,
@@ -51,6 +52,11 @@ def said_of_a_move(z: float, put: Body) -> str:
             0.5,
             cup(0.5, ghost=True),
             "put cup1 at (1, 2, 0.5), where it overlaps another body, so it does not",
+        ),
+        (
+            0.5,
+            cup(0.5, ghost=True, in_the_way="fridge1"),
+            "put cup1 at (1, 2, 0.5), where it overlaps fridge1, so",
         ),
     ],
 )

@@ -1,5 +1,8 @@
 """What the options of a verb say."""
 
+import pytest
+
+from nodes.extern.cli.app import execute
 from nodes.extern.cli.calling import given
 
 
@@ -14,3 +17,20 @@ def test_zero_is_given():
         "ref": "",
         "wait": True,
     }
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--at", "1,2,3"], "--at takes 3 values, with spaces between: --at X Y Z"),
+        (["--at", "1", "2"], "--at takes 3 values, with spaces between: --at X Y Z"),
+        (
+            ["--at", "1m", "2m", "0"],
+            "Invalid value for '--at': '1m' is not a number; write metres without a unit",
+        ),
+        (["--ref"], "Option '--ref' requires an argument."),
+    ],
+)
+def test_what_an_option_takes_is_told(capsys, words, said):
+    assert execute(["add", "Cup", *words]) == 2
+    assert capsys.readouterr().err.startswith(f"semmap: {said}")

@@ -104,6 +104,10 @@ def test_another_party_sees_the_map_and_its_changes(bridged, router):
         assert "table1" in drawn
 
 
+def test_semmap_itself_is_no_router(flat):
+    assert "is no router but a peer" in flat.cli("ros", "--router", flat.endpoint, status=2)
+
+
 def test_another_party_sees_the_frames_that_others_publish(bridged, router):
     with bridged.client() as client, listening(router) as ros:
         client.publish_frame("dock", "map", at=(4.0, 1.0, 0.0), fixed=True)

@@ -14,6 +14,7 @@ def test_of_two_big_ones_in_one_place_the_later_is_a_ghost_until_there_is_room()
     world.step(0.5)
     first, second = bodies(world)["fridge1"], bodies(world)["fridge2"]
     assert (first.ghost, second.ghost) == (False, True)
+    assert (first.in_the_way, second.in_the_way) == ("", "fridge1")
     assert second.pose == pose(0.3, 0)
     assert second.resting
     version = world.scene().version
@@ -28,6 +29,7 @@ def test_a_ghost_turns_solid_when_the_other_is_deleted_and_can_be_moved_out():
     orders = [order(f"fridge{i}", "", pose(0.1 * i, 0), size_m=FRIDGE) for i in range(3)]
     world = spawned(*orders)
     assert sorted(b.ghost for b in bodies(world).values()) == [False, True, True]
+    assert {b.in_the_way for b in bodies(world).values()} == {"", "fridge0"}
     world.move([hand("fridge1", pose(4, 0))])
     assert not bodies(world)["fridge1"].ghost
     world.delete(["fridge0"])
@@ -39,6 +41,7 @@ def test_of_several_ghosts_in_one_place_the_earliest_gets_it():
     world = spawned(*(order(name, "", pose(0, 0), size_m=FRIDGE) for name in names))
     for gone, next_ in pairwise(names):
         world.delete([gone])
+        assert {body.in_the_way for body in bodies(world).values() if body.ghost} <= {next_}
         assert [name for name, body in bodies(world).items() if not body.ghost] == [next_]
 
 

@@ -48,6 +48,17 @@ def test_it_stands_where_it_is_put_and_sleeps(world):
     assert world.pose("robot1").position_m == pytest.approx(AT, abs=2e-3)
 
 
+def test_what_is_part_of_it_does_not_rest_either_once_it_is_put_elsewhere(world):
+    """Who looks at once must look again: else the gripper would stay where it was, to the map."""
+    world.step(3.0)
+    x, y, z = AT
+    world.move([Placement(name="robot1", pose=Pose(position_m=(x + 0.5, y, z)), commit=3)])
+    assert world.poses().resting == (False, False)
+    world.step(3.0)
+    assert world.poses().resting == (True, True)
+    assert world.pose("robot1_gripper").position_m[0] > x + 0.4
+
+
 def test_it_drives_through_points_and_faces_where_it_is_to(world):
     world.drive(DriveBase(name="robot1", to=((8.5, 2.0), (8.5, 2.8)), yaw=0.0))
     world.step(1.0)

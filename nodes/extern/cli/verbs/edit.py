@@ -65,11 +65,14 @@ _describing = _options(
 @click.option(
     "--track", type=click.Choice(["stream", "sim"]), help="Track it from the start (see: semmap track)."
 )
-@click.option("--default", is_flag=True, help="Use the next free place and the class's label as reference.")
+@click.option("--default", is_flag=True, help="Fill in the class's label as reference, too.")
 @_dry_run
 @talks
 def add(client: Client, **fields: Any) -> None:
-    """Add an entity to the map."""
+    """Add an entity to the map.
+
+    Without --at it goes to the next free place.
+    """
     print_lines(lines.changed(client.add(**given(fields))))
 
 

@@ -53,9 +53,13 @@ def _or_folders(function: Callable[..., None]) -> Callable[..., None]:
         help="The recording's camera: fx, fy, cx, cy [pixel] and, optionally, depth_scale [m].",
     )
     @functools.wraps(function)
-    def chosen(name: str | None, folder: Path | None, format: str, **arguments: Any) -> None:
+    def chosen(name: str | None, folder: Path | None, format: str | None, **arguments: Any) -> None:
         options = {option: arguments.pop(option) for option in _OPTIONS}
         if folder is not None and name is not None:
+            if format is not None:
+                raise errors.BadRequest(
+                    "--format goes with the tree; a recording becomes folders of pictures"
+                )
             _folders(Path(name), folder, **options)
             return
         if said := list(given(options)):
@@ -75,10 +79,10 @@ _SUFFIXES = (".bag", ".db3", ".mcap")
 @click.command()
 @click.argument("name", metavar="[NAME | RECORDING DIR]", required=False, shell_complete=entity_names)
 @click.argument("folder", metavar="", required=False, type=click.Path(path_type=Path))
-@click.option("--format", "format", type=click.Choice(["tree", "json"]), default="tree", show_default=True)
+@click.option("--format", "format", type=click.Choice(["tree", "json"]), help="[default: tree]")
 @_or_folders
 @talks
-def frames(client: Client, name: str | None, format: str) -> None:
+def frames(client: Client, name: str | None, format: str | None) -> None:
     """Show the tree of frames, each with its pose in its parent.
 
     Frames are the map, entities, cameras, and what others publish. With NAME that frame, those above it and

@@ -22,7 +22,7 @@ from nodes.identity import SUPERVISOR
 from nodes.identity.register import Register
 from nodes.runtime import extras
 from nodes.supervisor.parts import nodes_of
-from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
+from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data, is_endpoint
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
 from schemas.endpoints import ALL_ROBOTS, CONNECT_VARIABLE, NAMESPACE_VARIABLE
@@ -407,6 +407,8 @@ def _require_for_web(
 def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
     """Without certificates a system listens on this machine only. Raises BadRequest, BadFile, NoAnswer."""
     listen, secure, config = values["listen"], values["secure"], values["zenoh_config"]
+    if not is_endpoint(listen):
+        return  # which the settings refuse
     if config is not None:
         bus.own_config.require_sound(config, secure=secure is not None)
     if secure is not None:

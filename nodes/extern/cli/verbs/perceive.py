@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 _SAY_S = 5.0
 """After this time it is told again how far a dataset is."""
+_CLUTTER = "?: too little to tell, or a part of furniture, whose parts are put together with --frames"
 _FRAMES = {
     "map": "map frame",
     "plane": "frame: the floor, or else the largest plane, is z = 0, the camera above its origin",
@@ -40,7 +41,9 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
 @click.command()
 @click.argument("files", metavar="[FILE...]", nargs=-1, type=click.Path(path_type=Path))
 @_path_option(
-    "--frames", "DIR", "A dataset instead: each folder in it has rgb.png, depth.png [mm] and camera.json."
+    "--frames",
+    "DIR",
+    "A dataset instead, or a frame of one: a folder with rgb.png, depth.png [mm] and camera.json.",
 )
 @_path_option(
     "--labels",
@@ -135,6 +138,8 @@ def perceive(
             console().print(f"{file}: {wording.counted(len(told), 'object')}; {_FRAMES[frame]}")
             if told:
                 console().print(as_table(sight, told))
+            if None in told.values():
+                console().print(_CLUTTER)
         if labels is not None:
             buffer = io.BytesIO()
             np.save(buffer, np.where(np.isin(sight.labels, list(sight.carriers)), 0, sight.labels))

@@ -35,7 +35,7 @@ unset door1 hasColor 'color red'
         ("remove cup1", "line 2: 'remove' is none of update, set, unset"),
         ("set door1", "line 2: missing argument 'PROPERTY'"),
         ("set door1 isOpen true --sudo", "line 2: no such option '?--sudo"),
-        ("update chair1 --at 1 two 0", "line 2: .*'two' is not a valid float"),
+        ("update chair1 --at 1 two 0", "line 2: .*'two' is not a number"),
         ("set door1 'isOpen", "line 2: no closing quotation"),
         ("update --help", "line 2: 'update --help' is no change"),
     ],
