@@ -23,11 +23,25 @@ def stateful_map(tmp_path):
     home.close(made)
 
 
+@pytest.fixture(scope="session")
+def unchanged():
+    """The flat's map, if there is one that no test has changed."""
+    kept: list[SemanticMap] = []
+    yield kept
+    for made in kept:
+        made._journal.close()
+
+
 @pytest.fixture
-def flat(tmp_path):
-    """The flat that comes with semmap, as a map."""
-    made = SemanticMap(home.new_household_journal(tmp_path))
-    abox = rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")
-    made.commit(Transaction(id="flat", source="file", insert=tuple(abox)))
+def flat(unchanged, tmp_path_factory):
+    """The flat that comes with semmap, as a map; the same one for all tests that only read it."""
+    if not unchanged:
+        made = SemanticMap(home.new_household_journal(tmp_path_factory.mktemp("flat")))
+        abox = rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")
+        made.commit(Transaction(id="flat", source="file", insert=tuple(abox)))
+        unchanged.append(made)
+    (made,) = unchanged
     yield made
-    made._journal.close()
+    if made.seq != 1:
+        unchanged.remove(made)
+        made._journal.close()
