@@ -13,8 +13,8 @@ from schemas.commands import Classes
 from schemas.commits import Commit, Extent, Snapshot
 from schemas.health import Health
 from tests.conftest import free_endpoint, handling, until
-from tests.waiting import until_followed
 from tests.recorder.messages import commit, entity
+from tests.waiting import until_followed
 
 
 class KnowledgeBase:
