@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 from nodes import bus
+from schemas import keys
 from tests.conftest import until
 
 
@@ -40,3 +42,21 @@ def questions_asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
     monkeypatch.setattr(bus, "ask_later", noted)
     return asked
+
+
+def publications_kept(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """What comes to those who follow a topic from now on, when it has been handed to them."""
+    kept: list[Any] = []
+    follow = bus.follow
+
+    def noted(
+        session: bus.Session, topic: keys.Topic, receive: Callable[[str, Any], None], *ignored: Any
+    ) -> Any:
+        def receive_and_note(key: str, message: Any) -> None:
+            receive(key, message)
+            kept.append(message)
+
+        return follow(session, topic, receive_and_note, *ignored)
+
+    monkeypatch.setattr(bus, "follow", noted)
+    return kept
