@@ -33,24 +33,31 @@ def may(role, key, table):
 
 BY_EVERYBODY = keys.health_key(keys.WEB)
 """Everybody may publish it, and everybody may follow it."""
-BEFORE, AFTER = keys.health_key("before"), keys.health_key("after")
+BY_A_NODE = keys.health_key("after")
+"""Nodes may publish it, and everybody may follow it."""
 
 
-def settle(sessions, name):
-    """Whatever was declared or sent before on this session has been handled by the router afterwards."""
-    with Heard(sessions["coordinator"], BY_EVERYBODY) as heard:
-        heard.hears(sessions[name], BY_EVERYBODY)
+def settle(sessions, *names):
+    """Wait until the router has all that these sessions have sent it, and they all that it has sent them.
+
+    So it knows their subscribers, and they who follows what they publish: to nobody they would send nothing.
+    """
+    for name in names:
+        with Heard(sessions["coordinator"], BY_EVERYBODY) as heard:
+            heard.hears(sessions[name], BY_EVERYBODY)
+    for name in names:
+        with Heard(sessions[name], BY_A_NODE) as heard:
+            heard.hears(sessions["coordinator"], BY_A_NODE)
 
 
 @pytest.mark.parametrize("key_expr", FOLLOWED)
 @pytest.mark.parametrize("role", ROLES)
 def test_following(sessions, role, key_expr):
-    node, key = sessions["kb_node"], concrete(key_expr)
-    with Heard(sessions[role], key_expr, keys.HEALTH.key) as heard:
-        heard.hears(node, BEFORE)
-        with Heard(sessions["coordinator"], key) as witness:
-            witness.hears(node, key)
-        heard.hears(node, key, AFTER)
+    key = concrete(key_expr)
+    with Heard(sessions[role], key_expr, BY_A_NODE) as heard, Heard(sessions["coordinator"], key) as witness:
+        settle(sessions, role, "coordinator", "kb_node")
+        witness.hears(sessions["kb_node"], key)
+        heard.hears(sessions["kb_node"], key, BY_A_NODE)
         assert (key in heard.keys) == (role in FOLLOWED[key_expr])
 
 
@@ -58,8 +65,8 @@ def test_following(sessions, role, key_expr):
 @pytest.mark.parametrize("role", ROLES)
 def test_publishing(sessions, role, key_expr):
     key = concrete(key_expr)
-    with Heard(sessions["coordinator"], key_expr, keys.HEALTH.key) as heard:
-        heard.hears(sessions["kb_node"], BEFORE)
+    with Heard(sessions["coordinator"], key_expr, BY_EVERYBODY) as heard:
+        settle(sessions, "coordinator", role)
         heard.hears(sessions[role], key, BY_EVERYBODY)
         assert (key in heard.keys) == (role in PUBLISHED[key_expr])
 
@@ -74,8 +81,8 @@ def served(sessions):
 
     prefixes = {**keys.SERVED_BY, keys.commands_as(): "coordinator"}
     queryables = [sessions[node].declare_queryable(f"{p}/*", answer) for p, node in prefixes.items()]
-    for node in set(prefixes.values()):
-        settle(sessions, node)
+    settle(sessions, *set(prefixes.values()))
+    settle(sessions, *ROLES)
     yield
     for queryable in queryables:
         queryable.undeclare()
@@ -132,7 +139,7 @@ def test_outsiders_serve_nothing(sessions, served, role, key):
     concrete_key = key.replace("*", "operator")
     queryable = sessions[role].declare_queryable(key, steal, complete=True)
     try:
-        settle(sessions, role)
+        settle(sessions, role, "node")
         for target in (
             zenoh.QueryTarget.ALL,
             zenoh.QueryTarget.ALL_COMPLETE,
@@ -157,15 +164,13 @@ def test_outsiders_do_not_pass_for_nodes(sessions, role):
         sessions["sim_node"].liveliness().declare_token(true),
     ]
     try:
-        settle(sessions, role)
-        settle(sessions, "sim_node")
+        settle(sessions, role, "sim_node", "coordinator")
         until(lambda: true in there(sessions["coordinator"]), "the node is seen")
         assert forged not in there(sessions["coordinator"])
     finally:
         for token in tokens:
             token.undeclare()
-        settle(sessions, role)
-        settle(sessions, "sim_node")
+        settle(sessions, role, "sim_node", "coordinator")
 
 
 @pytest.mark.parametrize("role", ROLES)
