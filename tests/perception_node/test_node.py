@@ -278,7 +278,7 @@ def test_a_class_that_the_map_does_not_have_is_told_and_the_others_count(world):
     until(lambda: "that the map does not have were ignored: Gizmo" in world.health.last_error, "it says so")
 
 
-def test_a_frame_is_looked_at_with_the_masks_of_its_moment(world, monkeypatch):
+def test_a_frame_is_looked_at_with_the_masks_of_its_moment(world, monkeypatch, caplog):
     monkeypatch.setattr("nodes.perception_node.input.frames._SILENT_S", 10 * PATIENCE_S)
     run = MaskRun(size=(48, 64), counts=(0, 48 * 64), label="spork")
 
@@ -287,7 +287,7 @@ def test_a_frame_is_looked_at_with_the_masks_of_its_moment(world, monkeypatch):
         stamp_ns = world._stamp_ns
         masks = DetectedMasks(camera="left", stamp_ns=stamp_ns, width=64, height=48, masks=(run,))
         world.session.put(keys.MASKS.key, codec.encode(masks))
-        return "no class here: spork" in world.health.last_error
+        return "no class here: spork" in caplog.text  # masks that overtake their frame are told of, too
 
     until(told, "the look had the masks")
     world.film()
@@ -302,11 +302,11 @@ def test_a_frame_is_looked_at_with_the_masks_of_its_moment(world, monkeypatch):
     assert waiting_ns not in {seen.stamp_ns for seen in world.seen}  # it waits for its masks
 
 
-def test_masks_that_do_not_fit_are_told_and_the_frame_is_looked_at_all_the_same(world):
+def test_masks_that_do_not_fit_are_told_and_the_frame_is_looked_at_all_the_same(world, caplog):
     def told():
         world.film()
         masks = DetectedMasks(camera="left", stamp_ns=world._stamp_ns, width=32, height=48)
         world.session.put(keys.MASKS.key, codec.encode(masks))
-        return world.seen and "of 32 x 48 pixels, the picture of 64 x 48" in world.health.last_error
+        return world.seen and "of 32 x 48 pixels, the picture of 64 x 48" in caplog.text
 
     until(told, "it says so")
