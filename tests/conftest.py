@@ -61,11 +61,12 @@ def handling(node: Node) -> Iterator[None]:
 
 def until(condition: Callable[[], Any], what: str) -> Any:
     """Wait for `condition()` to hold and return what it gave; fail after a while."""
-    deadline = time.monotonic() + PATIENCE_S
+    deadline, pause_s = time.monotonic() + PATIENCE_S, 0.005
     while time.monotonic() < deadline:
         if result := condition():
             return result
-        time.sleep(0.1)
+        time.sleep(pause_s)
+        pause_s = min(2 * pause_s, 0.1)
     return pytest.fail(f"waited {PATIENCE_S:g} s in vain: {what}")
 
 

@@ -12,7 +12,8 @@ import pytest
 from nodes import bus
 from schemas import commands, keys, replies
 from tests.bus.conftest import answer
-from tests.conftest import free_endpoint, until
+from tests.conftest import PATIENCE_S, free_endpoint, until
+from tests.waiting import until_served
 
 ASKED = (commands.Get(name="x"), replies.Done)
 
@@ -33,6 +34,7 @@ def three():
             return replies.Done(text="stolen")
 
         bus.serve(thief, keys.BRIDGE, answer(steal), verb="get")
+        until_served(client, f"{keys.BRIDGE}/get")
         yield node, client, stolen
 
 
@@ -97,7 +99,7 @@ def test_who_asks_without_waiting_is_told_and_can_ask_everybody(three):
             done.set()
 
         bus.ask_later(client, keys.BRIDGE, "get", *ASKED, take, lifelines=lifelines, everybody=everybody)
-        assert done.wait(10)
+        assert done.wait(PATIENCE_S)
         return answers[0]
 
     with pytest.raises(bus.ForeignReply):
@@ -155,4 +157,4 @@ def test_nor_is_one_who_is_asked_without_waiting(slow):
     for _ in range(_OFTEN):
         bus.ask_later(client, keys.BRIDGE, "get", *ASKED, answers.put, timeout_s=0.01, lifelines=lifelines)
         with pytest.raises(bus.TimedOut, match="did not answer within"):
-            answers.get(timeout=10.0)()
+            answers.get(timeout=PATIENCE_S)()

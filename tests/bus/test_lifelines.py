@@ -31,6 +31,28 @@ def test_who_has_a_token_is_there(pair, lifelines_and_token):
     until(lambda: not lifelines.is_there("kb_node"), "both are gone")
 
 
+def test_the_robots_that_are_there_are_told_of_before_it_goes_on(pair):
+    server, client = pair
+    names = ("arm1", "arm2")
+    tokens = [server.liveliness().declare_token(f"{name}/{keys.live_key('kb_node', '7')}") for name in names]
+    until(lambda: set(names) <= set(bus.robots(client)), "they are seen")
+    there = bus.Network(connect=(f"{client.info.links()[0].dst}",))
+    for _ in range(20):  # news are now and then as quick as that by themselves
+        told = []
+        with bus.open_session(there) as newcomer:
+            _follower = bus.follow_robots(newcomer, "kb_node", lambda *said, told=told: told.append(said))
+            assert sorted(told) == [(name, "7", True) for name in names]
+    told = []
+    with bus.open_session(there) as newcomer:
+        _follower = bus.follow_robots(newcomer, "kb_node", lambda *said: told.append(said))
+        tokens[0].undeclare()
+        until(lambda: len(told) > 2, "that one has gone")
+        later = server.liveliness().declare_token(f"arm3/{keys.live_key('kb_node', '8')}")
+        until(lambda: len(told) > 3, "that another has come")
+    assert told[2:] == [("arm1", "7", False), ("arm3", "8", True)]
+    later.undeclare()
+
+
 def test_all_that_hangs_on_a_node_is_cancelled_when_it_goes(lifelines_and_token):
     lifelines, token = lifelines_and_token
     old = [lifelines.of(("kb_node",)), lifelines.of(("kb_node", "coordinator"))]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import queue
-import time
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -13,7 +12,8 @@ from nodes import bus
 from nodes.bus import pieces
 from schemas import codec, commands, errors, keys, replies
 from tests.bus.conftest import PREFIX, answer
-from tests.conftest import until
+from tests.conftest import PATIENCE_S, until
+from tests.waiting import until_followed
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def test_so_they_do_without_waiting(pair, small):
     bus.serve(server, PREFIX, answer(echoed))
     got = queue.SimpleQueue()
     bus.ask_later(client, PREFIX, "load", load(10_240), replies.Document, got.put)
-    assert got.get(timeout=5)().decode().content == load(10_240).content
+    assert got.get(timeout=PATIENCE_S)().decode().content == load(10_240).content
 
 
 def test_a_large_error_comes_to_who_asked_in_pieces(pair, small):
@@ -68,12 +68,12 @@ def test_a_message_larger_than_a_session_takes_does_not_arrive(pair):
     server, client = pair
     came = queue.SimpleQueue()
     server.declare_subscriber("semmap/large", lambda sample: came.put(len(sample.payload)))
-    time.sleep(0.3)
+    until_followed(client, "semmap/large")
     client.put(
         "semmap/large", bytes(pieces.PLANE + (1 << 20)), congestion_control=zenoh.CongestionControl.BLOCK
     )
     client.put("semmap/large", bytes(bus.PUBLISHED), congestion_control=zenoh.CongestionControl.BLOCK)
-    assert came.get(timeout=10) == bus.PUBLISHED
+    assert came.get(timeout=PATIENCE_S) == bus.PUBLISHED
 
 
 def test_a_request_of_a_small_kind_is_refused_when_it_is_large(pair):
@@ -98,7 +98,7 @@ def test_several_at_once_are_kept_apart(pair, small):
     with ThreadPoolExecutor(8) as pool:
         sizes = [256 * n for n in range(10, 42)]
         asked = [pool.submit(bus.ask, client, PREFIX, "load", load(n), replies.Document) for n in sizes]
-        assert [len(a.result(20).content) for a in asked] == sizes
+        assert [len(a.result(PATIENCE_S).content) for a in asked] == sizes
 
 
 def test_json_is_not_cut(pair, small):
@@ -169,7 +169,7 @@ def test_a_publication_that_is_too_large_is_counted(pair):
     server, client = pair
     heard, ignored = [], []
     bus.follow(server, keys.HEALTH, lambda _, beat: heard.append(beat), lambda: ignored.append(1))
-    time.sleep(0.3)
+    until_followed(client, keys.health_key("x"))
     client.put(keys.health_key("x"), bytes(bus.MESSAGE + 1), congestion_control=zenoh.CongestionControl.BLOCK)
     until(lambda: ignored, "it is ignored")
     assert heard == []

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import queue
-import time
 
 import pytest
 
 from nodes import bus
 from schemas import codec, keys
 from schemas.commits import Commit
+from tests.conftest import PATIENCE_S
+from tests.waiting import until_followed
 
 
 def commit(seq: int) -> Commit:
@@ -21,20 +22,20 @@ def test_commits_arrive_in_order_and_none_is_lost(pair):
     arrived: queue.SimpleQueue = queue.SimpleQueue()
     publisher = bus.publisher(server, keys.COMMIT)
     bus.follow(client, keys.COMMIT, lambda _, message: arrived.put(message.seq))
-    time.sleep(0.3)
+    until_followed(server, keys.COMMIT.key)
     for seq in range(1, 501):
         publisher.put(codec.encode(commit(seq)))
-    assert [arrived.get(timeout=10) for _ in range(500)] == list(range(1, 501))
+    assert [arrived.get(timeout=PATIENCE_S) for _ in range(500)] == list(range(1, 501))
 
 
 def test_what_is_not_ours_is_not_followed(pair):
     server, client = pair
     arrived: queue.SimpleQueue = queue.SimpleQueue()
     bus.follow(client, keys.COMMIT, lambda _, message: arrived.put(message))
-    time.sleep(0.3)
+    until_followed(server, keys.COMMIT.key)
     server.put(keys.COMMIT.key, b"\xc1 nonsense")
     server.put(keys.COMMIT.key, codec.encode(commit(1)))
-    assert arrived.get(timeout=5).seq == 1
+    assert arrived.get(timeout=PATIENCE_S).seq == 1
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from schemas.entities import Pose
 from tests.kb_node import home
 
 FLAT = tuple(rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f"))
-WAIT_S = 20.0
+WAIT_S = 60.0
 
 
 def on(name, other):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 import zenoh
@@ -22,7 +20,7 @@ from schemas.commits import Commit, Snapshot
 from schemas.entities import ClassInfo, Provenance
 from schemas.perception import DetectedMasks, MaskRun, Observations
 from schemas.replies import Changed, Sighting
-from tests.conftest import free_endpoint, handling, until
+from tests.conftest import PATIENCE_S, free_endpoint, handling, until
 from tests.perception_node.input.test_frames import DEPTH
 from tests.perception_node.things import at, entity, seen
 
@@ -57,8 +55,10 @@ def everything_is_a_cup(clouds, masks):
 class World:
     """Plays the coordinator, the knowledge base and the cameras, and hears what perception says."""
 
-    def __init__(self, session):
+    def __init__(self, session, other):
         self.session = session
+        self.other = other
+        """The session of perception."""
         self.node = Node("kb_node", session)
         self.told = []
         self.seen = []
@@ -104,10 +104,14 @@ class World:
     def film_until(self, condition, what, **frame):
         def filmed():
             self.film(**frame)
-            time.sleep(0.05)
             return condition()
 
         return until(filmed, what)
+
+    def film_often(self):
+        """Until ten more looks were taken."""
+        before = len(self.seen)
+        self.film_until(lambda: len(self.seen) >= before + 10, "ten more looks")
 
     def _add(self, command):
         self.told.append(command)
@@ -139,11 +143,12 @@ def endpoint():
 
 
 @pytest.fixture
-def world(endpoint):
+def world(endpoint, monkeypatch):
+    monkeypatch.setattr("nodes.perception_node.input.frame_worker._TAKE_S", 0.02)  # its end waits for that
     here = bus.Network(connect=(), listen=(endpoint,), mode="peer")
     there = bus.Network(connect=(endpoint,), listen=("tcp/127.0.0.1:0",), mode="peer")
     with bus.open_session(here) as session, bus.open_session(there) as other:
-        world = World(session)
+        world = World(session, other)
         node = Node("perception_node", other)
         perception = Perception(node, PerceptionConfig(), everything_is_a_cup, {})
         with handling(world.node), handling(node):
@@ -156,14 +161,12 @@ def world(endpoint):
 
 def test_what_is_seen_becomes_an_entity_once_and_is_published_with_its_name(world):
     world.film_until(lambda: world.seen and world.seen[-1].observations[0].entity, "the map has it")
-    for _ in range(10):
-        world.film()
-        time.sleep(0.02)
+    world.film_often()
     (add,) = world.told
     assert (add.class_, add.name, add.source, add.agent) == ("Cup", "cup1", "perception", "perception_node")
     assert world.seen[-1].observations == (structs.replace(CUP, entity="cup1"),)
     assert world.seen[-1].stamp_ns > world.seen[0].stamp_ns
-    until(lambda: world.clouds, "a cloud is published")
+    world.film_until(lambda: world.clouds, "a cloud is published")
     assert set(np.frombuffer(world.clouds[0].labels, "<u2")) == {1}
     assert len(world.clouds[0].positions) == 12 * len(np.frombuffer(world.clouds[0].labels, "<u2"))
     until(lambda: world.health.detail.startswith("1 camera, 1 thing seen"), "it says what it sees")
@@ -179,12 +182,14 @@ def test_a_name_that_something_had_before_this_process_began_is_not_given_again(
 def test_a_commit_that_comes_before_a_snapshot_without_it_is_not_lost(world):
     cup = entity("my_cup", "Cup", CUP.pose, CUP.size_m)
     snapshots = iter((Snapshot(seq=3, entities=()), Snapshot(seq=4, entities=(cup,))))
+    come = []
+    bus.follow(world.other, keys.EFFECTS, lambda _, commit: come.append(commit.seq))
 
     def snapshot():
         found = next(snapshots)
         if found.seq == 3:
             world.announce(4, cup)
-            time.sleep(0.2)  # the commit is there first
+            until(lambda: 4 in come, "the commit is there first")
         return found
 
     world.snapshot = snapshot
@@ -192,12 +197,11 @@ def test_a_commit_that_comes_before_a_snapshot_without_it_is_not_lost(world):
     world.film_until(lambda: world.seen and world.seen[-1].observations[0].entity == "my_cup", "it is found")
 
 
-def test_what_the_map_refuses_is_told_and_not_said_again_at_once(world):
+def test_what_the_map_refuses_is_told_and_not_said_again_at_once(world, monkeypatch):
+    monkeypatch.setattr("nodes.perception_node.node._REFUSED_S", 10 * PATIENCE_S)
     world.refusal = errors.Inconsistent("a cup cannot be here")
     world.film_until(lambda: "a cup cannot be here" in world.health.last_error, "it says why")
-    for _ in range(10):
-        world.film()
-        time.sleep(0.02)
+    world.film_often()
     assert len(world.told) == 1
 
 
@@ -255,7 +259,6 @@ def detected(world, *observations):
 def test_a_detector_of_ones_own_feeds_the_map(world):
     def said():
         detected(world, CUP)
-        time.sleep(0.05)
         return world.seen and world.seen[-1].observations[0].entity
 
     until(said, "the map has it")
@@ -268,7 +271,6 @@ def test_a_class_that_the_map_does_not_have_is_told_and_the_others_count(world):
 
     def said():
         detected(world, strange, CUP)
-        time.sleep(0.05)
         return world.seen and world.seen[-1].observations[0].entity
 
     until(said, "the map has the other")
@@ -276,31 +278,35 @@ def test_a_class_that_the_map_does_not_have_is_told_and_the_others_count(world):
     until(lambda: "that the map does not have were ignored: Gizmo" in world.health.last_error, "it says so")
 
 
-def test_a_frame_is_looked_at_with_the_masks_of_its_moment(world):
+def test_a_frame_is_looked_at_with_the_masks_of_its_moment(world, monkeypatch, caplog):
+    monkeypatch.setattr("nodes.perception_node.input.frames._SILENT_S", 10 * PATIENCE_S)
     run = MaskRun(size=(48, 64), counts=(0, 48 * 64), label="spork")
 
     def told():
         world.film()
         stamp_ns = world._stamp_ns
         masks = DetectedMasks(camera="left", stamp_ns=stamp_ns, width=64, height=48, masks=(run,))
-        time.sleep(0.05)
         world.session.put(keys.MASKS.key, codec.encode(masks))
-        time.sleep(0.05)
-        return "no class here: spork" in world.health.last_error
+        return "no class here: spork" in caplog.text  # masks that overtake their frame are told of, too
 
     until(told, "the look had the masks")
-    looks = len(world.seen)
     world.film()
-    time.sleep(0.5)
-    assert len(world.seen) <= looks + 1  # at most one that was under way: this one waits for its masks
+    waiting_ns = world._stamp_ns
+    others = []
+
+    def another_camera_had_its_turn_twice():
+        others.append(world._stamp_ns)
+        return len({seen.stamp_ns for seen in world.seen} & set(others)) >= 2
+
+    world.film_until(another_camera_had_its_turn_twice, "two looks at it", camera="right")
+    assert waiting_ns not in {seen.stamp_ns for seen in world.seen}  # it waits for its masks
 
 
-def test_masks_that_do_not_fit_are_told_and_the_frame_is_looked_at_all_the_same(world):
+def test_masks_that_do_not_fit_are_told_and_the_frame_is_looked_at_all_the_same(world, caplog):
     def told():
         world.film()
         masks = DetectedMasks(camera="left", stamp_ns=world._stamp_ns, width=32, height=48)
-        time.sleep(0.05)
         world.session.put(keys.MASKS.key, codec.encode(masks))
-        return world.seen and "of 32 x 48 pixels, the picture of 64 x 48" in world.health.last_error
+        return world.seen and "of 32 x 48 pixels, the picture of 64 x 48" in caplog.text
 
     until(told, "it says so")

@@ -19,7 +19,7 @@ from nodes.runtime.loop import Node
 from schemas import errors, keys
 from schemas.calls import reply_type
 from schemas.commands import Forget, Learn, Learned
-from tests.conftest import free_endpoint, handling
+from tests.conftest import PATIENCE_S, free_endpoint, handling
 from tests.perception_node.scenes import shot
 from tests.perception_node.things import CLASSES, at, seen
 
@@ -49,7 +49,13 @@ class Asked:
     def __call__(self, call):
         kind = type(call)
         return bus.ask(
-            self._session, keys.PERCEPTION, kind.VERB, call, reply_type(kind), timeout_s=20.0, patience_s=20.0
+            self._session,
+            keys.PERCEPTION,
+            kind.VERB,
+            call,
+            reply_type(kind),
+            timeout_s=PATIENCE_S,
+            patience_s=PATIENCE_S,
         )
 
 

@@ -81,10 +81,10 @@ signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 with open_recording(Path(sys.argv[1]), None) as recording:
     growth = Growth(recording.path)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, resource.RLIM_INFINITY))
-    for i in range(60):
-        recording.note(os.urandom(10_000).hex())
-        time.sleep(0.25)
-        if i % 4 == 0 and (amiss := growth.amiss(recording.logged)):
+    for _ in range(60):
+        recording.note(os.urandom(100_000).hex())
+        time.sleep(0.75)  # longer than what is recorded takes to reach a file
+        if amiss := growth.amiss(recording.logged):
             print(amiss, flush=True)
             break
 """

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import contextlib
-import threading
+import secrets
 
 import pytest
+import zenoh
 
 from nodes import bus
 from nodes.identity import Identity, authority
 from nodes.identity.register import Register
 from nodes.router.access import access_control
 from schemas.roles import ROLES
-from tests.conftest import free_endpoint
+from tests.conftest import free_endpoint, until
 
 
 @pytest.fixture(scope="session")
@@ -62,22 +63,34 @@ def sessions(folder, endpoint):
         }
 
 
-@pytest.fixture
-def heard():
-    """What came, and a wait for it."""
-    return Heard()
-
-
 class Heard:
-    """Keys that came to somebody."""
+    """What came to a session with a mark of this test's own: what others sent may still be on its way."""
 
-    def __init__(self):
+    def __init__(self, session, *key_exprs):
+        self._mark = secrets.token_bytes(8)
         self.keys = []
-        self._came = threading.Event()
+        """The keys, in the order in which it came."""
+        # on Zenoh's own thread: several subscribers would else hear in another order
+        callback = zenoh.handlers.Callback(self._hear, indirect=False)
+        self._subscribers = [session.declare_subscriber(key_expr, callback) for key_expr in key_exprs]
 
-    def __call__(self, sample):
-        self.keys.append(str(sample.key_expr))
-        self._came.set()
+    def __enter__(self):
+        return self
 
-    def anything(self, within_s):
-        return self._came.wait(within_s)
+    def __exit__(self, *_):
+        for subscriber in self._subscribers:
+            subscriber.undeclare()
+
+    def _hear(self, sample):
+        if sample.payload.to_bytes() == self._mark:
+            self.keys.append(str(sample.key_expr))
+
+    def hears(self, session, *keys):
+        """Let a session publish on all keys, again and again, until what it put on the last has come."""
+
+        def heard():
+            for key in keys:
+                session.put(key, self._mark, congestion_control=zenoh.CongestionControl.BLOCK)
+            return keys[-1] in self.keys
+
+        until(heard, f"{keys[-1]} comes")

@@ -14,7 +14,7 @@ from nodes.router.access import access_control
 from schemas import errors, keys
 from schemas.commands import Status
 from schemas.replies import Done
-from tests.conftest import free_endpoint
+from tests.conftest import PATIENCE_S, free_endpoint, until
 from tests.router.conftest import opened, router_network
 
 
@@ -45,10 +45,10 @@ def robot1(folder):
         token.undeclare()
 
 
-def asked(folder, endpoint, name, namespace):
+def asked(folder, endpoint, name, namespace, patience_s=PATIENCE_S):
     with contextlib.ExitStack() as stack:
         session = opened(stack, endpoint, Identity.read(folder / name), namespace=namespace)
-        return bus.ask(session, keys.commands_as(name), "status", Status(), Done, patience_s=1.0).text
+        return bus.ask(session, keys.commands_as(name), "status", Status(), Done, patience_s=patience_s).text
 
 
 def test_everybody_asks_under_their_own_name_in_it(folder, robot1):
@@ -58,10 +58,10 @@ def test_everybody_asks_under_their_own_name_in_it(folder, robot1):
 @pytest.mark.parametrize("namespace", ["", "robot2", "robot1/semmap"])
 def test_nobody_asks_in_another(folder, robot1, namespace):
     with pytest.raises(errors.NoAnswer):
-        asked(folder, robot1, "viewer", namespace)
+        asked(folder, robot1, "viewer", namespace, patience_s=0.2)
 
 
 def test_whoever_asks_which_robots_there_are_is_told(folder, robot1):
     with contextlib.ExitStack() as stack:
         session = opened(stack, robot1, Identity.read(folder / "viewer"))
-        assert bus.robots(session) == {"robot1": frozenset({"coordinator"})}
+        until(lambda: bus.robots(session) == {"robot1": frozenset({"coordinator"})}, "the robot")

@@ -53,7 +53,11 @@ def joined(own, routed):
 
 
 def asked(session, name):
-    return [r.ok.payload.to_string() for r in session.get(f"{keys.commands_as(name)}/get", timeout=5) if r.ok]
+    return [
+        r.ok.payload.to_string()
+        for r in session.get(f"{keys.commands_as(name)}/get", timeout=PATIENCE_S)
+        if r.ok
+    ]
 
 
 def serve(session):

@@ -1,7 +1,7 @@
 """For every role and every key of the table: what is granted works, and nothing else does.
 
 Over a router with mutual TLS. What is refused makes no sound, so each refusal stands beside a grant that has
-just been heard: the same message of a node's, after it, which would have been overtaken.
+just been heard, by the same way and after it, which would have been overtaken.
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ import zenoh
 
 from schemas import keys, roles
 from schemas.roles import GRANTS, ROLES
+from tests.conftest import PATIENCE_S, until
+from tests.router.conftest import Heard
 
-PATIENCE_S = 10.0
 FOLLOWED = {grant.key: grant.roles for grant in GRANTS if grant.may == "follow"}
 PUBLISHED = {grant.key: grant.roles for grant in GRANTS if grant.may == "publish"}
 ASKED = {grant.key: grant.roles for grant in GRANTS if grant.may == "ask"}
@@ -30,45 +31,44 @@ def may(role, key, table):
     )
 
 
-def settle(session):
-    """Whatever was declared or sent before on this session has been seen by the router when this returns."""
-    list(session.liveliness().get(keys.live_key("*")))
+BY_EVERYBODY = keys.health_key(keys.WEB)
+"""Everybody may publish it, and everybody may follow it."""
+BY_A_NODE = keys.health_key("after")
+"""Nodes may publish it, and everybody may follow it."""
+
+
+def settle(sessions, *names):
+    """Wait until the router has all that these sessions have sent it, and they all that it has sent them.
+
+    So it knows their subscribers, and they who follows what they publish: to nobody they would send nothing.
+    """
+    for name in names:
+        with Heard(sessions["coordinator"], BY_EVERYBODY) as heard:
+            heard.hears(sessions[name], BY_EVERYBODY)
+    for name in names:
+        with Heard(sessions[name], BY_A_NODE) as heard:
+            heard.hears(sessions["coordinator"], BY_A_NODE)
 
 
 @pytest.mark.parametrize("key_expr", FOLLOWED)
 @pytest.mark.parametrize("role", ROLES)
-def test_following(sessions, heard, role, key_expr):
-    witness = type(heard)()
-    subscribers = [
-        sessions[role].declare_subscriber(key_expr, heard),
-        sessions["coordinator"].declare_subscriber(key_expr, witness),
-    ]
-    try:
-        settle(sessions[role])
-        settle(sessions["coordinator"])
-        sessions["kb_node"].put(concrete(key_expr), b"")
-        assert witness.anything(PATIENCE_S)
-        allowed = role in FOLLOWED[key_expr]
-        assert heard.anything(PATIENCE_S if allowed else 0.1) == allowed
-    finally:
-        for subscriber in subscribers:
-            subscriber.undeclare()
+def test_following(sessions, role, key_expr):
+    key = concrete(key_expr)
+    with Heard(sessions[role], key_expr, BY_A_NODE) as heard, Heard(sessions["coordinator"], key) as witness:
+        settle(sessions, role, "coordinator", "kb_node")
+        witness.hears(sessions["kb_node"], key)
+        heard.hears(sessions["kb_node"], key, BY_A_NODE)
+        assert (key in heard.keys) == (role in FOLLOWED[key_expr])
 
 
 @pytest.mark.parametrize("key_expr", PUBLISHED)
 @pytest.mark.parametrize("role", ROLES)
-def test_publishing(sessions, heard, role, key_expr):
+def test_publishing(sessions, role, key_expr):
     key = concrete(key_expr)
-    subscriber = sessions["coordinator"].declare_subscriber(key_expr, heard)
-    try:
-        settle(sessions["coordinator"])
-        settle(sessions[role])
-        sessions[role].put(key, b"")
-        settle(sessions[role])
-        allowed = role in PUBLISHED[key_expr]
-        assert heard.anything(PATIENCE_S if allowed else 0.1) == allowed
-    finally:
-        subscriber.undeclare()
+    with Heard(sessions["coordinator"], key_expr, BY_EVERYBODY) as heard:
+        settle(sessions, "coordinator", role)
+        heard.hears(sessions[role], key, BY_EVERYBODY)
+        assert (key in heard.keys) == (role in PUBLISHED[key_expr])
 
 
 @pytest.fixture(scope="module")
@@ -81,6 +81,8 @@ def served(sessions):
 
     prefixes = {**keys.SERVED_BY, keys.commands_as(): "coordinator"}
     queryables = [sessions[node].declare_queryable(f"{p}/*", answer) for p, node in prefixes.items()]
+    settle(sessions, *set(prefixes.values()))
+    settle(sessions, *ROLES)
     yield
     for queryable in queryables:
         queryable.undeclare()
@@ -137,7 +139,7 @@ def test_outsiders_serve_nothing(sessions, served, role, key):
     concrete_key = key.replace("*", "operator")
     queryable = sessions[role].declare_queryable(key, steal, complete=True)
     try:
-        settle(sessions[role])
+        settle(sessions, role, "node")
         for target in (
             zenoh.QueryTarget.ALL,
             zenoh.QueryTarget.ALL_COMPLETE,
@@ -149,6 +151,11 @@ def test_outsiders_serve_nothing(sessions, served, role, key):
         queryable.undeclare()
 
 
+def there(session):
+    """The nodes that are there, as Zenoh says; now and then it says that nobody is."""
+    return [str(r.ok.key_expr) for r in session.liveliness().get(keys.live_key("*")) if r.ok]
+
+
 @pytest.mark.parametrize("role", [role for role in ROLES if role != "node"])
 def test_outsiders_do_not_pass_for_nodes(sessions, role):
     forged, true = keys.live_key("sim_node", "forged"), keys.live_key("sim_node", "true")
@@ -157,27 +164,24 @@ def test_outsiders_do_not_pass_for_nodes(sessions, role):
         sessions["sim_node"].liveliness().declare_token(true),
     ]
     try:
-        settle(sessions[role])
-        settle(sessions["sim_node"])
-        seen = {
-            str(r.ok.key_expr) for r in sessions["coordinator"].liveliness().get(keys.live_key("*")) if r.ok
-        }
-        assert true in seen
-        assert forged not in seen
+        settle(sessions, role, "sim_node", "coordinator")
+        until(lambda: true in there(sessions["coordinator"]), "the node is seen")
+        assert forged not in there(sessions["coordinator"])
     finally:
         for token in tokens:
             token.undeclare()
+        settle(sessions, role, "sim_node", "coordinator")
 
 
 @pytest.mark.parametrize("role", ROLES)
 def test_everybody_sees_which_nodes_are_there(sessions, role):
     token = sessions["kb_node"].liveliness().declare_token(keys.live_key("kb_node", "1"))
     try:
-        settle(sessions["kb_node"])
-        seen = [str(r.ok.key_expr) for r in sessions[role].liveliness().get(keys.live_key("*")) if r.ok]
-        assert seen == [keys.live_key("kb_node", "1")]
+        settle(sessions, "kb_node")
+        until(lambda: there(sessions[role]) == [keys.live_key("kb_node", "1")], "the node is seen")
     finally:
         token.undeclare()
+        settle(sessions, "kb_node")
 
 
 def test_the_table_has_every_key():

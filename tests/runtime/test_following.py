@@ -1,7 +1,5 @@
 """A follower before a knowledge base that is played here, over real Zenoh."""
 
-import time
-
 import msgspec
 import pytest
 
@@ -16,6 +14,7 @@ from schemas.commits import Commit, Extent, Snapshot
 from schemas.health import Health
 from tests.conftest import free_endpoint, handling, until
 from tests.recorder.messages import commit, entity
+from tests.waiting import until_followed
 
 
 class KnowledgeBase:
@@ -174,9 +173,12 @@ def test_a_follower_leaves_pages_to_whoever_fetches_them_already(both):
     left_out = Extent(inserted=9, retracted=0, changed=3, removed=0)
     follower.map.take(msgspec.structs.replace(commit(2), abridged=left_out))
     asked = kb.asked
-    for _ in range(3):
+    beats = []
+    follower.node.follow(keys.HEALTH, lambda health: beats.append(health.commit))
+    until_followed(kb.node.session, keys.health_key("kb_node"))
+    for number in range(1, 5):
         kb.beat(0, commit=2)
-        time.sleep(0.2)
+        until(lambda number=number: beats.count(2) == number, "the beat is heard")
     assert kb.asked == asked
     kb.snapshot = Snapshot(seq=2, entities=(entity("sink1"),))
     follower.map.give_up_pages()

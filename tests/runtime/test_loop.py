@@ -5,21 +5,23 @@ from __future__ import annotations
 import json
 import queue
 import threading
-import time
 from concurrent.futures import Future
+from itertools import count
 
 import pytest
+import zenoh
 
 from nodes import bus
 from nodes.bus import asking
-from nodes.runtime import loop
+from nodes.runtime import heartbeat, loop
 from nodes.runtime.fair_queue import FairQueue
 from nodes.runtime.loop import Node
 from schemas import codec, commands, errors, keys, replies
 from schemas.calls import Call, Handler, Relay
 from schemas.health import Health
 from schemas.scenes import Poses
-from tests.conftest import free_endpoint, handling, until
+from tests.conftest import PATIENCE_S, free_endpoint, handling, until
+from tests.waiting import publications_kept, questions_asked, until_followed, until_served
 
 PREFIX = "semmap/test"
 
@@ -113,14 +115,17 @@ def test_a_verb_is_left_to_the_node_that_serves_it():
                     bus.ask(client, PREFIX, "*", commands.Get(name="x"), replies.Done)
                 away.set()
                 nodes[0].stop()
-                threads[0].join(timeout=5)
+                threads[0].join(timeout=PATIENCE_S)
+                firsts = client.declare_querier(f"{PREFIX}/get", target=zenoh.QueryTarget.ALL_COMPLETE)
+                until(lambda: firsts.matching_status.matching, "the client knows the first")
                 here.close()
+                until(lambda: not firsts.matching_status.matching, "the client knows that the first is gone")
                 assert get(client, "get") == "other"
                 assert get(client, "get", first_hand=True) == "other"
         finally:
             for node, thread in zip(nodes, threads, strict=True):
                 node.stop()
-                thread.join(timeout=5)
+                thread.join(timeout=PATIENCE_S)
 
 
 def test_a_reply_may_come_later(network):
@@ -137,22 +142,39 @@ def test_a_fault_is_in_the_heartbeat(network):
     until(lambda: beats and "check: ZeroDivisionError: oops" in beats[-1].last_error, "the error")
 
 
-def test_a_loop_that_is_blocked_falls_silent(network):
+def test_a_loop_that_is_blocked_falls_silent(network, monkeypatch):
+    monkeypatch.setattr(heartbeat, "_PERIOD_S", 0.05)
     node, client = network
-    beats: list[float] = []
-    bus.follow(client, keys.HEALTH, lambda *_: beats.append(time.monotonic()))
-    until(lambda: beats, "a heartbeat")
-    node._events.put(lambda: time.sleep(2.5))
-    time.sleep(0.3)
-    count = len(beats)
-    time.sleep(1.5)
-    assert len(beats) == count
+    beats: list[str] = []
+    bus.follow(client, keys.HEALTH, lambda _, health: beats.append(health.node))
+    is_blocked, release = threading.Event(), threading.Event()
+    node.soon(lambda: node.note(()))  # so that the next beat is due
+    other = Node("other_node", node.session)
+    with handling(other):
+        until(lambda: {"test_node", "other_node"} <= set(beats), "both beat")
+        node.soon(lambda: is_blocked.set() or release.wait(PATIENCE_S))
+        try:
+            assert is_blocked.wait(PATIENCE_S)
+            until_one_more(beats, "other_node")  # what the node said before has come by then
+            silent_from = len(beats)
+            for _ in range(10):
+                until_one_more(beats, "other_node")
+            assert "test_node" not in beats[silent_from:]
+        finally:
+            release.set()
+        until_one_more(beats, "test_node")
 
 
-def test_of_what_waits_a_busy_node_sees_the_newest(network):
+def until_one_more(beats, name):
+    before = beats.count(name)
+    until(lambda: beats.count(name) > before, f"another beat of {name}")
+
+
+def test_of_what_waits_a_busy_node_sees_the_newest(network, monkeypatch):
     node, client = network
     seen, release = [], threading.Event()
-    node.follow_newest(keys.POSES, lambda poses: (seen.append(poses.version), release.wait(10.0)))
+    come = publications_kept(monkeypatch)
+    node.follow_newest(keys.POSES, lambda poses: (seen.append(poses.version), release.wait(PATIENCE_S)))
     publisher = bus.publisher(client, keys.POSES)
 
     def publish(version):
@@ -162,12 +184,18 @@ def test_of_what_waits_a_busy_node_sees_the_newest(network):
         publisher.put(codec.encode(poses))
 
     until(lambda: publish(0) or seen, "it follows")
-    for version in range(1, 21):
-        publish(version)
-    time.sleep(0.2)
+    versions = count(1)
+
+    def many_have_come():
+        for _ in range(20):  # of which Zenoh may drop any
+            publish(next(versions))
+        return come[-1].version >= 20
+
+    until(many_have_come, "many have come")
+    newest = come[-1].version
     release.set()
-    until(lambda: seen[-1] == 20, "it has seen the last")
-    assert len(seen) < 10
+    until(lambda: seen[-1] >= newest, "it has seen the newest")
+    assert [version for version in seen[1:] if version < newest] == []
 
 
 def test_what_is_put_off_is_done_when_no_event_waits(network):
@@ -196,7 +224,7 @@ def test_what_comes_after_a_reply_does_not_keep_it_waiting_and_precedes_the_next
     answered = threading.Event()
 
     def await_the_answer():
-        assert answered.wait(5)
+        assert answered.wait(PATIENCE_S)
         order.append("the first thing")
 
     def answer(_):
@@ -243,12 +271,13 @@ def test_so_is_an_error(network, monkeypatch, prefix, verb, error, said):
         bus.ask(client, PREFIX, "explain", asking_for(prefix, verb), replies.Done)
 
 
-def test_who_is_to_reply_may_come_late(network):
+def test_who_is_to_reply_may_come_late(network, monkeypatch):
     _, client = network
     late = "semmap/late"
+    asked = questions_asked(monkeypatch)
 
     def serve():
-        time.sleep(0.5)
+        until(lambda: asked.count(f"{late}/get") > 2, "it was asked for in vain")
         bus.serve(client, late, lambda request: request.reply(replies.Done(text="here")))
 
     thread = threading.Thread(target=serve)
@@ -257,15 +286,15 @@ def test_who_is_to_reply_may_come_late(network):
     thread.join()
 
 
-def test_somebody_who_comes_late_is_waited_for(network):
+def test_somebody_who_comes_late_is_waited_for(network, monkeypatch):
     node, client = network
+    asked = questions_asked(monkeypatch)
     served: list[Future] = []
-    node._events.put(lambda: served.append(node.ask_later("semmap/late", Get(name="x"), patience_s=5.0)))
-    until(lambda: served, "the question")
-    time.sleep(0.3)
+    node.soon(lambda: served.append(node.ask_later("semmap/late", Get(name="x"), patience_s=PATIENCE_S)))
+    until(lambda: asked.count("semmap/late/get") > 2, "it was asked for in vain")
     assert not served[0].done()
     bus.serve(client, "semmap/late", lambda request: request.reply(replies.Done(text="here")))
-    assert served[0].result(timeout=5).text == "here"
+    assert served[0].result(PATIENCE_S).text == "here"
 
 
 def test_what_is_quick_is_asked_anew_when_it_has_got_lost(network, monkeypatch):
@@ -279,13 +308,13 @@ def test_what_is_quick_is_asked_anew_when_it_has_got_lost(network, monkeypatch):
             request.reply(replies.Done(text="here"))
 
     bus.serve(client, "semmap/late", receive)
-    node._events.put(lambda: answers.append(node.ask_later("semmap/late", Quick(name="x"), patience_s=5.0)))
+    node.soon(lambda: answers.append(node.ask_later("semmap/late", Quick(name="x"), patience_s=PATIENCE_S)))
     until(lambda: answers, "the question")
-    assert answers[0].result(timeout=5).text == "here"
+    assert answers[0].result(PATIENCE_S).text == "here"
 
 
 def overloaded(node, client, monkeypatch, *, each=3):
-    """The node's thread is held; the function sends a question, the first of which is in hand.
+    """The node's thread is held by a question; a function sends others, and another fills the queue.
 
     What is answered is in the list, in the order in which the node came to it.
     """
@@ -295,7 +324,7 @@ def overloaded(node, client, monkeypatch, *, each=3):
 
     def hold(m):
         in_hand.set()
-        assert release.wait(20)
+        assert release.wait(PATIENCE_S)
         done.append(m.name)
         return replies.Done(text=m.name)
 
@@ -314,18 +343,26 @@ def overloaded(node, client, monkeypatch, *, each=3):
         message = commands.Status() if verb == "status" else commands.Get(name=name)
         bus.ask_later(session, "semmap/held", verb, message, replies.Done, lambda read: got.put((name, read)))
 
-    until(lambda: send() or in_hand.wait(0.2), "the first question is in hand")
-    return send, release, got, done
+    def fill(names):
+        """Let one question wait among the events, and then one in the queue for each name."""
+        send()
+        until(lambda: node._is_at_once, "it waits among the events")
+        for number, name in enumerate(names, start=1):
+            send(name=name)
+            until(lambda number=number: len(node._requests) == number, "it waits")
+
+    until_served(client, "semmap/held/get")
+    send()
+    assert in_hand.wait(PATIENCE_S)
+    return send, fill, release, got, done
 
 
 def test_what_finds_the_queue_full_is_refused_at_once_and_the_rest_is_done(network, monkeypatch):
     node, client = network
-    send, release, got, _ = overloaded(node, client, monkeypatch)
-    while len(node._requests) < 3:
-        send()
-        time.sleep(0.02)
+    send, fill, release, got, _ = overloaded(node, client, monkeypatch)
+    fill("xxx")
     send(name="too late")
-    name, read = got.get(timeout=5)
+    name, read = got.get(timeout=PATIENCE_S)
     assert name == "too late"
     with pytest.raises(
         errors.Busy, match=r"^test_node is busy: 3 requests wait already; try again in "
@@ -333,17 +370,16 @@ def test_what_finds_the_queue_full_is_refused_at_once_and_the_rest_is_done(netwo
         read()
     assert busy.value.again_s > 0.0
     release.set()
-    for _ in range(3):
-        assert got.get(timeout=5)[1]().decode().text == "x"
+    for _ in range(5):  # with the one in hand and the one among the events
+        assert got.get(timeout=PATIENCE_S)[1]().decode().text == "x"
 
 
 def test_the_urgent_comes_first_and_another_asker_is_not_kept_waiting(network, monkeypatch):
     node, client = network
-    send, release, _, order = overloaded(node, client, monkeypatch, each=100)
+    send, fill, release, _, order = overloaded(node, client, monkeypatch, each=100)
     with bus.open_session(bus.Network(connect=(f"{client.info.links()[0].dst}",))) as other:
-        for number in range(10):
-            send(name=f"first {number}")
-        until(lambda: len(node._requests) >= 9, "they wait")
+        fill([f"first {number}" for number in range(10)])
+        until_served(other, "semmap/held/get")
         send(name="other", session=other)
         until(lambda: len(node._requests._by_asker) == 2, "it waits")
         send("status", name="urgent")
@@ -356,21 +392,20 @@ def test_the_urgent_comes_first_and_another_asker_is_not_kept_waiting(network, m
 
 def test_who_is_told_to_come_again_does_so_by_himself(network, monkeypatch):
     node, client = network
-    send, release, _, _ = overloaded(node, client, monkeypatch)
-    while len(node._requests) < 3:
-        send()
-        time.sleep(0.02)
-    threading.Timer(0.5, release.set).start()
+    _, fill, release, _, _ = overloaded(node, client, monkeypatch)
+    fill("xxx")
+    pause_s = asking.Patience.pause_s
+    # who is told to come again finds room when he does
+    monkeypatch.setattr(asking.Patience, "pause_s", lambda *told: release.set() or pause_s(*told))
     question = commands.Get(name="patient")
     assert bus.ask(client, "semmap/held", "get", question, replies.Done).text == "patient"
+    assert release.is_set()
 
 
 def test_nobody_comes_again_for_ever(network, monkeypatch):
     node, client = network
-    send, release, _, _ = overloaded(node, client, monkeypatch)
-    while len(node._requests) < 3:
-        send()
-        time.sleep(0.02)
+    _, fill, release, _, _ = overloaded(node, client, monkeypatch)
+    fill("xxx")
     monkeypatch.setattr(asking, "BUSY_S", 0.3)
     with pytest.raises(errors.Busy):
         bus.ask(client, "semmap/held", "get", commands.Get(name="x"), replies.Done)
@@ -391,28 +426,30 @@ def test_without_room_requests_wait_and_urgent_ones_and_events_do_not(network):
     assert got.empty()
     room.set()
     node.soon(lambda: None)
-    assert got.get(timeout=5)().decode().text == "x"
+    assert got.get(timeout=PATIENCE_S)().decode().text == "x"
 
 
 def test_of_what_is_published_the_newest_are_kept(network, monkeypatch):
     node, client = network
     monkeypatch.setattr(loop, "_FOLLOWED", 5)
     seen, release = [], threading.Event()
+    come = publications_kept(monkeypatch)
     topic = keys.Topic("semmap/test/beats", Health, "lossless")
-    node.follow(topic, lambda beat: (seen.append(beat.pid), release.wait(10.0)))
+    node.follow(topic, lambda beat: (seen.append(beat.pid), release.wait(PATIENCE_S)))
     publisher = bus.publisher(client, topic)
 
     def publish(pid):
         publisher.put(codec.encode(Health(node="x", pid=pid, started_ns=1, stamp_ns=1, state="ready")))
 
-    until(lambda: publish(0) or seen, "it follows")
+    until_followed(client, topic.key)
+    publish(0)
+    until(lambda: seen, "the first is in hand")
     for pid in range(1, 21):
         publish(pid)
-    time.sleep(0.3)
+    until(lambda: come[-1].pid == 20, "all have come")
     release.set()
     until(lambda: seen[-1] == 20, "it has seen the last")
-    assert seen[-5:] == [16, 17, 18, 19, 20]
-    assert len(seen) <= 7
+    assert seen == [0, 16, 17, 18, 19, 20]
 
 
 def test_a_heart_beats_for_itself_alone(network):

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from nodes.extern.client import connect
-from tests.conftest import free_endpoint, running, until
+from tests.conftest import PATIENCE_S, free_endpoint, running, until
 
 SEMMAP = Path(sys.executable).with_name("semmap")
 
@@ -37,8 +37,8 @@ def test_parts_wait_for_one_another_work_together_and_end_alone(tmp_path):
                     assert "present" in client.add("Cup", "cup1", at=(1.0, 1.0, 0.0), wait=True).text
                     nodes = sorted(node.node for node in client.status().nodes if node.state == "ready")
                 assert nodes == ["coordinator", "kb_node", "router", "sim_node"]
-                subprocess.run([SEMMAP, "down", "--data", tmp_path / "robot"], check=True, timeout=60)
-                assert far.wait(30) == 0
+                subprocess.run([SEMMAP, "down", "--data", tmp_path / "robot"], check=True, timeout=PATIENCE_S)
+                assert far.wait(PATIENCE_S) == 0
                 with near.client() as client:
                     client.add("Cup", "cup2", at=(2.0, 1.0, 0.0))
                     until(lambda: client.status().in_agreement is None, "no simulator is heard of")

@@ -13,7 +13,7 @@ from nodes.kb_node.storage.seed import seed
 from nodes.supervisor.settings import JOURNAL, SETTINGS
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
-from tests.conftest import free_endpoint, running
+from tests.conftest import PATIENCE_S, free_endpoint, running
 
 BASE = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping"
 
@@ -21,7 +21,7 @@ BASE = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping"
 def up(data: Path, *words: str | Path) -> tuple[int, str]:
     """Exit status and the last line of stderr of `semmap up` that is expected to fail."""
     command = [Path(sys.executable).parent / "semmap", "up", "--data", data, "--listen", free_endpoint()]
-    run = subprocess.run([*command, *words], capture_output=True, text=True, timeout=60)
+    run = subprocess.run([*command, *words], capture_output=True, text=True, timeout=2 * PATIENCE_S)
     lines = run.stderr.strip().splitlines()
     assert len(lines) == 1, run.stderr
     return run.returncode, lines[0]
@@ -30,7 +30,7 @@ def up(data: Path, *words: str | Path) -> tuple[int, str]:
 def down(*words: str | Path) -> tuple[int, str]:
     """Exit status of `semmap down`, and what it says."""
     command = [Path(sys.executable).parent / "semmap", "down", *words]
-    run = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    run = subprocess.run(command, capture_output=True, text=True, timeout=2 * PATIENCE_S)
     return run.returncode, (run.stdout + run.stderr).strip()
 
 

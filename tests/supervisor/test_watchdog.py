@@ -7,6 +7,7 @@ import time
 import pytest
 
 from nodes.supervisor.watchdog import ENDLESS_S, SILENT_S, UNHEARD_S, Watchdog, work_seconds
+from tests.conftest import PATIENCE_S, until
 
 
 class World:
@@ -127,21 +128,22 @@ def spin():
         pass
 
 
-@pytest.mark.parametrize("work", [spin, time.sleep])
-def test_the_work_of_a_process(work):
-    process = multiprocessing.get_context("fork").Process(
-        target=work, args=() if work is spin else (60,), daemon=True
-    )
-    process.start()
+def test_the_work_of_a_process():
+    """One that is at work, and one that sleeps all the while."""
+    fork = multiprocessing.get_context("fork")
+    busy = fork.Process(target=spin, daemon=True)
+    idle = fork.Process(target=time.sleep, args=(2 * PATIENCE_S,), daemon=True)
+    for process in (idle, busy):
+        process.start()
     try:
-        before = work_seconds(process.pid)
-        time.sleep(1.0)
-        used = work_seconds(process.pid) - before
-        assert used > 0.05 if work is spin else used < 0.05
+        began = {process.pid: work_seconds(process.pid) for process in (idle, busy)}
+        until(lambda: work_seconds(busy.pid) - began[busy.pid] > 0.5, "it has worked")
+        assert work_seconds(idle.pid) - began[idle.pid] < 0.05
     finally:
-        process.kill()
-        process.join()
-    assert work_seconds(process.pid) == 0.0
+        for process in (idle, busy):
+            process.kill()
+            process.join()
+    assert work_seconds(busy.pid) == 0.0
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells of waiting for a core")

@@ -171,7 +171,6 @@ class Mirror:
             where = open_session(endpoint, "", self._config.identity, mode="client")
             session = self._ways.enter_context(where)
             bus.follow_robots(session, "kb_node", functools.partial(self._later, self._appear, endpoint))
-            time.sleep(_WAIT_S)  # those that are there already are told of meanwhile
 
         def looked(done: Future[None]) -> None:
             error = done.exception()

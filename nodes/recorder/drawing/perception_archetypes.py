@@ -41,10 +41,10 @@ def boxes_of(seen: Observations) -> tuple[rr.AsComponents, ...]:
         labels=[_label(thing) for thing in things],
         show_labels=True,
     )
-    fields = {
-        "class": np.array([thing.class_ for thing in things], dtype=np.str_),
-        "probability": np.array([thing.probability for thing in things]),
-        "entity": np.array([thing.entity for thing in things], dtype=np.str_),
+    fields = {  # with their types: Rerun knows none of an empty array, and drops the first look at nothing
+        "class": rr.components.TextBatch([thing.class_ for thing in things]),
+        "probability": rr.components.ScalarBatch([thing.probability for thing in things]),
+        "entity": rr.components.TextBatch([thing.entity for thing in things]),
     }
     return boxes, rr.DynamicArchetype(OBSERVATION_FIELDS, components=fields)
 

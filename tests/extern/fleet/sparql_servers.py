@@ -16,6 +16,7 @@ import pyoxigraph
 from nodes.extern.fleet import facts as f
 from nodes.extern.fleet.server import SparqlServer
 from nodes.extern.testing import free_endpoint
+from tests.conftest import PATIENCE_S
 
 Graph = frozenset[tuple[str, str, str]]
 
@@ -39,10 +40,10 @@ class Oxigraph:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-        deadline_s = time.monotonic() + 30
+        deadline_s = time.monotonic() + PATIENCE_S
         while True:
             with contextlib.suppress(OSError):
-                urllib.request.urlopen(f"{self.query_url}?query=ASK%7B%7D", timeout=5).close()
+                urllib.request.urlopen(f"{self.query_url}?query=ASK%7B%7D", timeout=PATIENCE_S).close()
                 return
             assert time.monotonic() < deadline_s, "oxigraph did not start"
             assert self.process.poll() is None, "oxigraph ended"
@@ -59,7 +60,7 @@ class Oxigraph:
         url = f"{self.query_url.removesuffix('query')}store?graph={f.graph(robot)[1:-1]}"
         request = urllib.request.Request(url, headers={"Accept": "application/n-triples"})
         try:
-            with urllib.request.urlopen(request, timeout=30) as reply:
+            with urllib.request.urlopen(request, timeout=PATIENCE_S) as reply:
                 return spelled(reply.read())
         except urllib.error.HTTPError as error:
             if error.code == 404:
@@ -87,7 +88,7 @@ class Virtuoso:
         )
         grant = self.folder / "grant.sql"
         grant.write_text('GRANT SPARQL_UPDATE TO "SPARQL";\n')
-        deadline_s = time.monotonic() + 90
+        deadline_s = time.monotonic() + 2 * PATIENCE_S
         while True:
             command = ["isql-vt", self._sql, "dba", "dba", grant]
             done = subprocess.run(command, capture_output=True, text=True)

@@ -61,7 +61,7 @@ def mirroring_to(server, where, **options):
         yield mirror, told
     finally:
         mirror.stop()
-        thread.join(timeout=30)
+        thread.join(timeout=PATIENCE_S)
     assert not thread.is_alive()
 
 
@@ -211,6 +211,11 @@ def test_exactly_once_though_mirror_and_server_are_killed(any_server, two_robots
                     client.remove(f"c{n - 5}")
             client.remove(*(f"c{k}" for k in range(n - 4, n + 1)))
 
+    def goes_on():
+        before = _copied(server, "arm1")
+        until(lambda: _copied(server, "arm1") not in (before, None), "the copy goes on")
+        time.sleep(dice.uniform(0.0, 0.3))  # the kill comes in the middle of anything
+
     streaming = threading.Thread(target=stream)
     streaming.start()
     try:
@@ -218,18 +223,19 @@ def test_exactly_once_though_mirror_and_server_are_killed(any_server, two_robots
             for kill in range(6):
                 mirror = subprocess.Popen(command, stdout=told, stderr=told, env=os.environ)
                 try:
-                    time.sleep(dice.uniform(0.9, 2.0))
+                    goes_on()
                     if kill % 2:
                         server.kill()
                         time.sleep(dice.uniform(0.0, 0.5))
                         server.start()
-                        time.sleep(dice.uniform(0.5, 1.5))
+                        goes_on()
                 finally:
                     mirror.send_signal(signal.SIGKILL)
                     mirror.wait()
     finally:
         done.set()
-        streaming.join(timeout=60)
+        streaming.join(timeout=PATIENCE_S)
+    assert not streaming.is_alive()
     with mirroring_to(server, where):
         assert_same(server, arm1, "arm1")
     copied = [line for line in (tmp_path / "told").read_text().splitlines() if "arm1: copied" in line]

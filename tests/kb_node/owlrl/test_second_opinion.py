@@ -1,7 +1,5 @@
 """owlrl in a process of its own: it can be given up."""
 
-import time
-
 import pytest
 
 from nodes.kb_node.owlrl import second_opinion
@@ -15,10 +13,8 @@ def impatient(monkeypatch):
 
 
 def test_it_is_given_up_when_nobody_wants_it_any_more():
-    began_s = time.monotonic()
     with pytest.raises(errors.Refused, match="the knowledge base is stopping"):
         second_opinion.owlrl_faults(home.TBOX, is_over=lambda: True)
-    assert time.monotonic() - began_s < 10.0
 
 
 def test_it_is_given_up_after_a_while(monkeypatch):

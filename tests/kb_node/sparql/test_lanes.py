@@ -1,7 +1,6 @@
 """The node's ends of the lanes, with this test in the place of readers and of the process that forks them."""
 
 import signal
-import time
 
 import pytest
 from msgspec import Raw, msgpack
@@ -32,6 +31,10 @@ class Readers:
 
     def ask(self, query):
         return self.lanes.ask(Sparql(query=query, timeout=1.5), 7)
+
+    def asked(self):
+        """The lanes in which a question waits for a reader."""
+        return [number for number, lane in enumerate(self.lanes.others) if lane.poll(0)]
 
     def take(self, lane):
         assert self.lanes.others[lane].poll(WAIT_S)
@@ -130,22 +133,23 @@ def test_where_all_lanes_take_long_one_is_set_aside_for_who_waits_and_begun_anew
     assert question.query == "quick"
     readers.answer(AT_LENGTH, question)
     assert quick.result(WAIT_S).verdict
-    assert not readers.lanes.others[AT_LENGTH].poll(0.1)  # still enough others take long
+    assert readers.asked() == []  # still enough others take long
     readers.answer(0, taken[0])
     for lane in range(AT_LENGTH + 1, LANES):
         readers.answer(lane, taken[lane])
-    again = [lane for lane in range(LANES) if readers.lanes.others[lane].poll(0.2)]
-    question = readers.take(again[0])
+    (again,) = until(readers.asked, "it is begun anew")
+    question = readers.take(again)
     assert question == taken[AT_LENGTH]
-    readers.answer(again[0], question)
+    readers.answer(again, question)
     assert futures[AT_LENGTH].result(WAIT_S).verdict
 
 
 def test_nothing_is_set_aside_while_nobody_waits(readers, monkeypatch):
-    monkeypatch.setattr(lanes, "LONG_S", 0.01)
+    monkeypatch.setattr(lanes, "LONG_S", 0.0)
     begun(readers, LANES)
-    time.sleep(0.1)
+    readers.lanes._make_room()
     assert all(isinstance(sent, Hire) for sent in readers.sent)
+    assert readers.lanes._timer is None
 
 
 def test_askers_take_turns(readers):

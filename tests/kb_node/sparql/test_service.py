@@ -4,7 +4,6 @@ import os
 import queue
 import random
 import signal
-import time
 from collections import Counter
 
 import pyoxigraph as ox
@@ -185,12 +184,13 @@ def _is_there(flat, name):
 
 def test_what_runs_for_ever_is_cancelled_and_others_are_answered_meanwhile(flat):
     flat.ask(CHAIRS)
-    endless = flat.service.ask(Sparql(query=FOR_EVER, timeout=3.0), 0)
-    start = time.monotonic()
-    for _ in range(10):
+    endless = flat.service.ask(Sparql(query=FOR_EVER, timeout=2.0), 0)
+    answered = 0
+    while not endless.done():
         assert flat.ask(CHAIRS).rows
-    assert time.monotonic() - start < 2.0
-    with pytest.raises(errors.Refused, match="the query was cancelled after 3 s"):
+        answered += not endless.done()
+    assert answered
+    with pytest.raises(errors.Refused, match="the query was cancelled after 2 s"):
         endless.result(WAIT_S)
     assert flat.ask(CHAIRS).rows
 
@@ -243,10 +243,12 @@ def test_a_burst_of_commits_is_told_one_by_one(at_home):
 
 
 def test_the_lease_of_a_standing_query_ends(at_home):
-    at_home.watch(CHAIRS, watch="w", lease=1.0)
+    at_home.watch(CHAIRS, watch="kept", lease=WAIT_S)
     with pytest.raises(errors.NameTaken):
-        at_home.watch(CHAIRS, watch="w")
-    assert at_home.hear().ended
+        at_home.watch(CHAIRS, watch="kept")
+    at_home.watch(CHAIRS, watch="w", lease=1.0)
+    news = at_home.hear()
+    assert (news.watch, news.ended) == ("w", True)
     at_home.watch(CHAIRS, watch="w")
 
 

@@ -10,6 +10,7 @@ from nodes.kb_node.sparql.protocol import Committed, Hire, Left, Load, Question,
 from nodes.kb_node.sparql.triples.dataset import Delta
 from ontology import vocabulary as v
 from schemas.sparql import SparqlResult
+from tests.conftest import until
 from tests.kb_node import home
 
 WAIT_S = 60.0
@@ -22,8 +23,8 @@ class Process:
 
     def __init__(self, *, infers):
         self.sent = []
-        self.lanes, theirs = zip(*(Pipe() for _ in range(2)), strict=True)
-        self.worker = worker.Worker(self.sent.append, theirs)
+        self.lanes, self._theirs = zip(*(Pipe() for _ in range(2)), strict=True)
+        self.worker = worker.Worker(self.sent.append, self._theirs)
         self.worker.take(Load(seq=0, asserted=tuple(home.TBOX), infers=infers))
         self.seq = 0
 
@@ -43,6 +44,10 @@ class Process:
             timeout_s=10.0,
         )
         self.lanes[lane].send_bytes(msgpack.encode(question))
+
+    def await_taken(self, lane):
+        """Wait until a reader has taken the question that was asked."""
+        until(lambda: not self._theirs[lane].poll(0), "a reader has taken the question")
 
     def hire(self, lane):
         self.worker.take(Hire(lane=lane))
@@ -88,8 +93,8 @@ def test_a_reader_is_up_to_date_when_it_is_asked(process):
 def test_a_question_that_came_before_its_commit_waits_for_it(process):
     process.hire(0)
     process.ask(0, CHAIRS, seq=2)
+    process.await_taken(0)
     process.commit()
-    assert not process.lanes[0].poll(0.05)
     process.commit()
     assert process.rows(0) == 2
 
@@ -115,7 +120,7 @@ def test_a_reader_that_cannot_follow_goes_and_leaves_the_question(process):
 def test_one_that_has_taken_the_question_gives_it_back(process):
     process.hire(0)
     process.ask(0, SEATS, inferred=True)  # which its triples cannot answer
-    assert not process.lanes[0].poll(0.05)
+    process.await_taken(0)
     process.worker.take(Load(seq=0, asserted=tuple(home.TBOX), infers=True))
     assert process.hear(0).old
     assert process.bury_one() == Left(lane=0, signal=0)
