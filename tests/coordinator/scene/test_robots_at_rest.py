@@ -144,7 +144,7 @@ def newcomer(door):
 
 
 def new(name: str, **what: object) -> Body:
-    made = standing(BodyOrder(name=name, class_="Chair", pose=Pose(position_m=(0.0, 0.0, 0.0)), commit=-1))
+    made = standing(BodyOrder(name=name, class_="Chair", pose=Pose(position_m=(0.0, 0.0, 0.0)), commit=0))
     return structs.replace(made, entity=False, robot=True, **what)
 
 
