@@ -120,8 +120,10 @@ class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     problems: tuple[str, ...] = ()
     version: str = ""
     pending: tuple[str, ...] = ()
-    """Changes of the scene or the map that are still to be made, a sentence each: the first five, and how many
-    more there are. Empty when every entity has its body and the map follows all that rests."""
+    """Changes of the scene or the map that are still to be made, a sentence each.
+
+    These are the first five, and how many more there are. Empty when every entity has its body and the map
+    follows all that rests."""
     displaced: tuple[str, ...] = ()
     """Bodies that move or stand farther from their committed pose than the thresholds, in the same form:
     `robot1 is moving: 1.2 m from its committed pose`."""

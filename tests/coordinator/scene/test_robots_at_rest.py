@@ -1,4 +1,4 @@
-"""A robot and its parts are followed in one commit, so that none of it stays behind, and added in one order."""
+"""A robot and its parts are followed in one commit, so that none stays behind, and added in one order."""
 
 from concurrent.futures import Future
 from types import SimpleNamespace
