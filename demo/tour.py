@@ -77,9 +77,9 @@ class Tour:
             self.failures.append(f"waited {_PATIENCE_S:g} s in vain: {what}")
 
     def agrees(self) -> bool:
-        """Do map and scene agree?"""
+        """Return whether every entity has its body, and the map follows what rests; robots may drive."""
         status = self.ask("status")
-        return isinstance(status, dict) and status["in_agreement"]
+        return isinstance(status, dict) and status["in_agreement"] is not None and not status["pending"]
 
     def pid(self, node: str) -> int:
         """The process of a node."""

@@ -513,7 +513,12 @@ class Properties(Command[tuple[PropertyInfo, ...]], frozen=True, tag="properties
 
 
 class Status(Command[SystemStatus], frozen=True, tag="status"):
-    """The state of the nodes, the map and the scene, and any problems."""
+    """The state of the nodes, the map and the scene, and any problems.
+
+    With `names`, `in_agreement`, `pending` and `displaced` concern these entities only, whatever others do.
+    """
+
+    names: tuple[Word, ...] = ()
 
 
 # To ask about the past, and to take back

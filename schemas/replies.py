@@ -111,10 +111,22 @@ class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     entities: int
     bodies: int
     in_agreement: bool | None
-    """Map and scene are the same, to within the thresholds; None when no simulator runs."""
+    """Map and scene are the same, to within the thresholds, and nothing is `pending` or `displaced`.
+
+    None when no simulator runs, and when the map is updated by perception only. It is false while a robot
+    drives, so a program that waits names the entities that it waits for (`names` of the command).
+    """
     nodes: tuple[NodeStatus, ...]
     problems: tuple[str, ...] = ()
     version: str = ""
+    pending: tuple[str, ...] = ()
+    """Changes of the scene or the map that are still to be made, a sentence each.
+
+    These are the first five, and how many more there are. Empty when every entity has its body and the map
+    follows all that rests."""
+    displaced: tuple[str, ...] = ()
+    """Bodies that move or stand farther from their committed pose than the thresholds, in the same form:
+    `robot1 is moving: 1.2 m from its committed pose`."""
 
 
 class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -256,8 +256,7 @@ def test_in_mode_scene_the_map_follows_what_stands_in_the_simulator(tmp_path):
         assert any(ignored in node.detail for node in client.status().nodes)
         client.move("mug", (2.0, -1.0, 0.1))
         until(lambda: client.get("mug").pose.position_m[1] < 0, "the map follows the mug")
-        time.sleep(0.5)
-        assert client.status().in_agreement
+        until(lambda: client.status(names=("mug",)).in_agreement, "map and scene agree on the mug")
 
 
 def test_a_world_in_json_becomes_the_map_and_so_does_what_is_put_in_later(tmp_path):

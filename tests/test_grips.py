@@ -13,29 +13,75 @@ from schemas.grips import grip_of, holder_of
 from schemas.scenes import Grip, GripOrder, Gripped, Scene, SceneQuery
 from tests.conftest import running, until
 
-OPTIONS = ("--abox", "none", "--world", "empty")
+OPTIONS = (
+    *("--no-record", "--abox", "none", "--world", "empty"),
+    *("--robot", "porter", "--robot-at", "-2", "0", "0"),
+)
 
 
-@pytest.fixture
-def system(tmp_path):
-    with running(tmp_path, *OPTIONS) as system:
+HOME = (-2.0, 0.0, 0.0)
+TABLE, TRAY, CUP = (0.0, 0.0, 0.0), (3.0, 0.0, 0.0), (0.0, 0.0, 0.8)
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    """A system with a robot in a corner of the kitchen; the other things are put where they are each time."""
+    with running(tmp_path_factory.mktemp("grips"), *OPTIONS) as system:
         with system.client() as client:
-            client.add("Table", "table1", at=(0.0, 0.0, 0.0), wait=True)
-            client.add("Tray", "tray1", at=(3.0, 0.0, 0.0), wait=True)
-            client.add("Cup", "cup1", at=(0.0, 0.0, 0.8), wait=True)
             client.add("Kitchen", "kitchen1", at=(0.0, 0.0, 0.0), size=(20.0, 20.0, 3.0))
-            until(lambda: client.status().in_agreement, "all is at rest")
+            until(lambda: {"robot1", "robot1_gripper"} <= {e.name for e in client.list()}, "the robot")
         yield system
 
 
 @pytest.fixture
 def client(system):
+    """A client of a map with a cup on a table, a tray beside it, and nothing attached."""
     with system.client() as client:
+        yield from laid(client, table1=("Table", TABLE), tray1=("Tray", TRAY), cup1=("Cup", CUP))
+
+
+@pytest.fixture
+def held(system):
+    """The same with the cup attached to the tray."""
+    with system.client() as client:
+        for _ in laid(client, table1=("Table", TABLE), tray1=("Tray", TRAY), cup1=("Cup", (3.0, 0.0, 0.5))):
+            client.attach("cup1", to="tray1")
+            agree(client, "cup1", "tray1")
+            yield client
+
+
+def laid(client, **things):
+    """A client while these things are there, each of a class at a place; they are removed afterwards."""
+    for name, (class_, at) in things.items():
+        client.add(class_, name, at=at, wait=True)
+    agree(client, *things)
+    try:
         yield client
+    finally:
+        for name in reversed(things):  # what is attached before what it is attached to
+            for other in {e.name for e in client.list()} & {*things}:
+                if holder_of(client.get(other)):
+                    client.detach(other)
+            client.remove(name)
+        until(lambda: {*things}.isdisjoint(bodies_of(client) or things), "their bodies are gone")
 
 
-def in_agreement(client):
-    return until(lambda: client.status().in_agreement, "map and scene agree")
+def bodies_of(client):
+    """The names of the bodies, among them the robot's; none while there is no simulator."""
+    return {body.name for body in scene_of(client).bodies}
+
+
+def scene_of(client):
+    """The scene; an empty one of no run while there is no simulator."""
+    try:
+        return bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene)
+    except errors.NoAnswer:
+        return Scene(run="", version=0, stamp_ns=0, sim_time_s=0.0, world="", bodies=())
+
+
+def agree(client, *names):
+    """Wait until map and scene agree on these, whatever else moves."""
+    until(lambda: client.status(names=names).in_agreement, f"map and scene agree on {', '.join(names)}")
 
 
 def live_off_m(client):
@@ -53,51 +99,47 @@ def test_it_is_taken_carried_and_put(client):
     assert client.list(on="table1") == ()
     assert [e.name for e in client.list(in_="kitchen1", class_="Cup")] == ["cup1"]
     assert "kitchen1" in client.sparql("SELECT ?x { :cup1 dm:isLocatedIn ?x }", inferred=True).rows[0][0]
-    in_agreement(client)
-    before = client.status().commit
+    agree(client, "cup1", "tray1")
+    attached, moved = reply.commit, len(client.history("cup1"))
     client.move("tray1", at=(3.0, 2.0, 0.0))
     until(lambda: client.get("tray1").pose.position_m[1] > 1.9, "the map follows the tray")
-    in_agreement(client)
-    assert client.status().commit == before + 1  # the tray's
+    agree(client, "cup1", "tray1")
+    assert len(client.history("cup1")) == moved  # the tray's move is no commit of the cup
+    until(lambda: live_off_m(client) < 0.02, "the cup is where the tray takes it")
     assert client.get("cup1").live.pose.position_m[1] == pytest.approx(2.0, abs=0.02)
-    assert live_off_m(client) < 0.02
     assert client.get("cup1").pose.position_m[1] == pytest.approx(0.0, abs=0.02)
-    assert "tray1 let go of cup1" in client.detach("cup1").text
+    detached = client.detach("cup1")
+    assert "tray1 let go of cup1" in detached.text
     until(lambda: client.get("cup1").pose.position_m[2] < 0.1, "it fell")
     assert holder_of(client.get("cup1")) == ""
     assert client.get("cup1").properties == {}
-    in_agreement(client)
-    client.undo()
+    agree(client, "cup1")
+    client.undo(client.history("cup1")[-1].seq)  # that it fell
+    client.undo(detached.commit)
     until(lambda: holder_of(client.get("cup1")) == "tray1", "it is held again")
-    in_agreement(client)
-    assert holder_of(client.get("cup1", as_of=1 + before)) == "tray1"
+    agree(client, "cup1", "tray1")
+    assert holder_of(client.get("cup1", as_of=attached)) == "tray1"
 
 
 def test_a_hand_in_the_scene_changes_the_map(client):
     asked = Grip(orders=(GripOrder(name="cup1", holder="tray1"),))
     assert bus.ask(client.session, keys.SIM, "grip", asked, Gripped).failed == {}
     until(lambda: holder_of(client.get("cup1")) == "tray1", "the map follows")
-    assert client.history(limit=1)[-1].reason == "cup1 was taken by tray1 in the scene"
+    assert client.history("cup1", limit=1)[-1].reason == "cup1 was taken by tray1 in the scene"
     bus.ask(client.session, keys.SIM, "grip", Grip(orders=(GripOrder(name="cup1"),)), Gripped)
     until(lambda: holder_of(client.get("cup1")) == "", "the map follows")
-    in_agreement(client)
+    agree(client, "cup1", "tray1")
 
 
 def test_what_is_held_is_held_again_after_a_restart(system, client):
     client.attach("cup1", to="tray1", at=(0.0, 0.0, 0.5))
-    in_agreement(client)
-    before = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene).run
+    agree(client, "cup1", "tray1")
+    before = scene_of(client).run
     os.kill(system.pid("sim_node"), signal.SIGKILL)
 
-    def scene():
-        try:
-            return bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene)
-        except errors.NoAnswer:
-            return None
-
     def is_held_again():
-        there = scene()
-        held = there is not None and {b.name: b.held_by for b in there.bodies}.get("cup1") == "tray1"
+        there = scene_of(client)
+        held = {b.name: b.held_by for b in there.bodies}.get("cup1") == "tray1"
         return held and there.run != before
 
     until(is_held_again, "it is held again")
@@ -109,13 +151,13 @@ def test_what_is_held_is_held_again_after_a_restart(system, client):
 
 def test_the_last_word_wins(client):
     client.attach("cup1", to="tray1")
-    in_agreement(client)
+    agree(client, "cup1", "tray1")
     client.set("cup1", "isGraspedBy", "table1")
     until(lambda: grip_of(client.get("cup1")) is not None, "the map says where")
-    in_agreement(client)
+    agree(client, "cup1", "tray1")
     assert holder_of(client.get("cup1")) == "table1"
     client.unset("cup1", "isGraspedBy")
-    in_agreement(client)
+    agree(client, "cup1", "tray1")
     assert holder_of(client.get("cup1")) == ""
 
 
@@ -130,53 +172,45 @@ def test_the_last_word_wins(client):
         (("cup1", "table1"), "cup1 is held by tray1 already; first: semmap detach cup1"),
     ],
 )
-def test_what_cannot_be_held_is_refused(shared, words, why):
+def test_what_cannot_be_held_is_refused(held, words, why):
     name, to = words
-    with shared.client() as client, pytest.raises(errors.Refused, match=why):
-        client.attach(name, to=to)
+    with pytest.raises(errors.Refused, match=why):
+        held.attach(name, to=to)
 
 
-@pytest.fixture(scope="module")
-def shared(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("grips"), *OPTIONS) as system:
-        with system.client() as client:
-            client.add("Table", "table1", at=(0.0, 0.0, 0.0), wait=True)
-            client.add("Tray", "tray1", at=(3.0, 0.0, 0.0), wait=True)
-            client.add("Cup", "cup1", at=(3.0, 0.0, 0.5), wait=True)
-            client.add("Kitchen", "kitchen1", at=(0.0, 0.0, 0.0), size=(20.0, 20.0, 3.0))
-            client.attach("cup1", to="tray1")
-            until(lambda: client.status().in_agreement, "map and scene agree")
-        yield system
+def test_what_is_held_is_neither_moved_nor_left_behind(held):
+    why = "cup1 is held by tray1; to put it elsewhere, first: semmap detach cup1"
+    with pytest.raises(errors.Refused, match=why):
+        held.move("cup1", at=(1.0, 1.0, 0.0))
+    with pytest.raises(errors.Refused, match=why):
+        held.update("cup1", at=(1.0, 1.0, 0.0))
+    with pytest.raises(errors.Refused, match="tray1 holds cup1; first: semmap detach cup1"):
+        held.remove("tray1")
+    with pytest.raises(errors.Refused, match="nothing holds table1"):
+        held.detach("table1")
 
 
-def test_what_is_held_is_neither_moved_nor_left_behind(shared):
-    with shared.client() as client:
-        why = "cup1 is held by tray1; to put it elsewhere, first: semmap detach cup1"
-        with pytest.raises(errors.Refused, match=why):
-            client.move("cup1", at=(1.0, 1.0, 0.0))
-        with pytest.raises(errors.Refused, match=why):
-            client.update("cup1", at=(1.0, 1.0, 0.0))
-        with pytest.raises(errors.Refused, match="tray1 holds cup1; first: semmap detach cup1"):
-            client.remove("tray1")
-        with pytest.raises(errors.Refused, match="nothing holds table1"):
-            client.detach("table1")
-
-
-def test_on_the_command_line(shared):
-    assert "tray1 holds cup1 already" in shared.cli("attach", "cup1", "--to", "tray1")
-    assert "where tray1 holds it" in shared.cli("get", "cup1")
-    assert "dry run" in shared.cli("detach", "cup1", "--dry-run")
+@pytest.mark.usefixtures("held")
+def test_on_the_command_line(system):
+    assert "tray1 holds cup1 already" in system.cli("attach", "cup1", "--to", "tray1")
+    assert "where tray1 holds it" in system.cli("get", "cup1")
+    assert "dry run" in system.cli("detach", "cup1", "--dry-run")
 
 
 @pytest.fixture
-def porter(tmp_path):
+def porter(system):
     """A robot beside a tray with two cups on it."""
-    with running(tmp_path, *OPTIONS, "--robot", "porter") as system, system.client() as client:
-        client.add("Tray", "tray1", at=(0.0, -2.0, 0.0), wait=True)
-        client.add("Cup", "cup1", at=(0.08, -2.0, 0.02), wait=True)
-        client.add("Cup", "cup2", at=(-0.08, -2.0, 0.02), wait=True)
-        until(lambda: client.status().in_agreement, "all is at rest")
-        yield system
+    things = {"tray1": (0.0, -2.0, 0.0), "cup1": (0.08, -2.0, 0.02), "cup2": (-0.08, -2.0, 0.02)}
+    with system.client() as client:
+        client.drive("robot1", to=((0.0, 0.0),), yaw=0.0, wait=True)
+        agree(client, "robot1", "robot1_gripper")
+        try:
+            yield from laid(
+                client, **{n: ("Tray" if n == "tray1" else "Cup", at) for n, at in things.items()}
+            )
+        finally:
+            client.move("robot1", at=HOME, yaw=0.0)
+            agree(client, "robot1", "robot1_gripper")
 
 
 def off_tray_m(client, cup):
@@ -186,27 +220,26 @@ def off_tray_m(client, cup):
 
 
 def test_what_stands_on_a_tray_is_carried_by_a_robot_and_free_again(porter):
-    with porter.client() as client:
-        dry = client.attach("tray1", to="robot1_gripper", dry_run=True)
-        assert dry.notes[-1].startswith("cup1 and cup2 are on or inside tray1 and held by nothing")
-        reply = client.attach("tray1", to="robot1/gripper", at=(0.25, 0.0, 0.0), yaw=0.0, carry=True)
-        assert reply.text.endswith("; tray1 carried cup1 and cup2 along")
-        assert set(reply.names) == {"tray1", "cup1", "cup2"}
-        in_agreement(client)
-        assert client.attach("tray1", to="robot1_gripper", carry=True).commit is None
-        client.drive("robot1", to=((1.0, 0.0), (1.0, 1.0), (0.0, 0.0)), wait=True)
-        for cup in ("cup1", "cup2"):
-            assert holder_of(client.get(cup)) == "tray1"
-            assert off_tray_m(client, cup) < 0.02
-        before = in_agreement(client) and client.status().commit
-        reply = client.detach("tray1")
-        assert reply.text.endswith("; cup1 and cup2 are free again, too")
-        assert reply.commit == before + 1
-        assert {holder_of(client.get(n)) for n in ("tray1", "cup1", "cup2")} == {""}
-        in_agreement(client)
-        client.undo(reply.commit)
-        assert {holder_of(client.get(n)) for n in ("cup1", "cup2")} == {"tray1"}
-        assert client.detach("tray1").text.endswith("; cup1 and cup2 are free again, too")
+    client = porter
+    dry = client.attach("tray1", to="robot1_gripper", dry_run=True)
+    assert dry.notes[-1].startswith("cup1 and cup2 are on or inside tray1 and held by nothing")
+    reply = client.attach("tray1", to="robot1/gripper", at=(0.25, 0.0, 0.0), yaw=0.0, carry=True)
+    assert reply.text.endswith("; tray1 carried cup1 and cup2 along")
+    assert set(reply.names) == {"tray1", "cup1", "cup2"}
+    agree(client, "tray1", "cup1", "cup2")
+    assert client.attach("tray1", to="robot1_gripper", carry=True).commit is None
+    client.drive("robot1", to=((1.0, 0.0), (1.0, 1.0), (0.0, 0.0)), wait=True)
+    for cup in ("cup1", "cup2"):
+        assert holder_of(client.get(cup)) == "tray1"
+        until(lambda cup=cup: off_tray_m(client, cup) < 0.02, f"{cup} is where the tray takes it")
+    agree(client, "tray1", "cup1", "cup2")
+    reply = client.detach("tray1")
+    assert reply.text.endswith("; cup1 and cup2 are free again, too")
+    assert set(client.history("cup1", limit=1)[-1].changed) == {"tray1", "cup1", "cup2"}  # in one commit
+    assert {holder_of(client.get(n)) for n in ("tray1", "cup1", "cup2")} == {""}
+    client.undo(reply.commit)
+    assert {holder_of(client.get(n)) for n in ("cup1", "cup2")} == {"tray1"}
+    assert client.detach("tray1").text.endswith("; cup1 and cup2 are free again, too")
 
 
 WORLD = {
@@ -224,19 +257,19 @@ def test_where_the_scene_is_the_truth_what_stands_on_it_is_taken_along_there_fir
     options = ("--abox", "none", "--world", tmp_path / "world.json", "--truth", "scene")
     with running(tmp_path, *options) as system, system.client() as client:
         until(lambda: [e.name for e in client.list(on="tray1")] == ["cup1", "cup2"], "the map follows")
-        in_agreement(client)
+        agree(client, "tray1", "cup1", "cup2")
         with pytest.raises(errors.BadRequest, match="--leave says what is not to be carried along"):
             client.attach("tray1", to="table1", leave=("cup1",))
         reply = client.attach("tray1", to="table1", at=(0.0, 0.0, 0.8), carry=True, leave=("cup1",))
         assert "tray1 carried cup2 along" in reply.text
-        in_agreement(client)
+        agree(client, "tray1", "cup1", "cup2")
         assert [holder_of(client.get(n)) for n in ("cup1", "cup2")] == ["", "tray1"]
-        scene = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene)
+        scene = scene_of(client)
         there = {body.name: body for body in scene.bodies}
         assert {name: body.held_by for name, body in there.items()} == {
             "table1": "", "tray1": "table1", "cup1": "", "cup2": "tray1"
         }  # fmt: skip
         assert there["cup2"].pose.position_m == pytest.approx((2.92, 0.0, 0.81), abs=0.03)
         assert client.detach("tray1").names == ("tray1", "cup2")
-        in_agreement(client)
+        agree(client, "tray1", "cup1", "cup2")
         assert holder_of(client.get("cup2")) == ""

@@ -35,7 +35,7 @@ def test_a_hand_opens_it_and_the_map_follows(client):
     entity = client.get("fridge1")
     assert entity.body.openness == pytest.approx(0.5, abs=0.01)
     assert entity.joint_provenance.source == "scene"
-    newest = client.history(limit=1)[-1]
+    newest = client.history("fridge1", limit=1)[-1]
     assert (newest.verb, newest.reason) == ("open", "fridge1 was opened by hand")
     assert client.close("fridge1", wait=True).text == "fridge1: door closed (0 rad), freezer closed (0 rad)"
     assert said(client) == {"isOpen": False, "openness": 0.0, "jointPositions": "door=0 freezer=0"}
@@ -47,15 +47,16 @@ def test_what_the_map_says_is_done_in_the_scene(client):
 
     def is_open():
         body = client.get("fridge1").body
-        return body if body.openness > 0.99 and client.status().in_agreement else None
+        agrees = client.status(names=("fridge1",)).in_agreement
+        return body if agrees and body.openness > 0.99 else None
 
     until(is_open, "the doors open")
     client.set("fridge1", "openness", 0.25)
     assert said(client)["isOpen"] is True
     until(lambda: abs(client.get("fridge1").body.openness - 0.25) < 0.01, "the doors close a little")
-    client.set("fridge1", "isOpen", False)
+    closed = client.set("fridge1", "isOpen", False).commit
     until(lambda: client.get("fridge1").body.openness < 0.01, "the doors close")
-    client.undo()
+    client.undo(closed)
     until(lambda: abs(client.get("fridge1").body.openness - 0.25) < 0.01, "they stand as before")
 
 
@@ -65,7 +66,7 @@ def test_a_robot_that_opens_it_changes_the_map(client):
     asked = MoveJoints(orders=(JointOrder(name="fridge1", joint="freezer", openness=1.0),))
     assert bus.ask(client.session, keys.SIM, "move-joints", asked, JointsMoving).failed == {}
     until(lambda: said(client)["openness"] == 1.0, "the map follows")
-    assert client.history(limit=1)[-1].reason == "fridge1 was opened to 100% in the scene"
+    assert client.history("fridge1", limit=1)[-1].reason == "fridge1 was opened to 100% in the scene"
     rows = client.sparql("SELECT ?x { ?x dm:isOpen true ; dm:openness ?o FILTER(?o > 0.9) }").rows
     assert len(rows) == 1
 

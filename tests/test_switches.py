@@ -30,17 +30,17 @@ def test_a_hand_turns_it_and_the_map_follows(client):
     assert said(client)["switchPositions"] == "dial_1=-1.5"
     assert said(client)["isOpen"] is False
     assert client.get("stove").body.switched_on is True
-    assert client.history(limit=1)[-1].reason == "dial_1 of stove was turned by hand"
+    assert client.history("stove", limit=1)[-1].reason == "dial_1 of stove was turned by hand"
     client.close("stove", wait=True)
     assert said(client)["isSwitchedOn"] is True
 
 
 def test_what_the_map_says_is_done_in_the_scene(client):
     for on in (False, True):
-        client.set("stove", "isSwitchedOn", on)
+        said_so = client.set("stove", "isSwitchedOn", on).commit
         assert "switchPositions" not in said(client)
         until(lambda on=on: client.get("stove").body.switched_on is on, "it is switched")
-    client.undo()
+    client.undo(said_so)
     until(lambda: client.get("stove").body.switched_on is False, "it stands as before")
 
 

@@ -76,4 +76,4 @@ def test_what_the_mouse_pulls_in_the_window_the_map_follows(display, tmp_path):
         after = until(pulled, "the map follows the mouse")
         assert after.pose_provenance.source == "scene"
         assert after.pose.position_m[0] > before.pose.position_m[0] + 0.3  # the window looks north
-        until(lambda: client.status().in_agreement, "map and scene agree")
+        until(lambda: client.status(names=("box1",)).in_agreement, "map and scene agree on the box")

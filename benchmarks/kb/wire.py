@@ -105,7 +105,7 @@ def _sparql(client: Client, repeat: int) -> Figures:
 
 def _settle(client: Client) -> None:
     """Wait until every entity has its body."""
-    while not client.status().in_agreement:
+    while (status := client.status()).in_agreement is None or status.pending:
         time.sleep(0.5)
 
 

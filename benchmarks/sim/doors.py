@@ -213,12 +213,12 @@ def _quiet(client: Client) -> list[str]:
     Those that are still not in agreement after a while count.
     """
     deadline_s = time.monotonic() + _PATIENCE_S
-    agreed = 0
+    agreed, doors = 0, tuple(f"door{i}" for i in range(_DOORS))
     while agreed < _IN_A_ROW and time.monotonic() < deadline_s:
         rests = all(body.resting for body in _scene(client).bodies)
-        agreed = agreed + 1 if rests and client.status().in_agreement else 0
+        agreed = agreed + 1 if rests and client.status(names=doors).in_agreement else 0
         time.sleep(0.2)
-    return [name for i in range(_DOORS) if not agrees(client.get(name := f"door{i}"))]
+    return [name for name in doors if not agrees(client.get(name))]
 
 
 def _told(entity: Entity) -> str:

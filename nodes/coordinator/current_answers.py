@@ -29,6 +29,8 @@ from schemas.relations import Described
 from schemas.replies import SystemStatus
 
 _DIGITS = 4
+_MOST = 5
+"""So many sentences of one kind are in a status."""
 E = TypeVar("E", bound=Entity)
 
 Listed = tuple[Entity, ...] | dict[str, Any]
@@ -77,17 +79,20 @@ class Answers:
             return then(self._bridge.ask_later(query, patience_s=bus.RESTART_S), self._with_body)
         return Described.of(self._with_body(self._door.map.entity(query.name)))
 
-    def status(self, _: c.Status) -> SystemStatus:
+    def status(self, query: c.Status) -> SystemStatus:
         """The nodes, the map, the scene."""
+        agreement, streamed = self._keeping.agreement(query.names or None), self._live.displaced(query.names)
         return SystemStatus(
             truth=self._truth,
             commit=max(0, self._door.map.seq),
             entities=len(self._door.map.entities),
             bodies=len(self._keeping.scene.bodies),
-            in_agreement=self._keeping.in_agreement(),
+            in_agreement=agreement.holds and not streamed,
             nodes=self._health.nodes(),
             problems=(*self._keeping.problems(), *self._live.problems(), *self._frames.problems()),
             version=version(),
+            pending=_few(agreement.pending),
+            displaced=_few((*agreement.displaced, *streamed)),
         )
 
     def _formatted(self, found: Iterable[Entity], wanted: c.ListFormat) -> Listed:
@@ -128,6 +133,12 @@ def with_size(entity: E) -> E:
     if entity.size_m is not None or entity.place or not entity.model:
         return entity
     return structs.replace(entity, size_m=own_size_m(entity.model))
+
+
+def _few(sentences: tuple[str, ...]) -> tuple[str, ...]:
+    """The first, and how many more there are."""
+    more = len(sentences) - _MOST
+    return sentences if more <= 0 else (*sentences[:_MOST], f"… and {more} more")
 
 
 def _stands_in(size_m: Size) -> str:

@@ -5,7 +5,7 @@ Nobody else changes such a map. A knowledge base that is restarted goes on where
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, Final
@@ -50,6 +50,7 @@ class Player:
         self._replay = replay
         self._spread = spread
         self._looks = 0
+        self._waits_for: tuple[str, ...] = ()
         node.later(_LOOK_S, self._look)
 
     def close(self) -> None:
@@ -65,21 +66,19 @@ class Player:
         """Begin when all nodes are ready and the bodies stand."""
         self._looks += 1
         if self._looks > _MOST_LOOKS:
+            self._node.report(f"the replay begins before all is ready: {'; '.join(self._waits_for)}")
             self._schedule()
             return
 
         def told(done: Future[SystemStatus]) -> None:
-            if done.exception() is None and self._are_ready(done.result()):
-                self._schedule()
-            else:
+            failed = done.exception()
+            self._waits_for = (str(failed),) if failed else missing(done.result(), self._replay.nodes)
+            if self._waits_for:
                 self._node.later(_LOOK_S, self._look)
+            else:
+                self._schedule()
 
         self._node.ask_later(keys.CMD, Status()).add_done_callback(told)
-
-    def _are_ready(self, status: SystemStatus) -> bool:
-        ready = {node.node for node in status.nodes if node.state == "ready"}
-        needs_bodies = "sim_node" in self._replay.nodes
-        return ready >= {*self._replay.nodes} and (not needs_bodies or status.in_agreement is True)
 
     def _schedule(self) -> None:
         """Have the next commit made when its time has come."""
@@ -102,6 +101,18 @@ class Player:
         as_made = structs.replace(commit, changed=(), removed=(), digest="")
         self._spread(self._map.restate(as_made, tbox))
         self._schedule()
+
+
+def missing(status: SystemStatus, nodes: Collection[str]) -> tuple[str, ...]:
+    """Return what a replay with these nodes has to wait for, a sentence each.
+
+    It waits until every entity has its body. Bodies that move or stand elsewhere do not hold it up.
+    """
+    ready = {node.node for node in status.nodes if node.state == "ready"}
+    absent = tuple(f"{node} is not ready" for node in nodes if node not in ready)
+    if absent or "sim_node" not in nodes:
+        return absent
+    return ("the scene is not known yet",) if status.in_agreement is None else status.pending
 
 
 def refusing() -> Mapping[str, Handler]:

@@ -260,13 +260,19 @@ class _Foreground:
             bus.open_session(self._network()) as session,
         ):
             deadline_s = time.monotonic() + _INTRODUCED_S
+            waits_for: tuple[str, ...] = ()
             while time.monotonic() < deadline_s:
                 status = bus.ask(session, keys.CMD, Status.VERB, Status(), reply_type(Status))
                 known = {node.pid for node in status.nodes if node.state == "ready"}
-                stands = status.in_agreement or status.truth == "perceived" or "sim_node" not in self._pids
+                keeps = status.truth != "perceived" and "sim_node" in self._pids
+                waits_for = status.pending if keeps else ()  # bodies that move hold nothing up
+                stands = not keeps or (status.in_agreement is not None and not waits_for)
                 if stands and known >= {pid for node, pid in self._pids.items() if node != keys.WEB}:
                     break
                 time.sleep(0.05)
+            else:
+                for waited in waits_for:
+                    self._say(f"{'scene':<{_COLUMN}} not complete yet: {waited}")
             self._tell_of_truth(status.truth)
             self._tell_of_models(session)
             self._tell_of_robot(session)

@@ -38,6 +38,7 @@ TBOX = b"""
 :Coordinates a owl:Class ; rdfs:subClassOf :Property .
 :hasPosition a owl:ObjectProperty , owl:FunctionalProperty ;
   rdfs:domain :Physical_Thing ; rdfs:range :Coordinates .
+:isDirectPartOf a owl:ObjectProperty .
 :isOpen a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:boolean .
 :openness a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:float .
 :jointPositions a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:string .

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from concurrent.futures import Future
 from functools import partial
 
@@ -101,6 +101,11 @@ class LiveFeed:
     def problems(self) -> list[str]:
         """What is amiss with live poses, one sentence each."""
         return list(self._poses.problems(self._map.tracked, time.monotonic()))
+
+    def displaced(self, names: Collection[str] = ()) -> tuple[str, ...]:
+        """Return which entities (of these, if there are any) a stream has away from their committed pose."""
+        tracked = {n: e for n, e in self._map.tracked.items() if not names or n in names}
+        return tuple(self._poses.displaced(tracked, time.monotonic()))
 
     def settle(self, name: str) -> Future[Changed] | None:
         """Commit where an entity is just now; None where that is not known, or is what the map says."""

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from nodes.coordinator.config import LiveRules, Thresholds
 from nodes.coordinator.live.rest import Rest
+from nodes.coordinator.scene.agreement import describe_distance
 from schemas import errors, keys, wording
 from schemas.entities import Entity, Live, Pose, Tracking, angle_rad, distance_m, rounded
 
@@ -155,6 +156,19 @@ class LivePoses:
             if now_s - at_s < _TOLD_S:
                 times = f" ({count:,} times)" if count > 1 else ""
                 yield f"{keys.live_pose_key(name)}: ignored{times}: {reason}"
+
+    def displaced(self, tracked: Mapping[str, Entity], now_s: float) -> Iterator[str]:
+        """Yield which entities a stream has away from their committed pose, one sentence each.
+
+        Of those that are tracked from the simulator, the bodies are compared with the map.
+        """
+        for name, entity in sorted(tracked.items()):
+            known = self._heard.get(name)
+            if known is None or entity.tracked != "stream" or self._is_stale(known, now_s):
+                continue
+            if entity.pose is not None and self._is_elsewhere(entity, known.pose):
+                moving = not known.rest.holds(now_s)
+                yield describe_distance(name, entity.pose, known.pose, self._thresholds, moving=moving)
 
     # what is committed
 

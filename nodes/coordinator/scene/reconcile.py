@@ -110,7 +110,7 @@ def reconcile(
                     place.append(_placement(entity))
             elif not body.held_by and _moved(entity, body, thresholds):
                 follow.append(Placement(name=name, pose=body.pose))
-            if body.joints and body.resting and _stand_elsewhere(entity, body, thresholds):
+            if body.joints and body.resting and joints_differ(entity, body, thresholds):
                 opened.append(name)
         elif body is None or _reshaped(entity, body) or _comes_with(entity, body, coming):
             if entity.pose is not None and failed.get(name) != latest(entity):
@@ -138,7 +138,7 @@ def reconcile(
                 follow.append(Placement(name=name, pose=body.pose))
             if body.joints and _joints_ordered_since(entity, body, whoever=replayed):
                 joints.append(joint_order(entity, body))
-            elif body.joints and not replayed and body.resting and _stand_elsewhere(entity, body, thresholds):
+            elif body.joints and not replayed and body.resting and joints_differ(entity, body, thresholds):
                 opened.append(name)
     for name, body in bodies.items():
         if name not in entities:
@@ -196,7 +196,7 @@ def joint_order(entity: Entity, body: Body) -> JointOrder:
     letter: the thresholds are for what a hand leaves.
     """
     said = entity.joints_said
-    suits = body.resting and not _stand_elsewhere(entity, body, _TO_THE_LETTER)
+    suits = body.resting and not joints_differ(entity, body, _TO_THE_LETTER)
     return JointOrder(
         name=entity.name,
         positions={} if suits else wanted(body.joints, entity.properties),
@@ -241,9 +241,17 @@ def latest(entity: Entity) -> int:
     return latest if joints is None else max(latest, joints.commit)
 
 
-def _stand_elsewhere(entity: Entity, body: Body, thresholds: Thresholds) -> bool:
-    """Do the joints of a body stand otherwise than the map says?"""
-    said = entity.properties
+def joints_differ(entity: Entity, body: Body, thresholds: Thresholds) -> bool:
+    """Return whether the joints of a body are farther from their committed positions than the thresholds."""
+    return _joints_differ_from(entity.properties, body, thresholds)
+
+
+def joints_differ_from_model(body: Body, thresholds: Thresholds) -> bool:
+    """Return whether the joints of a body are farther from where its model has them than the thresholds."""
+    return bool(body.joints) and _joints_differ_from({}, body, thresholds)
+
+
+def _joints_differ_from(said: Mapping[str, object], body: Body, thresholds: Thresholds) -> bool:
     roughly_open = IS_OPEN in said and said.keys().isdisjoint((OPENNESS, JOINT_POSITIONS))
     roughly_on = IS_SWITCHED_ON in said and SWITCH_POSITIONS not in said
     share, on = openness(body.joints), is_on(body.joints)
@@ -292,6 +300,11 @@ def _posed_since(entity: Entity, body: Body) -> bool:
 def _moved(entity: Entity, body: Body, thresholds: Thresholds) -> bool:
     if not body.resting or entity.tracked == "stream":
         return False
+    return is_displaced(entity, body, thresholds)
+
+
+def is_displaced(entity: Entity, body: Body, thresholds: Thresholds) -> bool:
+    """Return whether a body is farther from its committed pose than the thresholds, or has none."""
     if entity.pose is None:
         return True
     return (

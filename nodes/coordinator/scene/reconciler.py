@@ -7,7 +7,6 @@ never older than the orders before it.
 from __future__ import annotations
 
 import logging
-import time
 from collections import deque
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import Future
@@ -16,10 +15,25 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
+from nodes.coordinator.scene.agreement import (
+    Agreement,
+    describe_displaced,
+    describe_pending,
+    find_displaced,
+)
 from nodes.coordinator.scene.contents import inside
-from nodes.coordinator.scene.reconcile import Actions, grip_order, joint_order, latest, order, reconcile
+from nodes.coordinator.scene.reconcile import (
+    Actions,
+    grip_order,
+    joint_order,
+    joints_differ_from_model,
+    latest,
+    order,
+    reconcile,
+)
+from nodes.coordinator.scene.rest_waits import RestWaits
 from nodes.coordinator.scene.scene_view import SceneView
-from nodes.coordinator.scene.settled import Settled
+from nodes.coordinator.scene.settled import Settled, statements
 from nodes.coordinator.scene.spawn_batches import batches
 from schemas import errors, wording
 from schemas.calls import Call
@@ -50,8 +64,6 @@ log = logging.getLogger(__name__)
 
 T = TypeVar("T")
 _PART_OF = "isDirectPartOf"
-_CALM_S = 2.0
-"""So long the map waits for what is inside a thing to rest, too."""
 
 
 class AskSim(Protocol):
@@ -103,7 +115,7 @@ class Keeping:
         self._shut_again: dict[str, JointOrder] = {}  # those whose joints it did not follow
         self._regrip: dict[str, GripOrder] = {}  # those whose holder it did not take over
         self._ungripped: dict[str, tuple[int, str]] = {}  # what the scene could not have held, and why
-        self._waiting: dict[str, float] = {}  # things in which something still moves, and since when [s]
+        self._waits = RestWaits()
         self._unsaid: set[str] = set()  # bodies of whose joints the map has no way to speak
 
     def on_poses(self, poses: Poses) -> None:
@@ -126,6 +138,7 @@ class Keeping:
             self._later.update(names or ())
         if self._busy or not self.scene.known:
             return
+        self._waits.forget_moving(self.scene.bodies)
         actions = self._follow_contents(self._follow_robots(self.wanted(names)))
         for group in self._to_follow(actions.follow):
             self._follow(group)
@@ -161,18 +174,27 @@ class Keeping:
             )
         return wanted
 
-    def in_agreement(self) -> bool | None:
-        """Map and scene are the same, and nothing is under way; None when there is nothing to keep."""
+    def agreement(self, names: Collection[str] | None = None) -> Agreement:
+        """Return whether map and scene are the same, and what they differ in.
+
+        With `names`, what concerns these entities and bodies: what others do is no matter then. Raises
+        UnknownName for one that is neither in the map nor in the scene.
+        """
+        entities, bodies, thresholds = self._door.map.entities, self.scene.bodies, self._config.thresholds
+        if names is not None:
+            for name in names:
+                if name not in bodies:
+                    self._door.map.entity(name)
+            entities, bodies = _only(names, entities), _only(names, bodies)
+        there = find_displaced(entities, bodies, self._config.truth, thresholds, self._unsaid)
+        displaced = tuple(describe_displaced(entities[name], bodies[name], thresholds) for name in there)
         if not self.scene.known or self._config.truth == "perceived":
-            return None
-        wanted = self.wanted()
-        foreign = [body for body in wanted.adopt if body.name not in self._foreign]
-        return (
-            self._door.map.is_confirmed
-            and not self._busy
-            and not (any(wanted[:5]) or wanted.grips or wanted.gripped)
-            and bool(self._unsaid.issuperset(wanted.opened))
-            and not (foreign or wanted.missing)
+            return Agreement(None, displaced=displaced)
+        wanted = self.wanted(names)
+        pending = describe_pending(wanted, {*self._foreign, *self._unsaid})
+        settled = self._door.map.is_confirmed and not (names is None and self._busy)
+        return Agreement(
+            settled and not (pending or displaced or wanted.missing), pending=pending, displaced=displaced
         )
 
     def is_followed(self, name: str) -> bool:
@@ -374,17 +396,15 @@ class Keeping:
                 continue
             whole, party = self._robot_of(name)
             done |= party
-            now = time.monotonic()
             if not self._following.isdisjoint(party):
                 continue  # it is looked at again when that is done
-            if (
-                not all(bodies[part].resting for part in party)
-                and now < self._waiting.setdefault(whole, now) + _CALM_S
+            wanted = self.wanted(party)
+            if not all(bodies[part].resting for part in party) and self._waits.must_wait(
+                whole, _due(wanted), self.scene.sim_time_s
             ):
                 self._later.update(party)
                 continue
-            self._waiting.pop(whole, None)
-            wanted = self.wanted(party)
+            self._waits.end(whole)
             opened = next(filter(self._may_follow_joints, wanted.opened), "")  # others in their turn
             if wanted.follow or opened:
                 self._follow(wanted.follow, opened)
@@ -426,16 +446,14 @@ class Keeping:
             party = [*([whole] if whole in opened else ()), *moved]
             moves = not all(bodies[name].resting for name in (whole, *content))
             if not party or not (moves or len(party) > 1):
-                self._waiting.pop(whole, None)
+                self._waits.end(whole)
                 continue
             done.update(party)
-            now = time.monotonic()
-            if moves and now < self._waiting.setdefault(whole, now) + _CALM_S:
+            if moves and self._waits.must_wait(whole, party, self.scene.sim_time_s):
                 self._later.update(party)
                 continue
-            self._waiting.pop(whole, None)
+            self._waits.end(whole)
             self._follow([follow[name] for name in moved], whole if whole in opened else "")
-        self._waiting = {name: since for name, since in self._waiting.items() if name in bodies}
         return actions._replace(
             follow=tuple(placement for placement in actions.follow if placement.name not in done),
             opened=tuple(name for name in actions.opened if name not in done),
@@ -541,9 +559,14 @@ class Keeping:
         whole = self._whole_of(body)
         if whole in self.scene.bodies and whole not in self._door.map.entities:
             return  # what it is part of comes first
+        if body.robot and not self._rests_whole(name):
+            return
+        joints = () if name in self._unsaid else self._assignments(body)
 
         def adopted(error: BaseException) -> None:
-            if isinstance(error, (errors.Refused, errors.BadRequest)):
+            if joints and isinstance(error, errors.BadRequest):  # a TBox without these properties
+                self._unsaid.add(name)
+            elif isinstance(error, (errors.Refused, errors.BadRequest)):
                 self._foreign[name] = f"a scene body without a map entity: {error}"
                 log.warning("%s did not become an entity: %s", name, error)
             else:
@@ -567,9 +590,27 @@ class Keeping:
             orientation=pose.orientation_wxyz,
             size=body.size_m,
             track="sim" if body.robot else None,
-            set=(f"{_PART_OF}={whole}",) if whole else (),
+            set=(*((f"{_PART_OF}={whole}",) if whole else ()), *joints),
         )
         self._change_about((name,), add, adopted)
+
+    def _rests_whole(self, name: str) -> bool:
+        """Return whether a robot and all its parts rest, or have not come to rest for long enough."""
+        whole, party = self._robot_of(name)
+        if all(self.scene.bodies[part].resting for part in party):
+            self._waits.end(whole)
+            return True
+        return not self._waits.must_wait(whole, (name,), self.scene.sim_time_s)
+
+    def _assignments(self, body: Body) -> tuple[str, ...]:
+        """Return how the joints of a robot stand, as assignments, if they are not as its model has them.
+
+        Its arm sinks under its own weight when the simulation begins. In the commit that adds the robot, this
+        needs no commit of its own, which would come before or after those that add the parts.
+        """
+        if not (body.robot and joints_differ_from_model(body, self._config.thresholds)):
+            return ()
+        return tuple(f"{said.property}={said.values[0]}" for said in statements(body.joints))
 
     def _whole_of(self, body: Body) -> str:
         """The nearest body that it is part of and that is an entity or may become one; "" for none."""
@@ -600,3 +641,8 @@ def ghostly(body: Body) -> str:
 
 def _only(names: Collection[str], of: Mapping[str, T]) -> dict[str, T]:
     return {name: of[name] for name in names if name in of}
+
+
+def _due(wanted: Actions) -> tuple[str, ...]:
+    """The bodies that the map would follow now."""
+    return (*(placement.name for placement in wanted.follow), *wanted.opened)

@@ -22,6 +22,8 @@ class SceneView:
         self.bodies: dict[str, Body] = {}
         self.left_out: tuple[str, ...] = ()
         """The named bodies of the world that are only parts of others."""
+        self.sim_time_s = 0.0
+        """Simulated time of the newest poses: it stands still while the simulation is paused."""
         self._run = ""
         self._version = -1
         self._stamp_ns = 0
@@ -32,7 +34,7 @@ class SceneView:
             return
         self.known = True
         self.bodies = {body.name: body for body in scene.bodies}
-        self.left_out = scene.left_out
+        self.left_out, self.sim_time_s = scene.left_out, scene.sim_time_s
         self._run, self._version, self._stamp_ns = scene.run, scene.version, scene.stamp_ns
 
     def add(self, bodies: Iterable[Body]) -> None:
@@ -52,7 +54,7 @@ class SceneView:
             return changed
         if (poses.run, poses.version) != (self._run, self._version):
             return None
-        self._stamp_ns = poses.stamp_ns
+        self._stamp_ns, self.sim_time_s = poses.stamp_ns, poses.sim_time_s
         joint, jointed = 0, 0
         for i, name in enumerate(poses.names):
             body = self.bodies.get(name)
@@ -91,7 +93,7 @@ class SceneView:
     def forget(self) -> None:
         """The simulator is gone."""
         self.known = False
-        self.bodies, self.left_out = {}, ()
+        self.bodies, self.left_out, self.sim_time_s = {}, (), 0.0
         self._run, self._version, self._stamp_ns = "", -1, 0
 
 

@@ -102,6 +102,15 @@ def test_a_jump_is_taken_and_said(poses):
     assert said == "robot1: its live pose jumped 4.00 m within 0.1 s, 1 s ago"
 
 
+def test_a_streamed_robot_is_named_while_it_is_away_from_its_committed_pose(poses):
+    drive(poses, tracked(), 2.0)
+    assert list(poses.displaced(tracked(), 2.0)) == ["robot1 is moving: 0.99 m from its committed pose"]
+    assert list(poses.displaced(tracked(), 3.5)) == ["robot1 stands still: 0.99 m from its committed pose"]
+    assert list(poses.displaced(tracked(pose=at(0.99)), 3.5)) == []
+    assert list(poses.displaced(tracked(source="sim"), 2.0)) == []
+    assert list(poses.displaced(tracked(), 30.0)) == []  # its stream has ended
+
+
 def test_driving_is_no_jump(poses):
     drive(poses, tracked(), 3.0)
     assert list(poses.problems(tracked(), 3.0)) == []

@@ -6,7 +6,7 @@ import pytest
 from msgspec import structs
 
 from nodes.coordinator.config import CoordinatorConfig
-from nodes.coordinator.scene import reconciler
+from nodes.coordinator.scene import rest_waits
 from nodes.coordinator.scene.contents import inside
 from nodes.coordinator.scene.reconcile import order
 from nodes.coordinator.scene.reconciler import Keeping
@@ -80,7 +80,7 @@ def test_a_hand_that_opened_it_is_told(door, keeping):
 
 
 def test_what_never_rests_is_not_waited_for(door, keeping, monkeypatch):
-    monkeypatch.setattr(reconciler, "_CALM_S", 0.0)
+    monkeypatch.setattr(rest_waits, "CALM_S", 0.0)
     seq = door.map.seq
     keeping.keep()
     assert door.map.seq == seq + 1

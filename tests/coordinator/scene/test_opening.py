@@ -1,13 +1,19 @@
-"""What is said where nothing opens."""
+"""How joints are ordered to open and close, and what is replied where nothing opens or something is stuck."""
+
+from concurrent.futures import Future
 
 import pytest
+from msgspec import structs
 
-from nodes.coordinator.scene.opening import _require_joints
+from nodes.coordinator.config import CoordinatorConfig
+from nodes.coordinator.scene.opening import Opening, _arrived, _require_joints
+from nodes.coordinator.scene.reconciler import Keeping
 from schemas import commands as c
 from schemas import errors
 from schemas.entities import Pose
 from schemas.joints import Joint
-from schemas.scenes import Body
+from schemas.scenes import Body, JointsMoving
+from tests.coordinator.conftest import at_once
 
 
 def body(*joints):
@@ -42,3 +48,105 @@ def test_a_joint_with_limits_opens():
     _require_joints(
         c.Open(name="thing1"), body(Joint(name="door", kind="hinge", lower=0.0, upper=1.0, closed=0.0))
     )
+
+
+DOOR = Joint(name="door", kind="hinge", lower=0.0, upper=2.0, closed=0.0)
+DRAWER = Joint(name="drawer", kind="slide", lower=0.0, upper=0.3, closed=0.0)
+
+
+class FakeSimulator:
+    """Stands in for the simulator: it notes the orders, and how joints begin to move."""
+
+    def __init__(self):
+        self.orders, self.failed = [], {}
+
+    def ask(self, call):
+        self.orders += call.orders
+        future = Future()
+        future.set_result(JointsMoving(bodies=(), failed=self.failed))
+        return future
+
+
+@pytest.fixture
+def simulator():
+    return FakeSimulator()
+
+
+@pytest.fixture
+def keeping(door, simulator):
+    keeping = Keeping(CoordinatorConfig("map"), door, at_once(door), lambda call: Future(), lambda text: None)
+    door.change(c.Add(class_="Chair", name="thing1", at=(0.0, 0.0, 0.0)))
+    keeping.scene.known = True
+    keeping.scene.bodies["thing1"] = body(DOOR, DRAWER, SWITCH)
+    return keeping
+
+
+@pytest.fixture
+def opening(door, keeping, simulator):
+    return Opening(door, keeping, simulator.ask)
+
+
+@pytest.mark.parametrize(
+    ("command", "openness"),
+    [
+        (c.Open(name="thing1"), 1.0),
+        (c.Open(name="thing1", to=0.3, joint="door"), 0.3),
+        (c.Close(name="thing1"), 0.0),
+        (c.Close(name="thing1", joint="drawer"), 0.0),
+    ],
+)
+def test_open_moves_joints_to_the_share_that_was_asked_for_and_close_to_none(
+    opening, simulator, command, openness
+):
+    opening.move(command)
+    (order,) = simulator.orders
+    assert (order.name, order.joint, order.openness) == ("thing1", command.joint or "", openness)
+    assert order.commit is None  # a manual order: the map follows it
+
+
+@pytest.mark.parametrize(
+    ("command", "statement"),
+    [(c.Open(name="thing1"), "isOpen true"), (c.Close(name="thing1"), "isOpen false")],
+)
+def test_without_a_simulator_the_statement_to_make_instead_is_given(opening, keeping, command, statement):
+    keeping.scene.forget()
+    with pytest.raises(errors.NoAnswer, match=f"to state it: semmap set thing1 {statement}$"):
+        opening.move(command)
+
+
+@pytest.mark.parametrize(("kind", "on"), [(c.Open, "true"), (c.Close, "false")])
+def test_how_a_switch_is_switched_instead_is_given(kind, on):
+    with pytest.raises(errors.Refused, match=f"semmap set thing1 isSwitchedOn {on}$"):
+        _require_joints(kind(name="thing1"), body(SWITCH))
+
+
+def test_a_joint_that_there_is_not_is_rejected_with_those_that_there_are():
+    with pytest.raises(errors.Refused, match=r"no joint 'window' to open; it has: door, drawer, knob1$"):
+        _require_joints(c.Open(name="thing1", joint="window"), body(DOOR, DRAWER, SWITCH))
+    _require_joints(c.Open(name="thing1", joint="knob1"), body(DOOR, DRAWER, SWITCH))
+
+
+def at_shares(door=0.0, drawer=0.0, knob=0.0):
+    return body(
+        structs.replace(DOOR, position=DOOR.position_at(door)),
+        structs.replace(DRAWER, position=DRAWER.position_at(drawer)),
+        structs.replace(SWITCH, position=SWITCH.position_at(knob)),
+    )
+
+
+@pytest.mark.parametrize(
+    ("command", "there", "said"),
+    [
+        (c.Open(name="thing1"), at_shares(1.0, 1.0), None),
+        (c.Open(name="thing1"), at_shares(1.0, 0.5), "something stops drawer"),
+        (c.Open(name="thing1"), at_shares(0.5, 0.5), "something stops door and drawer"),
+        (c.Open(name="thing1", to=0.5, joint="door"), at_shares(0.49, 0.0), None),
+        (c.Open(name="thing1", joint="knob1"), at_shares(knob=1.0), None),
+        (c.Close(name="thing1"), at_shares(knob=1.0), None),
+        (c.Close(name="thing1"), at_shares(door=0.1), "something stops door"),
+    ],
+)
+def test_which_joints_did_not_get_where_they_were_sent_is_told(command, there, said):
+    text = _arrived(command, there)
+    assert text.startswith("thing1: ")
+    assert text.partition("; ")[2] == (said or "")

@@ -39,7 +39,7 @@ def test_where_only_perception_tells_the_map_nothing_is_asked_of_the_simulator(d
     keeping.scene.known = True
     keeping.keep()
     assert asked == []
-    assert keeping.in_agreement() is None
+    assert keeping.agreement().holds is None
     assert keeping.body_state(door.map.entity("chair1")).status == "none"
 
 
@@ -202,7 +202,7 @@ def test_a_body_that_cannot_be_moved_where_the_map_says_has_a_reason_for_being_n
     door.change(c.Update(name="chair1", at=(2000.0, 0.0, 0.0)))
     keeping.keep()
     assert keeping.problems() == ["chair1: failed: it is too far"]
-    assert keeping.in_agreement()
+    assert keeping.agreement().holds
     asked.clear()
     keeping.keep()
     assert asked == []
@@ -251,10 +251,10 @@ def test_the_map_follows_many_bodies_without_waiting_for_each(door):
     keeping.keep()
     keeping.keep()
     assert [*(name for change, _ in changes for name in change.poses)] == [f"chair{i}" for i in range(40)]
-    assert not keeping.in_agreement()
+    assert not keeping.agreement().holds
     for change, future in changes:
         future.set_result(door.change(change))
-    assert keeping.in_agreement()
+    assert keeping.agreement().holds
     assert {e.pose.position_m[1] for e in door.map.entities.values()} == {2.0}
     assert {e.pose_provenance.source for e in door.map.entities.values()} == {"scene"}
 
@@ -336,6 +336,6 @@ def test_what_a_hand_carried_together_is_followed_in_one_commit_once_all_of_it_r
 def test_map_and_scene_do_not_agree_by_a_commit_that_the_knowledge_base_has_not_confirmed(door):
     keeping, _, _ = bodies_elsewhere(door, 0)
     door.change(c.Add(class_="Kitchen", name="kitchen1"))
-    assert keeping.in_agreement()
+    assert keeping.agreement().holds
     door.map.take(Effects(seq=door.map.seq + 1, id="forged", digest="00"))
-    assert keeping.in_agreement() is False
+    assert keeping.agreement().holds is False

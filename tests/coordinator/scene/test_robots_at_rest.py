@@ -1,6 +1,7 @@
-"""A robot and its parts are followed in one commit, so that none of it stays behind."""
+"""A robot and its parts are followed in one commit, so that none stays behind, and added in one order."""
 
 from concurrent.futures import Future
+from types import SimpleNamespace
 
 import pytest
 from msgspec import structs
@@ -9,9 +10,12 @@ from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.scene import reconciler
 from nodes.coordinator.scene.reconcile import order
 from nodes.coordinator.scene.reconciler import Keeping
+from nodes.coordinator.scene.rest_waits import CALM_S
 from schemas import commands as c
+from schemas import errors
 from schemas.entities import Pose
 from schemas.joints import Joint
+from schemas.scenes import Body, BodyOrder
 from tests.coordinator.conftest import at_once
 from tests.coordinator.scene.test_reconciler import standing
 
@@ -49,14 +53,14 @@ def test_it_is_followed_whole_once_all_of_it_rests(door, keeping, moving):
     keeping.keep()
     assert door.map.seq == seq + 1  # the chair's
     assert {stands_at_m(door, name) for name in ("robot1", "gripper1", "hand1")} == {0.0}
-    assert not keeping.in_agreement()
+    assert not keeping.agreement().holds
     have(keeping, moving, resting=True)
     keeping.keep({moving})
     assert door.map.seq == seq + 2
     assert {stands_at_m(door, name) for name in ("robot1", "gripper1", "hand1")} == {1.0}
     keeping.keep()
     assert door.map.seq == seq + 2
-    assert keeping.in_agreement()
+    assert keeping.agreement().holds
 
 
 def test_how_its_joints_stand_is_in_that_commit(door, keeping):
@@ -77,8 +81,115 @@ def test_the_joints_of_a_part_come_too(door, keeping):
         assert door.map.entity(name).properties["jointPositions"] == "arm=0.5"
 
 
-def test_an_arm_that_never_rests_is_not_waited_for(door, keeping, monkeypatch):
+def test_an_arm_that_never_rests_is_waited_for_in_simulated_time_only(door, keeping, monkeypatch):
     have(keeping, "hand1", resting=False)
-    monkeypatch.setattr(reconciler, "_CALM_S", 0.0)
+    hours = SimpleNamespace(monotonic=(3600.0 * i for i in range(9)).__next__)
+    monkeypatch.setattr(reconciler, "time", hours, raising=False)  # as on a machine that is very busy
+    for _ in range(3):
+        keeping.keep()
+    assert [stands_at_m(door, name) for name in ("robot1", "gripper1", "hand1")] == [0.0, 0.0, 0.0]
+    keeping.scene.sim_time_s += CALM_S
     keeping.keep()
     assert [stands_at_m(door, name) for name in ("robot1", "gripper1", "hand1")] == [1.0, 1.0, 0.0]
+
+
+def test_a_robot_that_drove_on_is_waited_for_again_where_it_stops_next(door, keeping):
+    """Its gripper rests last after each stop; the wait at the first must not count at the second."""
+    parts = ("robot1", "gripper1", "hand1")
+    have(keeping, "gripper1", resting=False)
+    keeping.keep()
+    seq = door.map.seq
+    for name in parts:
+        have(keeping, name, resting=False, pose=Pose(position_m=(2.0, 0.0, 0.0)))
+    keeping.keep(parts)
+    keeping.scene.sim_time_s += 10.0
+    for name in ("robot1", "hand1"):
+        have(keeping, name, resting=True)
+    keeping.keep(parts)
+    assert door.map.seq == seq
+    have(keeping, "gripper1", resting=True)
+    keeping.keep({"gripper1"})
+    assert door.map.seq == seq + 1
+    assert {stands_at_m(door, name) for name in parts} == {2.0}
+
+
+def test_while_it_drives_map_and_scene_do_not_agree_and_the_rest_is_no_matter_to_others(door, keeping):
+    for name in ("robot1", "gripper1", "hand1"):
+        have(keeping, name, resting=False)
+    keeping.keep()
+    found = keeping.agreement()
+    assert found == (False, (), ("robot1 is moving: 1 m from its committed pose",))
+    assert keeping.agreement({"chair1"}) == (True, (), ())
+    assert keeping.agreement({"robot1", "chair1"}).holds is False
+    assert keeping.problems() == []
+
+
+def test_whose_agreement_is_asked_for_must_be_there(keeping):
+    with pytest.raises(errors.UnknownName, match="'robot2'; did you mean robot1"):
+        keeping.agreement({"chair1", "robot2"})
+
+
+@pytest.fixture
+def newcomer(door):
+    """A robot whose arm has sunk under its weight, with a gripper, of which the map knows nothing yet."""
+    keeping = Keeping(CoordinatorConfig("map"), door, at_once(door), lambda call: Future(), lambda text: None)
+    keeping.scene.known = True
+    bodies = [
+        new("hand1", part_of="gripper1"),
+        new("gripper1", part_of="robot1"),
+        new("robot1", joints=(structs.replace(ARM, position=0.12),)),
+    ]
+    keeping.scene.bodies.update((body.name, body) for body in bodies)
+    return keeping
+
+
+def new(name: str, **what: object) -> Body:
+    made = standing(BodyOrder(name=name, class_="Chair", pose=Pose(position_m=(0.0, 0.0, 0.0)), commit=0))
+    return structs.replace(made, entity=False, robot=True, **what)
+
+
+@pytest.mark.parametrize("moving", ["", "robot1", "gripper1", "hand1"])
+def test_a_new_robot_is_added_in_one_order_and_number_of_commits_whatever_rests_first(door, newcomer, moving):
+    seq = door.map.seq
+    if moving:
+        have(newcomer, moving, resting=False)
+        newcomer.keep()
+        assert door.map.seq == seq
+        have(newcomer, moving, resting=True)
+    for _ in range(5):
+        newcomer.keep()
+    entities = door.map.entities
+    added = [entities[name].provenance.commit for name in ("robot1", "gripper1", "hand1")]
+    assert added == [seq + 1, seq + 2, seq + 3]
+    assert door.map.seq == seq + 3
+    assert entities["robot1"].properties["jointPositions"] == "arm=0.12"
+    assert newcomer.agreement().holds
+
+
+def test_a_new_robot_one_part_of_which_never_rests_is_added_after_a_while(door, newcomer):
+    have(newcomer, "hand1", resting=False)
+    newcomer.keep()
+    assert not door.map.entities
+    newcomer.scene.sim_time_s += CALM_S
+    for _ in range(3):
+        newcomer.keep()
+    assert [*door.map.entities] == ["robot1", "gripper1"]
+
+
+def test_a_new_robot_is_added_without_its_joints_to_a_map_that_has_no_property_for_them(door, newcomer):
+    change = at_once(door)
+
+    def reject(asked):
+        if not any(words.startswith("jointPositions") for words in getattr(asked, "set", ())):
+            return change(asked)
+        future = Future()
+        future.set_exception(errors.BadRequest("the ontology has no property jointPositions"))
+        return future
+
+    keeping = Keeping(CoordinatorConfig("map"), door, reject, lambda call: Future(), lambda text: None)
+    keeping.scene.known = True
+    keeping.scene.bodies.update(newcomer.scene.bodies)
+    for _ in range(5):
+        keeping.keep()
+    assert [*door.map.entities] == ["robot1", "gripper1", "hand1"]
+    assert keeping.agreement().holds

@@ -26,13 +26,24 @@ def test_it_drives_live_and_is_committed_where_it_stops(system):
         until(lambda: "robot1" in names(client), "the robot among the entities")
         robot = until(lambda: (e := client.get("robot1")).live and e, "where it is, live")
         assert (robot.class_, robot.tracked, robot.live.source) == ("Robot", "sim", "sim")
-        commits = len(client.history("robot1"))
+        until(lambda: "robot1_gripper" in names(client), "its gripper among them")
+        if (truth := client.status().truth) == "map":
+            until(lambda: client.status(names=("robot1",)).in_agreement, "map and scene agree on it")
+        before = [commit.seq for commit in client.history("robot1")]
         said = client.drive("robot1", to=((7.4, 2.0), (7.0, 1.2)), yaw=0.0).text
         assert "on its way" in said
         until(lambda: client.get("robot1").live.pose.position_m[1] < 1.7, "that it is on its way")
+        status = client.status()
+        assert status.in_agreement is (False if truth == "map" else None)
+        (said,) = (line for line in status.displaced if line.startswith("robot1"))
+        assert re.fullmatch(r"robot1 is moving: [\d.]+ m from its committed pose", said)
+        assert not any("moving" in problem for problem in status.problems)
         assert "is at (7.0" in client.drive("robot1", to=((7.0, 1.0),), yaw=0.0, wait=True).text
         until(lambda: abs(client.get("robot1").pose.position_m[1] - 1.0) < 0.03, "the commit")
-        assert 1 <= len(client.history("robot1")) - commits <= 2
+        made = [commit.reason for commit in client.history("robot1") if commit.seq not in before]
+        assert made
+        assert all("came to rest" in reason for reason in made)
+        until(lambda: not client.status().displaced, "nothing is displaced any more")
 
 
 def test_what_cannot_be_driven_there_is_said(system):

@@ -7,7 +7,12 @@ import signal
 
 import pytest
 
+from nodes import bus
+from schemas import errors, keys
+from schemas.scenes import Scene, SceneQuery
 from tests.conftest import running, until
+
+ROBOT = ("robot1", "robot1_gripper")
 
 WORDS = (
     "--no-record",
@@ -30,28 +35,51 @@ def where(client) -> tuple[float, float] | None:
     return None if live is None or live.stale else live.pose.position_m[:2]
 
 
+def run_of(client) -> str:
+    """The run of the simulator; "" while there is none."""
+    try:
+        return bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene).run
+    except errors.NoAnswer:
+        return ""
+
+
+def agree(client) -> None:
+    """Wait until the robot and its gripper rest where the map has them."""
+    until(lambda: client.status(names=ROBOT).in_agreement, "map and scene agree on the robot")
+
+
+def commits(client) -> list[tuple[int, str]]:
+    """What was committed of the robot and its gripper, in order."""
+    found = {commit.seq: commit.reason for name in ROBOT for commit in client.history(name)}
+    return sorted(found.items())
+
+
 @pytest.mark.parametrize("truth", ["map", "scene"])
 def test_it_begins_where_it_last_stood(tmp_path, truth):
     words = (*WORDS, "--truth", truth)
     with running(tmp_path, *words) as system, system.client() as client:
         assert not any("last stood" in line for line in system.said)
-        until(lambda: {"robot1", "robot1_gripper"} <= {e.name for e in client.list()}, "the robot")
+        until(lambda: {*ROBOT} <= {e.name for e in client.list()}, "the robot")
         client.drive("robot1", to=((1.6, 0.8),), yaw=1.0, wait=True)
         until(lambda: abs(client.get("robot1").pose.position_m[1] - 0.8) < 0.05, "the commit")
-        until(lambda: client.status().in_agreement, "that all is followed")
-        stood, commit = client.get("robot1").pose, client.status().commit
+        agree(client)
+        stood = [client.get(name).pose for name in ROBOT]
+        committed = commits(client)
+        assert [reason for _, reason in committed[:2]] == [f"{name} stands in the scene" for name in ROBOT]
+        before = run_of(client)
         killed = system.pid("sim_node")
         os.kill(killed, signal.SIGKILL)
         until(lambda: system.pid("sim_node") != killed, "another simulator")
-        until(lambda: client.status().in_agreement, "that the robot is back")
-        until(lambda: where(client) == pytest.approx(stood.position_m[:2], abs=0.02), "where it stood")
-        assert client.status().commit == commit
+        until(lambda: run_of(client) not in ("", before), "its scene")
+        until(lambda: where(client) == pytest.approx(stood[0].position_m[:2], abs=0.02), "where it stood")
+        agree(client)
+        assert commits(client) == committed
         system.stop()
     with running(tmp_path, *words) as system, system.client() as client:
-        until(lambda: client.status().in_agreement, "that the robot is back")
-        until(lambda: where(client) == pytest.approx(stood.position_m[:2], abs=0.02), "where it stood")
-        assert client.get("robot1").pose == stood
-        assert client.status().commit == commit
+        until(lambda: where(client) == pytest.approx(stood[0].position_m[:2], abs=0.02), "where it stood")
+        agree(client)
+        assert [client.get(name).pose for name in ROBOT] == stood
+        assert commits(client) == committed
         (said,) = [line for line in system.said if "last stood" in line]
         assert said.startswith("robot1 ")
         assert said.rstrip().endswith("not at --robot-at; to put it there: semmap move robot1 --at 1 0 0")
