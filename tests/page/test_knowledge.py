@@ -66,12 +66,15 @@ def section(tab, title):
 
 
 def open_add(tab):
+    """The panel that adds something, turned to."""
     tab.get_by_role("tab", name="Add").click()
     tab.get_by_role("button", name="Add", exact=True).wait_for()
+    return tab.get_by_role("tabpanel", name="Add")
 
 
-def choose_class(tab, typed):
-    tab.get_by_role("combobox", name="Class").last.click()
+def choose_class(tab, form, typed):
+    """Type into the form's field of the class; the table's filter has one of that name, too."""
+    form.get_by_role("combobox", name="Class").click()
     tab.get_by_role("option").first.wait_for()  # the classes have come; they take away what was typed before
     tab.keyboard.type(typed)
 
@@ -108,8 +111,7 @@ def test_a_class_chosen_in_the_tree_filters_the_table(tab, added):
 
 def test_something_is_added_by_typing_what_it_is_called(tab, client):
     name = fresh("machine")
-    open_add(tab)
-    choose_class(tab, "macchina del")
+    choose_class(tab, open_add(tab), "macchina del")
     tab.get_by_role("option", name="Coffee_Machine").click()
     tab.get_by_label("Name (made").fill(name)
     for axis, value in (("x", "2.5"), ("y", "3.1"), ("z", "1.2")):
@@ -124,11 +126,11 @@ def test_something_is_added_by_typing_what_it_is_called(tab, client):
 
 
 def test_enter_takes_the_class_that_is_called_what_was_typed(tab):
-    open_add(tab)
-    choose_class(tab, "tazz")
+    form = open_add(tab)
+    choose_class(tab, form, "tazz")
     tab.get_by_role("option", name="Cup ·").first.wait_for()
     tab.keyboard.press("Enter")
-    field = tab.get_by_role("combobox", name="Class").last
+    field = form.get_by_role("combobox", name="Class")
     until(lambda: field.input_value().startswith("Cup ·"), "the class that was meant is chosen")
 
 
@@ -145,8 +147,7 @@ def test_the_table_is_one_stop_of_the_keyboard(tab):
 
 def test_a_refused_add_says_why_and_is_mended_by_a_button(tab, client, added):
     name = added()
-    open_add(tab)
-    choose_class(tab, "Cup ·")
+    choose_class(tab, open_add(tab), "Cup ·")
     tab.get_by_role("option", name="Cup ·").first.click()
     tab.get_by_label("Name (made").fill(name)
     tab.get_by_role("button", name="Add", exact=True).click()
@@ -161,8 +162,8 @@ def test_a_contradiction_is_shown_step_by_step_and_mended(tab, client, added):
     name = added()
     client.set(name, "isSwitchedOn", True)
     select(tab, name)
-    section(tab, "Edit")
-    tab.get_by_role("combobox", name="Class").last.click()
+    form = section(tab, "Edit")
+    form.get_by_role("combobox", name="Class").click()
     tab.get_by_role("option").first.wait_for()
     tab.keyboard.press("Control+a")
     tab.keyboard.type("Kitchen ·")
