@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
+import threading
 import uuid
 
 import pytest
 
 from semmap.commands import Add
 from tests.conftest import until
+from tests.page.waiting import commit_of
 
 _PLACES = itertools.cycle(range(12))
 
@@ -191,6 +194,45 @@ def test_why_is_answered_step_by_step(tab):
     assert steps.get_by_text("asserted", exact=True).count() == 1
     why.click()
     steps.wait_for(state="detached")
+
+
+def test_no_click_is_lost_and_reasons_stay_while_the_map_changes(tab, client, added):
+    name = added()
+    select(tab, name)
+    why = tab.get_by_role("button", name="Why: is an object")
+    reasons = tab.locator(".semmap-why")
+    with changing(client, name):
+        for _ in range(5):
+            why.click()
+            reasons.get_by_label("Steps").wait_for()
+            before = client.status().commit
+            until(lambda least=before + 10: commit_of(tab) > least, "ten more commits are shown")
+            assert reasons.is_visible()
+            why.click()
+            reasons.wait_for(state="detached")
+
+
+@contextlib.contextmanager
+def changing(client, name):
+    """Commits, one after the other, that change facts about a thing and so what is above its other facts."""
+    is_over = threading.Event()
+
+    def change() -> None:
+        for number in itertools.count():
+            if is_over.wait(0.05):
+                return
+            if number % 2:
+                client.unset(name, "isSwitchedOn")
+            else:
+                client.set(name, "isSwitchedOn", True)
+
+    thread = threading.Thread(target=change)
+    thread.start()
+    try:
+        yield
+    finally:
+        is_over.set()
+        thread.join()
 
 
 def test_a_reference_is_edited_and_the_change_undone(tab, client, added):

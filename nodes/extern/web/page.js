@@ -72,6 +72,19 @@
     requestAnimationFrame(() => requestAnimationFrame(() => whenIdle(begin, { timeout: 1000 })));
   };
 
+  // For whoever drives this browser: it comes back when all that was done here before has been taken in and shown.
+  const settling = new Map();
+  let settles = 0;
+  window.semmapSettled = () => new Promise((settled) => {
+    const number = ++settles;
+    settling.set(number, settled);
+    emitEvent("semmap_settle", { number });
+  });
+  window.semmapIsSettled = (number) => {
+    settling.get(number)?.();
+    settling.delete(number);
+  };
+
   document.addEventListener("keydown", onKey);
   document.addEventListener("pointerdown", onPress, true);
   document.addEventListener("pointerup", onRelease, true);

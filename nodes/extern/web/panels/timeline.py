@@ -20,8 +20,8 @@ _SPEEDS: Final = {0.1: "0.1 ×", 1.0: "1 ×", 10.0: "10 ×", 100.0: "100 ×", 10
 _COMPARED: Final = {"before": "the commit before", "now": "now", "": "nothing"}
 _SMALL: Final = "dense options-dense borderless"
 _TELL_ONCE: Final = "(at) => { element.props['model-value'] = at; emit(at); }"
-"""A slider tells where it is until its property says so: of a key it tells when that goes down and when it goes
-up. The second time may come after Home, and would lead back to the past, so the property says so at once."""
+"""A slider tells where it is until its property says so: of a key it tells when that goes down and when it
+goes up. The second time may come after Home, and led back to the past; so the property says so at once."""
 _DRAWN_S: Final = 0.15
 """No moment is shown for less while the past is played."""
 _FEW: Final = 12
