@@ -35,8 +35,10 @@ def in_a_tab(test: Callable[[Client], Coroutine[Any, Any, None]]) -> None:
 
 async def tell(element: ui.element, event: str, *arguments: Any) -> None:
     """What a browser tells of an element, and what follows from it."""
-    (listener,) = [one for one in element._event_listeners.values() if one.type == event]
-    told = {"id": element.id, "listener_id": listener.id, "args": [json.dumps(one) for one in arguments]}
-    element.client.handle_event(told)
+    listeners = [one.id for one in element._event_listeners.values() if one.type == event]
+    assert listeners
+    for listener in listeners:
+        told = {"id": element.id, "listener_id": listener, "args": [json.dumps(one) for one in arguments]}
+        element.client.handle_event(told)
     for _ in range(5):
         await asyncio.sleep(0)
