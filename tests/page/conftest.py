@@ -94,7 +94,7 @@ def pytest_runtest_makereport(item: pytest.Item) -> Iterator[None]:
     if report.when == "call" and report.failed:
         for number, tab in enumerate(item.stash.get(_TABS, ())):
             with contextlib.suppress(Exception):  # the tab, or its browser, may be what failed
-                report.sections.append((f"tab {number}", tab.locator("body").aria_snapshot(timeout=5000)))
+                report.sections.append((f"tab {number}", tab.locator("body").aria_snapshot(timeout=START_MS)))
     return report
 
 
