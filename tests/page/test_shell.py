@@ -45,6 +45,15 @@ def test_u_undoes_and_a_question_mark_shows_the_keys(tab, system):
     tab.get_by_role("dialog", name="Keys").wait_for(state="detached")
 
 
+def test_what_was_pressed_is_clicked_though_it_moves_away_before_the_release(tab):
+    box = tab.get_by_role("tab", name="History").bounding_box()
+    tab.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    tab.mouse.down()
+    tab.evaluate("document.querySelector('.semmap-centre').style.paddingTop = '200px'")
+    tab.mouse.up()
+    tab.get_by_role("tabpanel", name="History").wait_for()
+
+
 def test_it_fits_a_phone(open_tab, web):
     tab = open_tab(web, width=390, height=800)
     assert tab.evaluate("document.documentElement.scrollWidth") <= 390
