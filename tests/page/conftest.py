@@ -71,6 +71,8 @@ def serving(endpoint: str, *words: str) -> Iterator[Web]:
             _await_end(process)
 
 
+_TABS = pytest.StashKey[list[Any]]()
+"""The tabs that a test has opened."""
 _LOOP: list[Any] = [None]
 """Playwright's event loop. It counts as running in this thread for as long as Playwright lives, which no test
 of another folder can do with: they run loops of their own, in the same process."""
@@ -83,6 +85,17 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
         return (yield)
     with _in_its_loop():
         return (yield)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Iterator[None]:
+    """Add what each open tab shows to the report of a test that fails."""
+    report = yield
+    if report.when == "call" and report.failed:
+        for number, tab in enumerate(item.stash.get(_TABS, ())):
+            with contextlib.suppress(Exception):  # the tab, or its browser, may be what failed
+                report.sections.append((f"tab {number}", tab.locator("body").aria_snapshot(timeout=START_MS)))
+    return report
 
 
 @contextlib.contextmanager
@@ -146,18 +159,19 @@ def profile(chromium):
 
 
 @pytest.fixture
-def open_tab(profile):
+def open_tab(profile, request):
     """A function that opens the page in a tab of its own: `open_tab(web)`, `open_tab(web, width=390)`.
 
     It draws the scene only with `scene=True`, for software does that slowly, on the thread of all else.
     No tab may ask anything of another machine, nor report an error; that is looked at in the end.
     """
-    tabs, asked, complained = [], [], []
+    asked, complained = [], []
+    tabs = request.node.stash[_TABS] = []
 
     def open_(web: Web, *, width: int = 1280, height: int = 800, dark: bool = False, scene: bool = False):
         tab = profile(width, height, dark, scene).new_page()
         tabs.append(tab)
-        tab.on("request", lambda request: asked.append(request.url))
+        tab.on("request", lambda sent: asked.append(sent.url))
         tab.on("websocket", lambda socket: asked.append(socket.url))
         tab.on("pageerror", lambda error: complained.append(str(error)))
         tab.on("console", lambda said: said.type == "error" and complained.append(said.text))

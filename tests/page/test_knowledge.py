@@ -9,6 +9,7 @@ import pytest
 
 from semmap.commands import Add
 from tests.conftest import until
+from tests.page.waiting import has_commit
 
 _PLACES = itertools.cycle(range(12))
 
@@ -66,12 +67,15 @@ def section(tab, title):
 
 
 def open_add(tab):
+    """The panel that adds something, turned to."""
     tab.get_by_role("tab", name="Add").click()
     tab.get_by_role("button", name="Add", exact=True).wait_for()
+    return tab.get_by_role("tabpanel", name="Add")
 
 
-def choose_class(tab, typed):
-    tab.get_by_role("combobox", name="Class").last.click()
+def choose_class(tab, form, typed):
+    """Type into the form's field of the class; the table's filter has one of that name, too."""
+    form.get_by_role("combobox", name="Class").click()
     tab.get_by_role("option").first.wait_for()  # the classes have come; they take away what was typed before
     tab.keyboard.type(typed)
 
@@ -108,8 +112,7 @@ def test_a_class_chosen_in_the_tree_filters_the_table(tab, added):
 
 def test_something_is_added_by_typing_what_it_is_called(tab, client):
     name = fresh("machine")
-    open_add(tab)
-    choose_class(tab, "macchina del")
+    choose_class(tab, open_add(tab), "macchina del")
     tab.get_by_role("option", name="Coffee_Machine").click()
     tab.get_by_label("Name (made").fill(name)
     for axis, value in (("x", "2.5"), ("y", "3.1"), ("z", "1.2")):
@@ -124,11 +127,11 @@ def test_something_is_added_by_typing_what_it_is_called(tab, client):
 
 
 def test_enter_takes_the_class_that_is_called_what_was_typed(tab):
-    open_add(tab)
-    choose_class(tab, "tazz")
+    form = open_add(tab)
+    choose_class(tab, form, "tazz")
     tab.get_by_role("option", name="Cup ·").first.wait_for()
     tab.keyboard.press("Enter")
-    field = tab.get_by_role("combobox", name="Class").last
+    field = form.get_by_role("combobox", name="Class")
     until(lambda: field.input_value().startswith("Cup ·"), "the class that was meant is chosen")
 
 
@@ -145,8 +148,7 @@ def test_the_table_is_one_stop_of_the_keyboard(tab):
 
 def test_a_refused_add_says_why_and_is_mended_by_a_button(tab, client, added):
     name = added()
-    open_add(tab)
-    choose_class(tab, "Cup ·")
+    choose_class(tab, open_add(tab), "Cup ·")
     tab.get_by_role("option", name="Cup ·").first.click()
     tab.get_by_label("Name (made").fill(name)
     tab.get_by_role("button", name="Add", exact=True).click()
@@ -161,8 +163,8 @@ def test_a_contradiction_is_shown_step_by_step_and_mended(tab, client, added):
     name = added()
     client.set(name, "isSwitchedOn", True)
     select(tab, name)
-    section(tab, "Edit")
-    tab.get_by_role("combobox", name="Class").last.click()
+    form = section(tab, "Edit")
+    form.get_by_role("combobox", name="Class").click()
     tab.get_by_role("option").first.wait_for()
     tab.keyboard.press("Control+a")
     tab.keyboard.type("Kitchen ·")
@@ -190,6 +192,27 @@ def test_why_is_answered_step_by_step(tab):
     assert steps.get_by_text("asserted", exact=True).count() == 1
     why.click()
     steps.wait_for(state="detached")
+
+
+def test_no_click_is_lost_and_reasons_stay_while_the_map_changes(tab, client, added):
+    name = added()
+    select(tab, name)
+    why = tab.get_by_role("button", name="Why: is an object")
+    reasons = tab.locator(".semmap-why")
+    for number in range(10):
+        is_on = number % 2 == 0
+        if is_on:  # which adds a fact above the others, or takes it away: the button moves
+            done = client.set(name, "isSwitchedOn", True)
+        else:
+            done = client.unset(name, "isSwitchedOn")
+        why.click()  # while the page takes that in
+        has_commit(tab, done.commit)
+        asserted = tab.locator(".semmap-detail").get_by_text(f"Asserted ({1 + is_on})")
+        asserted.wait_for()
+        if is_on:
+            reasons.get_by_label("Steps").wait_for()
+        else:
+            reasons.wait_for(state="detached")
 
 
 def test_a_reference_is_edited_and_the_change_undone(tab, client, added):

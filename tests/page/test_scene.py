@@ -18,6 +18,7 @@ from schemas import keys
 from schemas.scenes import Scene, SceneQuery
 from semmap.commands import Add, Remove
 from tests.page.conftest import START_MS, chromium_path
+from tests.page.waiting import settle
 
 _GL = (
     "--no-sandbox",
@@ -40,10 +41,18 @@ def seeing(chromium):
     browser.close()
 
 
+@pytest.fixture(scope="module")
+def narrow(seeing):
+    """A profile for tabs that are so narrow that the scene is all of the page; only the first fetches all."""
+    context = seeing.new_context(viewport={"width": _WIDTH, "height": _HEIGHT})
+    yield context
+    context.close()
+
+
 @pytest.fixture
-def tab(seeing, web):
-    """The page, narrow, so that the scene is all of it."""
-    page = seeing.new_page(viewport={"width": _WIDTH, "height": _HEIGHT})
+def tab(narrow, web):
+    """The page, as narrow as that."""
+    page = narrow.new_page()
     complained = []
     page.on("pageerror", lambda error: complained.append(str(error)))
     page.on("console", lambda said: said.type == "error" and complained.append(said.text))
@@ -91,9 +100,22 @@ def pixel(tab, view, point):
 
 def until(condition, what: str) -> None:
     """Software takes long to draw, on a machine that does much else."""
-    deadline_s = time.monotonic() + _DRAWN_S
-    while not condition():
-        assert time.monotonic() < deadline_s, f"waited {_DRAWN_S:g} s in vain: {what}"
+    assert comes(condition, _DRAWN_S), f"waited {_DRAWN_S:g} s in vain: {what}"
+
+
+def comes(condition, within_s: float = 2.0) -> bool:
+    """Whether it becomes so, soon: what was done before the scene was drawn is done again otherwise."""
+    deadline_s = time.monotonic() + within_s
+    while not (result := condition()) and time.monotonic() < deadline_s:
+        time.sleep(0.02)
+    return bool(result)
+
+
+def draw(tab, frames: int = 2) -> None:
+    """Wait until the scene has been drawn so many times more: what the mouse did is taken in then."""
+    scene = tab.frames[-1]
+    for _ in range(frames):
+        scene.evaluate("new Promise((drawn) => requestAnimationFrame(drawn))")
 
 
 def selected(tab) -> str:
@@ -107,20 +129,17 @@ def select(tab, view, entity) -> None:
 
     def click() -> bool:
         tab.mouse.click(*at)
-        tab.wait_for_timeout(1000)
-        return selected(tab) == entity.name
+        return comes(lambda: selected(tab) == entity.name)
 
     until(click, f"{entity.name} is selected")
 
 
-def test_nothing_of_viser_s_own_panels_is_shown(seeing, web):
+def test_nothing_of_viser_s_own_panels_is_shown(tab):
+    panel = tab.frame_locator("iframe").get_by_text("Scene tree")
     for width in (480, 900):  # it has one for phones, and one for all others
-        page = seeing.new_page(viewport={"width": width, "height": 320})
-        page.goto(web.url, timeout=2 * START_MS)
-        panel = page.frame_locator("iframe").get_by_text("Scene tree")
+        tab.set_viewport_size({"width": width, "height": 320})
         panel.wait_for(state="attached", timeout=2 * START_MS)
         assert not panel.is_visible()
-        page.close()
 
 
 def test_a_click_selects_and_one_beside_things_selects_nothing(tab, system, chair):
@@ -131,8 +150,7 @@ def test_a_click_selects_and_one_beside_things_selects_nothing(tab, system, chai
 
         def click_beside() -> bool:
             tab.mouse.click(frame["x"] + frame["width"] - 60, frame["y"] + 0.5 * frame["height"])
-            tab.wait_for_timeout(1000)
-            return selected(tab) == ""
+            return comes(lambda: selected(tab) == "")
 
         until(click_beside, "nothing is selected")
 
@@ -145,19 +163,15 @@ def drag_along_x(tab, view, client, name, done=None) -> None:
     entity = client.get(name)
     x, y, z = entity.pose.position_m
     grip = 0.6 * arm_m(entity.size_m)
+    done = done or (lambda: client.get(name).pose.position_m[0] > x + 0.5)
 
     def drag() -> bool:
         tab.get_by_role("button", name="Look at everything").click()
-        tab.wait_for_timeout(1500)
-        tab.mouse.move(*pixel(tab, view, (x + grip, y, z)))
-        tab.wait_for_timeout(500)
-        tab.mouse.down()
-        for step in range(1, 6):
-            tab.mouse.move(*pixel(tab, view, (x + grip + 0.2 * step, y, z)))
-            tab.wait_for_timeout(200)
+        settle(tab)
+        draw(tab)
+        dragged(tab, view, *((x + grip + 0.2 * step, y, z) for step in range(6)))
         tab.mouse.up()
-        tab.wait_for_timeout(2000)
-        return client.get(name).pose.position_m[0] > x + 0.5 if done is None else done()
+        return comes(done)
 
     until(drag, "the chair was dragged")
 
@@ -188,7 +202,8 @@ def test_what_is_dragged_keeps_its_yaw_whatever_was_selected_before(tab, system,
     with standing(system, (1.6, 2.2, 0.0), yaw=math.radians(180.0)) as turned, system.client() as client:
         view = looking(tab, client)
         select(tab, view, client.get(turned))
-        tab.wait_for_timeout(1500)  # its handles are drawn, turned as it is
+        settle(tab)
+        draw(tab, 10)  # its handles, turned as it is
         select(tab, view, client.get(chair))
         drag_along_x(tab, view, client, chair)
         assert math.isclose(client.get(chair).pose.yaw_rad, 0.0, abs_tol=0.05)
@@ -197,11 +212,11 @@ def test_what_is_dragged_keeps_its_yaw_whatever_was_selected_before(tab, system,
 def dragged(tab, view, *points) -> None:
     """Press at the first of these points [m], and go on to the others; the button stays pressed."""
     tab.mouse.move(*pixel(tab, view, points[0]))
-    tab.wait_for_timeout(500)
+    draw(tab)
     tab.mouse.down()
     for point in points[1:]:
         tab.mouse.move(*pixel(tab, view, point))
-        tab.wait_for_timeout(200)
+        draw(tab)
 
 
 def height(client, name) -> float:
@@ -221,8 +236,7 @@ def test_a_thing_is_turned_by_the_ring(tab, system, chair):
         def turn() -> bool:
             dragged(tab, view, *((x + radius * math.cos(a), y + radius * math.sin(a), z) for a in angles))
             tab.mouse.up()
-            tab.wait_for_timeout(2000)
-            return abs(client.get(chair).pose.yaw_rad) > 0.5
+            return comes(lambda: abs(client.get(chair).pose.yaw_rad) > 0.5)
 
         until(turn, "the map says that the chair was turned")
         turned = client.get(chair).pose
@@ -241,17 +255,13 @@ def test_a_thing_is_lifted_by_the_upright_arrow(tab, system, chair):
             """It falls at once, and has hardly begun to when it is looked at first."""
             dragged(tab, view, *((x, y, grip + 0.15 * step) for step in range(6)))
             tab.mouse.up()
-            end_s = time.monotonic() + 3.0
-            highest = 0.0
-            while time.monotonic() < end_s:
-                highest = max(highest, height(client, chair) - z)
-            return highest > 0.3
+            return comes(lambda: height(client, chair) - z > 0.3)
 
         until(lift, "the chair was up in the air")
         until(lambda: height(client, chair) < 0.05, "it has come down again")
 
 
-def test_a_tab_that_is_closed_in_mid_drag_has_moved_nothing(seeing, tab, web, system, chair):
+def test_a_tab_that_is_closed_in_mid_drag_has_moved_nothing(narrow, tab, web, system, chair):
     with system.client() as client:
         view, entity = looking(tab, client), client.get(chair)
         select(tab, view, entity)
@@ -260,7 +270,7 @@ def test_a_tab_that_is_closed_in_mid_drag_has_moved_nothing(seeing, tab, web, sy
         dragged(tab, view, *((x + grip + 0.2 * step, y, z) for step in range(6)))
         before = client.status().commit
         tab.close()
-        page = seeing.new_page(viewport={"width": _WIDTH, "height": _HEIGHT})
+        page = narrow.new_page()
         page.goto(web.url, timeout=2 * START_MS)
         page.wait_for_selector("body.semmap-ready", timeout=2 * START_MS)
         page.close()

@@ -9,16 +9,11 @@ import pytest
 from semmap.commands import Add, Remove
 from tests.conftest import running, until
 from tests.page.conftest import serving
+from tests.page.waiting import commit_of, has_commit, settle
 
 
 def fresh(stem: str) -> str:
     return f"{stem}_{uuid.uuid4().hex[:8]}"
-
-
-def commit_of(tab) -> int:
-    """What the tab says in its header."""
-    said = tab.locator(".semmap-state").inner_text().split()
-    return int(said[said.index("commit") + 1].replace(",", ""))
 
 
 def test_it_opens_with_the_map_and_the_token_is_gone_from_the_address(tab, web, system):
@@ -33,7 +28,7 @@ def test_two_tabs_agree_on_a_change_from_elsewhere(open_tab, web, system):
     with system.client() as client:
         done = client.send(Add(class_="Cup", name=fresh("cup"), at=(2.0, 3.0, 1.0)))
     for tab in (one, two):
-        until(lambda tab=tab: commit_of(tab) >= done.commit, "the commit shows")
+        has_commit(tab, done.commit)
     assert one.locator(".semmap-state").inner_text() == two.locator(".semmap-state").inner_text()
 
 
@@ -41,13 +36,22 @@ def test_u_undoes_and_a_question_mark_shows_the_keys(tab, system):
     name = fresh("cup")
     with system.client() as client:
         done = client.send(Add(class_="Cup", name=name, at=(2.0, 3.0, 1.0)))
-        until(lambda: commit_of(tab) >= done.commit, "the commit shows")
+        has_commit(tab, done.commit)
         tab.keyboard.press("u")
         until(lambda: name not in {e.name for e in client.list()}, "it is undone")
     tab.keyboard.press("?")
     tab.get_by_role("dialog", name="Keys").get_by_text("undo the last change").wait_for()
     tab.keyboard.press("Escape")
     tab.get_by_role("dialog", name="Keys").wait_for(state="detached")
+
+
+def test_what_was_pressed_is_clicked_though_it_moves_away_before_the_release(tab):
+    box = tab.get_by_role("tab", name="History").bounding_box()
+    tab.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    tab.mouse.down()
+    tab.evaluate("document.querySelector('.semmap-centre').style.paddingTop = '200px'")
+    tab.mouse.up()
+    tab.get_by_role("tabpanel", name="History").wait_for()
 
 
 def test_it_fits_a_phone(open_tab, web):
@@ -66,9 +70,9 @@ def test_on_a_phone_the_list_stays_while_boxes_are_ticked_and_ends_when_a_row_is
     for index in (0, 1):
         tab.locator(f".entity-table [row-index='{index}'] input[type=checkbox]").click()
         tab.locator(f".entity-table [row-index='{index}'].ag-row-selected").first.wait_for()
-    tab.wait_for_timeout(500)  # in which the list would slide away
-    assert tab.get_by_role("tab", name="Entities").is_visible()
-    assert not tab.get_by_role("tab", name="Details").is_visible()
+    settle(tab)
+    assert tab.get_by_role("button", name="Show or hide the lists", expanded=True).count() == 1
+    assert tab.get_by_role("button", name="Show or hide the details", expanded=False).count() == 1
     rows.nth(2).click()
     tab.get_by_role("tab", name="Details").wait_for()
 

@@ -8,7 +8,8 @@ import pytest
 
 from semmap.commands import Add, Remove, Update
 from tests.conftest import until
-from tests.page.test_shell import commit_of, fresh
+from tests.page.test_shell import fresh
+from tests.page.waiting import has_commit, settle
 
 
 @pytest.fixture
@@ -30,7 +31,7 @@ def caption(tab):
 
 def go_to(tab, when):
     if isinstance(when, int):
-        until(lambda: commit_of(tab) >= when, "the page has that commit")
+        has_commit(tab, when)
     field = tab.get_by_label("Go to a commit or a time")
     field.fill(str(when))
     field.press("Enter")
@@ -43,9 +44,7 @@ def chips(tab):
 def test_back_and_on_by_commit_and_home_again(tab, cup):
     name, _, moved, again = cup
     tab.get_by_role("tab", name="History").click()  # the scene costs a browser without graphics much
-    go_to(tab, again)
-    until(lambda: not tab.get_by_label("Go to a commit or a time").input_value(), "the page took it in")
-    until(lambda: f"commit {again}" in caption(tab), "then, which may be now")
+    has_commit(tab, again)
     go_to(tab, moved)
     until(lambda: caption(tab).startswith(f"The past: commit {moved} of "), "it shows the past")
     until(lambda: "1 moved by this commit" in chips(tab), "what it moved is marked")
@@ -66,7 +65,7 @@ def test_home_right_after_the_slider_stays_now(tab, cup):
     until(lambda: caption(tab).startswith("The past: "), "it shows the past")
     tab.locator(".q-slider__track-container").press("ArrowRight")
     tab.keyboard.press("Home")
-    tab.wait_for_timeout(1500)  # in which the browser tells of the slider again
+    settle(tab)
     assert caption(tab).startswith("Now: commit ")
 
 
@@ -126,7 +125,7 @@ def test_the_history_of_what_is_selected_goes_to_its_commits(tab, cup):
 
 def test_details_of_the_past_have_the_facts_of_then(tab, cup):
     name, added, _, again = cup
-    until(lambda: commit_of(tab) >= again, "the page has all commits")
+    has_commit(tab, again)
     tab.get_by_label("Filter entities by text").fill(name)
     tab.locator(f'[row-id="{name}"] [col-id="name"]').click()
     tab.locator(".semmap-fact", has_text="class: Cup").wait_for()

@@ -27,7 +27,7 @@ async def delete_selected(page: Page) -> None:
     if tried is None:
         return
     if (
-        await _confirms(names, consequences(tried), facts_of(tried))
+        await _confirms(page, names, consequences(tried), facts_of(tried))
         and (done := await page.change(Remove(names=names))) is not None
     ):
         page.tell(done.text, "positive")
@@ -42,9 +42,16 @@ async def undo(page: Page) -> None:
         page.tell(done.text, "positive")
 
 
-async def _confirms(names: tuple[str, ...], also: tuple[str, ...], facts: tuple[str, ...]) -> bool:
+async def _confirms(
+    page: Page, names: tuple[str, ...], also: tuple[str, ...], facts: tuple[str, ...]
+) -> bool:
+    """Ask in a dialog of the tab: the panel with the button may be drawn anew, and would take it along."""
     what = names[0] if len(names) == 1 else wording.entities(len(names))
-    with ui.dialog().props('aria-label="Delete"') as dialog, ui.card().classes("semmap-refused"):
+    with (
+        page.client,
+        ui.dialog().props('aria-label="Delete"') as dialog,
+        ui.card().classes("semmap-refused"),
+    ):
         ui.label(f"Delete {shortened(what, 80)}?").classes("text-h6")
         if len(names) > 1:
             more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""

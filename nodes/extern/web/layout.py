@@ -10,6 +10,7 @@ from nicegui import events, ui
 from nicegui.elements.mixins.text_element import TextElement
 
 from nodes.extern.web.deleting import delete_selected, undo
+from nodes.extern.web.marks import marks
 from nodes.extern.web.page import Page
 from nodes.extern.web.panels.add import add
 from nodes.extern.web.panels.classes import classes
@@ -93,6 +94,7 @@ def layout(page: Page) -> None:
         _header(page, left, right, dark, open_add)
     _keys(page)
     _look(page, left, right)
+    marks(page)
     ui.on("semmap_scene", lambda: _begin_scene(page, stage))
     ui.timer(0.05, lambda: _ready(page), once=True)
 
@@ -113,7 +115,7 @@ def _begin_scene(page: Page, stage: ui.element) -> None:
 def _header(
     page: Page, left: ui.left_drawer, right: ui.right_drawer, dark: ui.dark_mode, open_add: Callable[[], None]
 ) -> None:
-    _icon("menu", "Show or hide the lists", left.toggle)
+    _opens(_icon("menu", "Show or hide the lists", left.toggle), left)
     heading("semmap", 1).classes("semmap-name")
     with ui.element("div").classes("semmap-search").props('role="search"'):
         find(page)
@@ -129,7 +131,7 @@ def _header(
 
     _icon("dark_mode", "Dark or light", toggle_dark)
     _icon("keyboard", "Keys (?)", help_).classes("semmap-wide")
-    _icon("view_sidebar", "Show or hide the details", right.toggle)
+    _opens(_icon("view_sidebar", "Show or hide the details", right.toggle), right)
 
 
 def heading(text: str, level: int) -> TextElement:
@@ -143,6 +145,16 @@ def _icon(icon: str, label: str, on_click: Callable[..., Any]) -> ui.button:
         f'flat round dense color=secondary aria-label="{label}"'
     )
     return button.tooltip(label)
+
+
+def _opens(button: ui.button, drawer: ui.left_drawer | ui.right_drawer) -> None:
+    """Have the button say whether the drawer is open."""
+
+    def show() -> None:
+        button.props["aria-expanded"] = str(bool(drawer.value)).lower()
+
+    drawer.on_value_change(show)
+    show()
 
 
 def _state(page: Page) -> None:

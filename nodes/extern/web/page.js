@@ -36,6 +36,24 @@
     if (next) { event.preventDefault(); event.stopPropagation(); next.focus(); }
   }
 
+  // What was pressed is clicked, also where something that came in before the release has moved it away from under the
+  // pointer: a browser clicks at nothing then.
+  const CLICKABLE = "button, [role=button], [role=tab], .q-chip--clickable, .q-item--clickable";
+  const STILL_PX = 5;
+  let pressed = null;
+
+  function onPress(event) {
+    const element = event.button === 0 ? event.target.closest?.(CLICKABLE) : null;
+    pressed = element && { element, x: event.clientX, y: event.clientY };
+  }
+
+  function onRelease(event) {
+    const { element, x, y } = pressed ?? {};
+    pressed = null;
+    if (!element || element.contains(event.target) || !element.isConnected || !element.checkVisibility()) return;
+    if (Math.hypot(event.clientX - x, event.clientY - y) < STILL_PX) element.click();
+  }
+
   function tellLook() {
     emitEvent("semmap_look", {
       dark: document.body.classList.contains("body--dark"),
@@ -54,7 +72,23 @@
     requestAnimationFrame(() => requestAnimationFrame(() => whenIdle(begin, { timeout: 1000 })));
   };
 
+  // For whoever drives this browser: it comes back when all that was done here before has been taken in and shown.
+  const settling = new Map();
+  let settles = 0;
+  window.semmapSettled = () => new Promise((settled) => {
+    const number = ++settles;
+    settling.set(number, settled);
+    emitEvent("semmap_settle", { number });
+  });
+  window.semmapIsSettled = (number) => {
+    settling.get(number)?.();
+    settling.delete(number);
+  };
+
   document.addEventListener("keydown", onKey);
+  document.addEventListener("pointerdown", onPress, true);
+  document.addEventListener("pointerup", onRelease, true);
+  document.addEventListener("pointercancel", () => { pressed = null; }, true);
   document.addEventListener("keydown", leaveTable, true);
   window.semmapStart = () => {
     new MutationObserver(tellLook).observe(document.body, { attributeFilter: ["class"] });

@@ -6,8 +6,9 @@ Panels draw from `page.state` and never from `page.live`: they show the past as 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
-from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Iterator, Mapping
 from typing import Any, Literal, TypeVar
 
 from nicegui import Client, background_tasks
@@ -74,6 +75,11 @@ class Page:
         self._on_look: list[Callable[[], None]] = []
         self._on_key: dict[str, Callable[[], object]] = {}
         self._asked_for = 0
+        self.pending = 0
+        """How much is under way for this tab: what is asked for and not shown yet."""
+        self._on_pending: list[Callable[[], None]] = []
+        self._is_idle = asyncio.Event()
+        self._is_idle.set()
         self.tape = tape_of(live)
         """The past of the map, for all tabs."""
         self._stop = live.listen(self._on_happening)
@@ -89,6 +95,7 @@ class Page:
             self._on_connection,
             self._on_turn,
             self._on_look,
+            self._on_pending,
         ):
             functions.clear()
         self._on_poses.clear()
@@ -256,7 +263,8 @@ class Page:
     async def ask(self, command: Command[R], timeout_s: float = 10.0) -> R | None:
         """The reply; None where there is none, and then the reason is shown."""
         try:
-            return await self.live.ask(command, timeout_s)
+            with self.under_way():
+                return await self.live.ask(command, timeout_s)
         except errors.SemmapError as error:
             self.tell(error.text, "negative")
             return None
@@ -267,7 +275,8 @@ class Page:
             self.tell("This is the past, which does not change; go back to now first (Home).", "warning")
             return None
         try:
-            return await self.live.ask(command, timeout_s)
+            with self.under_way():
+                return await self.live.ask(command, timeout_s)
         except errors.SemmapError as error:
             if self.refuse is not None and not isinstance(error, errors.NoAnswer):
                 with self.client:
@@ -289,7 +298,35 @@ class Page:
         """Let it run beside what is being drawn, in this tab."""
 
         async def inside() -> Any:
-            with self.client:
+            with self.client, self.under_way():
                 return await coroutine
 
         return background_tasks.create(inside(), name="page")
+
+    # What is under way
+
+    @contextlib.contextmanager
+    def under_way(self) -> Iterator[None]:
+        """What goes on inside is not shown yet."""
+        self._count(1)
+        try:
+            yield
+        finally:
+            self._count(-1)
+
+    def _count(self, more: int) -> None:
+        self.pending += more
+        if self.pending:
+            self._is_idle.clear()
+        else:
+            self._is_idle.set()
+        if not self.client.is_deleted:
+            self._tell(self._on_pending)
+
+    def on_pending(self, function: Callable[[], None]) -> None:
+        """Call it when `pending` has changed."""
+        self._on_pending.append(function)
+
+    async def settled(self) -> None:
+        """Wait until nothing is under way."""
+        await self._is_idle.wait()

@@ -12,8 +12,9 @@ from nodes.extern.phrasing import english, pose_text, size_text
 from nodes.extern.web.page import Page
 from nodes.extern.web.panels import asking
 from nodes.extern.web.panels.edit import Edit, several
-from nodes.extern.web.panels.fact_list import fact_list
-from nodes.extern.web.panels.history import history
+from nodes.extern.web.panels.fact_list import FactList
+from nodes.extern.web.panels.history import History
+from nodes.extern.web.panels.rows import Rows
 from nodes.extern.web.panels.states import States
 from nodes.extern.web.panels.view import Touched, View
 from nodes.extern.web.views.past import provenance
@@ -41,6 +42,9 @@ class _Detail:
         self._of: tuple[str, ...] | None = None
         self._is_due = False
         self._asked_for = 0
+        self._is_asking = False
+        self._is_old = False
+        """It has changed since what is being asked about it was asked."""
         self._body = ui.column().classes("w-full gap-2 semmap-detail")
         page.on_select(self._draw)
         page.on_moment(self._draw)
@@ -101,21 +105,31 @@ class _Detail:
     def _draw_one(self, name: str) -> None:
         page = self._page
         entity = page.state.entities[name]
-        self._head = ui.column().classes("w-full gap-0")
+        with ui.column().classes("w-full gap-0"):
+            self._called = ui.label().classes("semmap-heading").props('role="heading" aria-level="3"')
+            self._is_a = ui.label().classes("semmap-quiet")
+            self._also = ui.label().classes("semmap-quiet")
+            self._figures = ui.label().classes("semmap-quiet semmap-figures")
         self._words = ui.label().classes("semmap-sentence")
         self._doubt = ui.label().classes("semmap-doubt").props('role="status"')
-        self._facts = ui.column().classes("w-full gap-0")
+        with ui.column().classes("w-full gap-0") as facts:
+            self._facts = FactList(page)
+        facts.set_visibility(False)  # nothing is known of them yet
+        self._all_facts = facts
         self._states = States(page, entity)
         with ui.expansion("History", icon="history").props("dense").classes("w-full") as past:
             self._seen = ui.label().classes("semmap-sentence")
-            self._past = ui.column().classes("w-full gap-2")
+            with ui.column().classes("w-full gap-2"):
+                self._past = History(page, name)
+                self._problems = ui.label().classes("semmap-doubt whitespace-pre-wrap")
         with ui.expansion("Who said so", icon="badge").props("dense").classes("w-full"):
-            self._who = ui.column().classes("w-full gap-1")
+            self._who = Rows(ui.column().classes("w-full gap-1"), _say_who, classes="w-full")
         past.value = True
         self._edit = Edit(page, entity) if page.may("update") else None
-        self._drawn: tuple[asking.Asked, str] | None = None
+        self._asked_for += 1
+        self._is_asking = False  # about another thing, or of another moment
         self._show_entity(entity)
-        page.later(self._ask(entity))
+        self._ask_again(entity)
 
     def _renew(self) -> None:
         """The same thing, a little later."""
@@ -125,7 +139,7 @@ class _Detail:
         elif len(names) == 1 and self._page.moment.is_now:  # the past does not change
             entity = self._page.state.entities[names[0]]
             self._show_entity(entity)
-            self._page.later(self._ask(entity))
+            self._ask_again(entity)
 
     def _show_entity(self, entity: Entity) -> None:
         """What is known of it without asking."""
@@ -133,38 +147,44 @@ class _Detail:
         known = {c.name: c for c in page.live.classes}.get(entity.class_)
         label = english(known.labels) if known is not None else ""
         called = entity.preferred_reference or entity.name
-        self._head.clear()
-        with self._head:
-            ui.label(shortened(called, _LONGEST)).classes("semmap-heading").props(
-                'role="heading" aria-level="3"'
-            )
-            is_a = entity.class_ if label in ("", entity.class_) else f"{label} ({entity.class_})"
-            ui.label(f"{entity.name} · {is_a}").classes("semmap-quiet")
-            if entity.alternative_references:
-                also = ", ".join(entity.alternative_references)
-                ui.label(f"also called {shortened(also, _LONGEST)}").classes("semmap-quiet")
-            size = f" · {size_text(entity)} m" if entity.size_m is not None else ""
-            ui.label(f"{pose_text(entity.pose)}{size}").classes("semmap-quiet semmap-figures")
+        self._called.text = shortened(called, _LONGEST)
+        is_a = entity.class_ if label in ("", entity.class_) else f"{label} ({entity.class_})"
+        self._is_a.text = f"{entity.name} · {is_a}"
+        self._also.text = f"also called {shortened(', '.join(entity.alternative_references), _LONGEST)}"
+        self._also.set_visibility(bool(entity.alternative_references))
+        size = f" · {size_text(entity)} m" if entity.size_m is not None else ""
+        self._figures.text = f"{pose_text(entity.pose)}{size}"
         self._doubt.text = entity.conflict and f"Perception says otherwise: {entity.conflict}"
         self._doubt.set_visibility(bool(entity.conflict))
         self._states.show(entity)
         if self._edit is not None:
             self._edit.show(entity)
-        self._who.clear()
-        with self._who:
-            for what, text in provenance(entity).items():
-                ui.label(what).classes("semmap-title")
-                ui.label(text).classes("semmap-quiet")
-            ui.label(entity.iri).classes("semmap-quiet semmap-iri")
+        who = {**provenance(entity), "": entity.iri}
+        self._who.show((what, (what, text)) for what, text in who.items())
 
-    async def _ask(self, entity: Entity) -> None:
+    def _ask_again(self, entity: Entity) -> None:
+        """Ask about it, once the answers to what is being asked are shown: changes may be quicker."""
+        self._is_old = True
+        if not self._is_asking:
+            self._is_asking = True
+            self._page.later(self._ask(entity.name, self._asked_for))
+
+    async def _ask(self, name: str, number: int) -> None:
         """What is to be asked about it, drawn when it is answered, if it is still looked at."""
-        self._asked_for += 1
-        number, commit = self._asked_for, self._page.moment.commit
-        found = await asking.ask(self._page, self._view.knowing, entity)
-        self._show(entity.name, number, found, "" if commit is None else _WORKING)
-        if commit is None:
-            return
+        page, commit = self._page, self._page.moment.commit
+        try:
+            while number == self._asked_for and self._is_old and name in page.state.entities:
+                self._is_old = False
+                entity = page.state.entities[name]
+                found = await asking.ask(page, self._view.knowing, entity)
+                self._show(name, number, found, "" if commit is None else _WORKING)
+                if commit is not None:
+                    await self._ask_what_followed(entity, number, found, commit)
+        finally:
+            if number == self._asked_for:
+                self._is_asking = False
+
+    async def _ask_what_followed(self, entity: Entity, number: int, found: asking.Asked, commit: int) -> None:
         await asyncio.sleep(_SETTLED_S)
         if number != self._asked_for:
             return
@@ -177,20 +197,20 @@ class _Detail:
 
     def _show(self, name: str, number: int, found: asking.Asked, pending: str) -> None:
         """Draw what was answered; `pending` says why what is inferred is not among it."""
-        if number != self._asked_for or self._of != (name,) or self._facts.is_deleted:
+        if number != self._asked_for or self._of != (name,) or self._words.is_deleted:
             return
-        before, self._drawn = self._drawn, (found, pending)
         self._words.text = shortened(found.told, _LONGEST)
         self._words.set_visibility(bool(found.told))
-        if before is None or (before[0].facts, before[1]) != (found.facts, pending):
-            self._facts.clear()
-            with self._facts:
-                fact_list(self._page, found.facts, pending)
+        self._facts.show(found.facts, pending)
+        self._all_facts.set_visibility(True)
         self._say_seen(found.last_seen)
-        past = (found.commits, found.problems)
-        if before is None or (before[0].commits, before[0].problems) != past:
-            self._past.clear()
-            with self._past:
-                history(self._page, name, found.commits)
-                for problem in found.problems:
-                    ui.label(problem).classes("semmap-doubt")
+        self._past.show(found.commits)
+        self._problems.text = "\n".join(found.problems)
+        self._problems.set_visibility(bool(found.problems))
+
+
+def _say_who(said: tuple[str, str]) -> None:
+    what, text = said
+    if what:
+        ui.label(what).classes("semmap-title")
+    ui.label(text).classes("semmap-quiet" if what else "semmap-quiet semmap-iri")

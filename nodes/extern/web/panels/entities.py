@@ -8,6 +8,7 @@ from typing import Any, Final
 from nicegui import ui
 
 from nodes.extern.web.page import Page
+from nodes.extern.web.panels.choice import Choice
 from nodes.extern.web.panels.view import Touched, View
 from nodes.extern.web.views.entity_rows import Cells, Changes, Wanted, changes, counted
 from nodes.extern.web.views.forms import class_choices
@@ -126,12 +127,12 @@ class _Entities:
             )
             self._more.tooltip("All columns, or those that most want")
 
-    def _choice(self, label: str, field: str) -> ui.select:
+    def _choice(self, label: str, field: str) -> Choice:
         def choose(event: Any) -> None:
             self._view.want(**{field: event.value or ""})
 
         return (
-            ui.select({}, label=label, with_input=True, clearable=True)
+            Choice({}, label=label, with_input=True, clearable=True)
             .props("dense outlined options-dense hide-dropdown-icon")
             .classes("grow")
             .style("flex-basis: 0; min-width: 0")

@@ -8,6 +8,7 @@ from typing import Any, Final
 from nicegui import ui
 
 from nodes.extern.web.page import Page
+from nodes.extern.web.panels.choice import Choice
 from nodes.extern.web.views.forms import Filled, best_class
 
 _AXES: Final = ("x", "y", "z")
@@ -22,7 +23,7 @@ class Fields:
         self._classes: dict[str, str] = {}
         with ui.column().classes("w-full gap-2 semmap-fields"):
             self._class = (
-                ui.select({}, label="Class", with_input=True, new_value_mode="add-unique", clearable=True)
+                Choice({}, label="Class", with_input=True, new_value_mode="add-unique", clearable=True)
                 .props("dense outlined options-dense hide-bottom-space")
                 .classes("w-full")
                 .on_value_change(self._take_class)

@@ -7,31 +7,43 @@ from collections.abc import Iterable
 from nicegui import ui
 
 from nodes.extern.web.page import Page
+from nodes.extern.web.panels.rows import Rows
 from nodes.extern.web.views.past import Event, events
 from schemas.commands import Undo
 from schemas.errors import shortened
 from schemas.replies import LoggedCommit
 
 
-def history(page: Page, name: str, commits: Iterable[LoggedCommit]) -> None:
-    """Draw it where it is called."""
-    places = [entity for entity in page.state.entities.values() if entity.place and entity.name != name]
-    with ui.element("ol").classes("semmap-history").props('aria-label="History"'):
-        for event in events(name, commits, places):
-            with ui.element("li"):
-                _event(page, event)
+class History:
+    """The commits that touched one thing."""
 
+    def __init__(self, page: Page, name: str) -> None:
+        """Draw it where it is made, without commits."""
+        self._page, self._name = page, name
+        listed = ui.element("ol").classes("semmap-history").props('aria-label="History"')
+        self._rows = Rows(listed, self._draw, tag="li")
 
-def _event(page: Page, event: Event) -> None:
-    for text in event.texts:
-        ui.label(shortened(text, 1000))
-    with ui.row().classes("w-full items-center gap-1 no-wrap"):
-        sure = f", sure to {event.sure}" if event.sure else ""
-        what = f"commit {event.commit} · {event.when.replace('T', ' ')} · {event.by}{sure}"
-        ui.label(shortened(f"{what} · {event.why}", 300)).classes("text-caption grow").style("min-width: 0")
-        _button("visibility", f"Show the map after commit {event.commit}", lambda: page.go_to(event.commit))
-        if page.may("undo") and page.moment.is_now:
-            _button("undo", f"Undo commit {event.commit}", lambda: _undo(page, event.commit))
+    def show(self, commits: Iterable[LoggedCommit]) -> None:
+        """Show these commits."""
+        entities = self._page.state.entities.values()
+        places = [entity for entity in entities if entity.place and entity.name != self._name]
+        self._rows.show((event.commit, event) for event in events(self._name, commits, places))
+
+    def _draw(self, event: Event) -> None:
+        page = self._page
+        for text in event.texts:
+            ui.label(shortened(text, 1000))
+        with ui.row().classes("w-full items-center gap-1 no-wrap"):
+            sure = f", sure to {event.sure}" if event.sure else ""
+            what = f"commit {event.commit} · {event.when.replace('T', ' ')} · {event.by}{sure}"
+            ui.label(shortened(f"{what} · {event.why}", 300)).classes("text-caption grow").style(
+                "min-width: 0"
+            )
+            _button(
+                "visibility", f"Show the map after commit {event.commit}", lambda: page.go_to(event.commit)
+            )
+            if page.may("undo") and page.moment.is_now:
+                _button("undo", f"Undo commit {event.commit}", lambda: _undo(page, event.commit))
 
 
 def _button(icon: str, label: str, on_click: object) -> None:

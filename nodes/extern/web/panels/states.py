@@ -8,6 +8,8 @@ from typing import Any
 from nicegui import ui
 
 from nodes.extern.web.page import Page
+from nodes.extern.web.panels.choice import Choice
+from nodes.extern.web.panels.rows import Renew, Rows
 from nodes.extern.web.panels.view import View
 from nodes.extern.web.views import forms
 from nodes.extern.web.views.states import State, in_common, states
@@ -22,45 +24,45 @@ class States:
 
     def __init__(self, page: Page, entity: Entity) -> None:
         self._page = page
-        self._drawn: tuple[State, ...] | None = None
+        self._name = entity.name
+        self._shows_others = False
         with ui.expansion("States", icon="tune").props("dense").classes("w-full semmap-states") as self._all:
-            self._fields = ui.column().classes("w-full gap-2")
+            fields = ui.column().classes("w-full gap-2")
+            self._more = ui.button(on_click=self._show_others).props("flat dense")
+        self._rows = Rows(fields, self._draw, classes="w-full")
         self._all.value = True
         self.show(entity)
 
     def show(self, entity: Entity) -> None:
-        """As they are now."""
+        """As they are now; what is being entered stays."""
         page = self._page
-        known = View.of(page).knowing.properties.values()
-        found = states(entity, known, page.state.entities)
-        if found == self._drawn:
-            return
-        self._drawn = found
-        self._fields.clear()
+        self._entity = entity
+        found = states(entity, View.of(page).knowing.properties.values(), page.state.entities)
         self._all.set_visibility(bool(found))
-        if not (page.may("set") and page.moment.is_now):
-            with self._fields:
-                for state in found:
-                    if state.spoken:
-                        ui.label(f"{state.label}: {state.spoken}")
-            return
-        usual = [state for state in found if state.now is not None or state.kind in ("switch", "number")]
-        with self._fields:
-            for state in usual:
-                _field(state, _sender(page, (entity.name,), state))
-            if others := [state for state in found if state not in usual]:
-                self._draw_others(entity, others)
+        if self._is_set_here:
+            usual = [state for state in found if state.now is not None or state.kind in ("switch", "number")]
+            others = [state for state in found if state not in usual]
+        else:
+            usual, others = [state for state in found if state.spoken], []
+        self._more.text = f"Say something else of it ({len(others)})"
+        self._more.set_visibility(bool(others) and not self._shows_others)
+        shown = [*usual, *(others if self._shows_others else ())]
+        self._rows.show(((state.name, state.kind, state.several), state) for state in shown)
 
-    def _draw_others(self, entity: Entity, others: list[State]) -> None:
+    @property
+    def _is_set_here(self) -> bool:
+        return self._page.may("set") and self._page.moment.is_now
+
+    def _show_others(self) -> None:
         """What nobody has said yet and may be said: drawn when somebody wants to."""
+        self._shows_others = True
+        self.show(self._entity)
 
-        def draw() -> None:
-            button.delete()
-            with self._fields:
-                for state in others:
-                    _field(state, _sender(self._page, (entity.name,), state))
-
-        button = ui.button(f"Say something else of it ({len(others)})", on_click=draw).props("flat dense")
+    def _draw(self, state: State) -> Renew[State] | None:
+        if self._is_set_here:
+            return _field(state, _sender(self._page, (self._name,), state))
+        ui.label(f"{state.label}: {state.spoken}")
+        return None
 
 
 def states_in_common(page: Page, entities: tuple[Entity, ...]) -> None:
@@ -91,27 +93,27 @@ def _sender(page: Page, names: tuple[str, ...], state: State) -> Callable[[Any],
     return send
 
 
-def _field(state: State, send: Callable[[Any], Any]) -> None:
+def _field(state: State, send: Callable[[Any], Any]) -> Renew[State]:
+    """Draw a field; what is returned shows the state as it has become since."""
     with ui.row().classes("w-full items-center no-wrap gap-2 semmap-state-row"):
         label = ui.label(state.label).classes("semmap-state-label")
         if state.hint:
             label.tooltip(state.hint)
         match state.kind:
             case "switch":
-                _switch(state, send)
+                return _switch(state, send)
             case "number":
-                _number(state, send)
+                return _number(state, send)
             case "text":
-                _text(state, send)
+                return _text(state, send)
             case _:
-                _choice(state, send)
+                return _choice(state, send)
 
 
-def _switch(state: State, send: Callable[[Any], Any]) -> None:
+def _switch(state: State, send: Callable[[Any], Any]) -> Renew[State]:
     """Three ways: yes, no, and nobody has said."""
     words = {True: "yes", False: "no", None: _UNSET}
-    now = state.now if isinstance(state.now, bool) else None
-    toggle = ui.toggle({str(k): word for k, word in words.items()}, value=str(now))
+    toggle = ui.toggle({str(k): word for k, word in words.items()}, value=_switched(state))
     toggle.props("dense no-caps unelevated size=sm toggle-color=primary").props["aria-label"] = state.label
     meaning: dict[str, bool | None] = {"True": True, "False": False, "None": None}
 
@@ -119,25 +121,34 @@ def _switch(state: State, send: Callable[[Any], Any]) -> None:
         await send(meaning[event.value])
 
     toggle.on_value_change(chosen)
+    return lambda state: toggle.set_value(_switched(state))
 
 
-def _number(state: State, send: Callable[[Any], Any]) -> None:
-    now = state.now if isinstance(state.now, (int, float)) else None
-    field = ui.number(value=now, suffix=state.unit or None, placeholder=_UNSET).props("dense outlined")
+def _switched(state: State) -> str:
+    return str(state.now if isinstance(state.now, bool) else None)
+
+
+def _number(state: State, send: Callable[[Any], Any]) -> Renew[State]:
+    def now(state: State) -> float | None:
+        return state.now if isinstance(state.now, (int, float)) else None
+
+    field = ui.number(value=now(state), suffix=state.unit or None, placeholder=_UNSET).props("dense outlined")
     field.classes("grow").style("min-width: 0").props["aria-label"] = state.label
-    _on_leaving(field, now, send)
+    return _on_leaving(field, now, send)
 
 
-def _text(state: State, send: Callable[[Any], Any]) -> None:
-    now = state.spoken
-    field = ui.input(value=now, placeholder=_UNSET).props("dense outlined maxlength=1000")
+def _text(state: State, send: Callable[[Any], Any]) -> Renew[State]:
+    def now(state: State) -> str:
+        return state.spoken
+
+    field = ui.input(value=now(state), placeholder=_UNSET).props("dense outlined maxlength=1000")
     field.classes("grow").style("min-width: 0").props["aria-label"] = state.label
-    _on_leaving(field, now, send)
+    return _on_leaving(field, now, send)
 
 
-def _on_leaving(field: Any, now: Any, send: Callable[[Any], Any]) -> None:
+def _on_leaving(field: Any, now: Callable[[State], Any], send: Callable[[Any], Any]) -> Renew[State]:
     """Send what was entered when Enter is pressed or the field is left."""
-    sent = now
+    sent = field.value
 
     async def leave() -> None:
         nonlocal sent
@@ -145,18 +156,21 @@ def _on_leaving(field: Any, now: Any, send: Callable[[Any], Any]) -> None:
             sent = field.value
             await send(field.value)
 
+    def renew(state: State) -> None:
+        nonlocal sent
+        is_being_entered = field.value != sent
+        sent = now(state)
+        if not is_being_entered:
+            field.value = sent
+
     field.on("keydown.enter", leave)
     field.on("blur", leave)
+    return renew
 
 
-def _choice(state: State, send: Callable[[Any], Any]) -> None:
-    choices = dict(state.choices)
-    stated = state.now if isinstance(state.now, tuple) else () if state.now is None else (state.now,)
-    now = [str(value) for value in stated]
-    for name in now:
-        choices.setdefault(name, name)
-    value: Any = now if state.several else (now[0] if now else None)
-    field = ui.select(choices, value=value, multiple=state.several, clearable=True, with_input=True)
+def _choice(state: State, send: Callable[[Any], Any]) -> Renew[State]:
+    choices, value = _choices(state)
+    field = Choice(choices, value=value, multiple=state.several, clearable=True, with_input=True)
     field.props("dense outlined options-dense" + (" use-chips" if state.several else ""))
     field.classes("grow").style("min-width: 0").props["aria-label"] = state.label
 
@@ -164,3 +178,22 @@ def _choice(state: State, send: Callable[[Any], Any]) -> None:
         await send(event.value or None)
 
     field.on_value_change(chosen)
+
+    def renew(state: State) -> None:
+        choices, value = _choices(state)
+        if field.options != choices:
+            field.set_options(choices, value=value)
+        else:
+            field.value = value
+
+    return renew
+
+
+def _choices(state: State) -> tuple[dict[str, str], Any]:
+    """What there is to choose from, and what is chosen."""
+    choices = dict(state.choices)
+    stated = state.now if isinstance(state.now, tuple) else () if state.now is None else (state.now,)
+    now = [str(value) for value in stated]
+    for name in now:
+        choices.setdefault(name, name)
+    return choices, now if state.several else (now[0] if now else None)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import math
-import time
+from collections.abc import Mapping
 from typing import Any, Final
 
 from nicegui import ui
@@ -13,15 +12,16 @@ from nodes.extern.cli.output.lines import touched
 from nodes.extern.phrasing import author, moment
 from nodes.extern.web.differences import Difference, Mark, counted
 from nodes.extern.web.page import Page
+from nodes.extern.web.panels.rows import Rows
 from nodes.runtime import rhythm
 from schemas import errors
 
 _SPEEDS: Final = {0.1: "0.1 ×", 1.0: "1 ×", 10.0: "10 ×", 100.0: "100 ×", 1000.0: "1000 ×"}
 _COMPARED: Final = {"before": "the commit before", "now": "now", "": "nothing"}
 _SMALL: Final = "dense options-dense borderless"
-_AT_MOST: Final[dict[str, Any]] = {"throttle": 0.1, "leading_events": True, "trailing_events": True}
-_ECHO_S: Final = 2.0
-"""Of a key on the slider a browser tells twice: when it goes down, and up to half a second later."""
+_TELL_ONCE: Final = "(at) => { element.props['model-value'] = at; emit(at); }"
+"""A slider tells where it is until its property says so: of a key it tells when that goes down and when it
+goes up. The second time may come after Home, and led back to the past; so the property says so at once."""
 _DRAWN_S: Final = 0.15
 """No moment is shown for less while the past is played."""
 _FEW: Final = 12
@@ -46,16 +46,15 @@ class _Timeline:
         self._page = page
         self._is_playing = False
         self._wanted: int | None = None
-        self._dragged = (0, -math.inf)  # to which commit the slider was moved last, and when
         with ui.column().classes("semmap-bar") as self._bar:
             self._bar.props('role="group" aria-label="Time"')
             with ui.row().classes("w-full items-center no-wrap gap-2"):
                 self._back = self._button("skip_previous", "One commit back", lambda: self._step(-1))
                 self._play = self._button("play_arrow", "Play", self._toggle)
                 self._on = self._button("skip_next", "One commit on", lambda: self._step(1))
-                self._slider = ui.slider(min=1, max=1, value=1).classes("col")
-                self._slider.props('label aria-label="Commit"')
-                self._slider.on("update:model-value", self._on_slider, **_AT_MOST)
+                self._slider = ui.element("q-slider").classes("col")
+                self._slider.props('min=1 max=1 model-value=1 label aria-label="Commit"')
+                self._slider.on("update:model-value", self._on_slider, js_handler=_TELL_ONCE)
                 self._now = ui.button("Now", on_click=lambda: self._go(None))
                 self._now.props("dense unelevated color=warning text-color=black padding='2px 10px'")
                 self._now.tooltip("Back to now (Home)")
@@ -72,6 +71,10 @@ class _Timeline:
                     compared.on_value_change(lambda event: self._compare(compared))
             self._differences = ui.row().classes("w-full items-center gap-1")
             self._differences.props('aria-label="What is different"')
+            with self._differences:
+                self._counted = ui.label().classes("text-caption")
+                self._chips = Rows(ui.row().classes("items-center gap-1"), self._chip)
+                self._more = ui.label().classes("text-caption")
         page.on_moment(self._show)
         page.on_change(self._show)
         page.client.on_delete(self._leave)
@@ -114,10 +117,8 @@ class _Timeline:
 
     def _on_slider(self, event: Any) -> None:
         """The slider is dragged: the newest place counts, and one at a time is fetched."""
-        commit, now_s = int(event.args), time.monotonic()
-        before, self._dragged = self._dragged, (commit, now_s)
-        if before[0] == commit and now_s - before[1] < _ECHO_S:
-            return  # who has gone elsewhere meanwhile stays there
+        commit = int(event.args)
+        self._slider.props["model-value"] = commit
         self._is_playing = False
         was, self._wanted = self._wanted, commit
         if was is None:
@@ -134,6 +135,7 @@ class _Timeline:
                     await self._page.arrive(commit)
         finally:
             self._wanted = None
+            self._show()
 
     def _compare(self, choice: ui.select) -> None:
         choice.run_method("blur")
@@ -188,20 +190,22 @@ class _Timeline:
         page, shown = self._page, self._shown
         last = page.live.commit
         is_past = not page.moment.is_now
-        self._slider.props["min"], self._slider.props["max"] = page.tape.first, max(last, page.tape.first)
+        at = {"min": page.tape.first, "max": max(last, page.tape.first)}
         if self._wanted is None:
-            self._slider.set_value(shown)
+            at["model-value"] = shown
+        if not at.items() <= self._slider.props.items():
+            self._slider.props.update(at)
         self._play.props(f"icon={'pause' if self._is_playing else 'play_arrow'}")
         self._now.set_visibility(is_past)
         self._bar.classes(add="is-past" if is_past else "", remove="" if is_past else "is-past")
         self._on.set_enabled(is_past)
         self._back.set_enabled(shown > page.tape.first)
         self._caption.text = self._said(shown, last, is_past=is_past)
-        self._differences.clear()
-        self._differences.set_visibility(is_past and bool(page.compared))
-        if is_past and page.compared:
-            with self._differences:
-                self._draw_differences()
+        is_compared = is_past and bool(page.compared)
+        against = "since then" if page.compared == "now" else "by this commit"
+        self._differences.set_visibility(is_compared)
+        self._counted.text = f"{counted(page.differences)} {against}" if is_compared else ""
+        self._draw_differences(page.differences if is_compared else {})
 
     def _said(self, shown: int, last: int, *, is_past: bool) -> str:
         if not is_past:
@@ -212,16 +216,12 @@ class _Timeline:
         why = row.reason or touched(row)
         return f"The past: commit {shown} of {last} · {moment(row.stamp_ns)} · {author(row)}: {why}"
 
-    def _draw_differences(self) -> None:
-        found = self._page.differences
-        against = "since then" if self._page.compared == "now" else "by this commit"
-        ui.label(f"{counted(found)} {against}").classes("text-caption")
-        for name, difference in list(found.items())[:_FEW]:
-            self._chip(name, difference)
-        if len(found) > _FEW:
-            ui.label(f"and {len(found) - _FEW} more").classes("text-caption")
+    def _draw_differences(self, found: Mapping[str, Difference]) -> None:
+        self._chips.show((name, (name, found[name])) for name in list(found)[:_FEW])
+        self._more.text = f"and {len(found) - _FEW} more" if len(found) > _FEW else ""
 
-    def _chip(self, name: str, difference: Difference) -> None:
+    def _chip(self, content: tuple[str, Difference]) -> None:
+        name, difference = content
         chip = ui.chip(name, on_click=lambda: self._page.select((name,), by="timeline"))
         chip.props(f"dense square color={COLOURS[difference.mark]} text-color=white")
         chip.tooltip(difference.text)

@@ -1,0 +1,110 @@
+"""The details of what is selected, while it changes."""
+
+import asyncio
+from types import SimpleNamespace
+
+import pytest
+from nicegui import ElementFilter, ui
+
+from nodes.extern.web.moments import NOW
+from nodes.extern.web.panels import asking, fact_list
+from nodes.extern.web.panels import detail as detail_module
+from nodes.extern.web.panels import states as states_module
+from nodes.extern.web.panels.detail import detail
+from nodes.extern.web.views.facts import Fact, Facts
+from tests.conftest import PATIENCE_S
+from tests.extern.web.panels.tabs import in_a_tab
+from tests.extern.web.views.worlds import thing
+
+
+class View:
+    """Stands for what a tab's panels share; `touch` tells that something has changed."""
+
+    knowing = SimpleNamespace(properties={}, words=None)
+
+    def on_touched(self, function):
+        self.touch = function
+
+
+class Asking:
+    """Answers about a thing as slowly as is wanted."""
+
+    def __init__(self):
+        self.begun = []
+
+    async def ask(self, page, knowing, entity):
+        answer = asyncio.get_running_loop().create_future()
+        self.begun.append(answer)
+        return await answer
+
+    def answer(self, text):
+        found = Facts((Fact(text),), (), ())
+        self.begun[-1].set_result(asking.Asked("", found, (), "", (), ()))
+
+    async def asked(self, times):
+        async with asyncio.timeout(PATIENCE_S):
+            while len(self.begun) < times:
+                await asyncio.sleep(0.01)
+
+
+@pytest.fixture
+def view(monkeypatch):
+    view = View()
+    for module in (detail_module, states_module, fact_list):
+        monkeypatch.setattr(module, "View", SimpleNamespace(of=lambda page: view))
+    return view
+
+
+@pytest.fixture
+def slow(monkeypatch):
+    slow = Asking()
+    monkeypatch.setattr(asking, "ask", slow.ask)
+    return slow
+
+
+@pytest.fixture
+def tick(monkeypatch):
+    """A function that lets a moment pass: without a browser no timer goes off."""
+    timers = {}
+    monkeypatch.setattr(ui, "timer", lambda period_s, function: timers.update({period_s: function}))
+    return lambda: timers[min(timers)]()
+
+
+@pytest.fixture
+def page():
+    tasks = []
+    state = SimpleNamespace(entities={"cup1": thing("cup1", preferred_reference="cup")})
+    return SimpleNamespace(
+        moment=NOW,
+        selected=("cup1",),
+        state=state,
+        live=SimpleNamespace(classes=()),
+        may=lambda verb: False,
+        on_select=lambda function: None,
+        on_moment=lambda function: None,
+        later=lambda coroutine: tasks.append(asyncio.ensure_future(coroutine)),
+    )
+
+
+def texts():
+    return [label.text for label in ElementFilter(kind=ui.label) if label.visible]
+
+
+def test_answers_that_are_slower_than_changes_are_shown_and_asked_for_again(page, view, slow, tick):
+    async def test(client):
+        detail(page)
+        await slow.asked(1)
+        page.state.entities["cup1"] = thing("cup1", preferred_reference="green cup")
+        view.touch(frozenset(["cup1"]))
+        tick()
+        assert "green cup" in texts()
+        slow.answer("was so when it was asked")
+        await slow.asked(2)
+        assert "was so when it was asked" in texts()
+        slow.answer("is so now")
+        async with asyncio.timeout(PATIENCE_S):
+            while "is so now" not in texts():
+                await asyncio.sleep(0.01)
+        assert len(slow.begun) == 2
+
+    in_a_tab(test)
