@@ -76,10 +76,17 @@ def watch(item: pytest.Item | None) -> None:
 
 
 def _check(event: str, _: tuple[Any, ...]) -> None:
-    if _is_pure and event in _AUDITED:
-        raise RuntimeError(
-            "a test that is not marked `process` starts one; add what starts it to tests/tiers.py"
-        )
+    if _is_pure and event in _AUDITED and _is_ours(sys._getframe(1)):
+        raise RuntimeError("this test is not marked `process`: add what starts the process to tests/tiers.py")
+
+
+def _is_ours(frame: types.FrameType | None) -> bool:
+    """Whether our code asked Python's library for a process; what other libraries start is short."""
+    while frame is not None and Path(frame.f_code.co_filename).is_relative_to(_STDLIB):
+        if "site-packages" in frame.f_code.co_filename:
+            return False
+        frame = frame.f_back
+    return frame is not None and "site-packages" not in frame.f_code.co_filename
 
 
 @functools.cache
