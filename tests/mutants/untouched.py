@@ -41,11 +41,14 @@ def _untouched(node: ast.AST) -> Iterator[ast.stmt | ast.expr]:
         case ast.Call() if _first_name(node.func) in _LOGGERS:
             yield node
         case ast.If() if _is_guard(node):
-            yield from (node.test, *node.body)
-        case ast.AnnAssign() | ast.arg(annotation=ast.expr()):
-            yield node.annotation
-        case ast.FunctionDef(returns=ast.expr()) | ast.AsyncFunctionDef(returns=ast.expr()):
-            yield node.returns
+            yield node.test
+            yield from node.body
+        case ast.AnnAssign(annotation=annotation) | ast.arg(annotation=ast.expr() as annotation):
+            yield annotation
+        case ast.FunctionDef(returns=ast.expr() as returns):
+            yield returns
+        case ast.AsyncFunctionDef(returns=ast.expr() as returns):
+            yield returns
 
 
 def _is_union(value: ast.expr) -> bool:

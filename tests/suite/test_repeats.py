@@ -39,4 +39,4 @@ def test_a_seed_gives_an_order_in_which_the_tests_of_a_file_stay_together(items)
     files = [order[start].path for start in range(0, 20, 5)]
     assert [item.path for item in order] == [path for path in files for _ in range(5)]
     orders = [shuffle(items, seed) for seed in range(5)]
-    assert len({"".join(item.path + item.name for item in order) for order in orders}) == 5
+    assert len({"".join(f"{item.path}{item.name}" for item in order) for order in orders}) == 5
