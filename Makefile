@@ -1,12 +1,10 @@
 # Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-long test-faults lint format docs diagrams pictures schema shapes models relations-picture drive-picture foreign-picture train-perception wheel clean
+.PHONY: help setup demo test test-pure test-long test-flaky test-faults mutants lint format docs diagrams pictures schema shapes models relations-picture drive-picture foreign-picture train-perception wheel clean
 
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
 BIN := .venv/bin
-# One that hangs is ended and named, with what each of its threads was doing.
-NO_TEST_FOR_EVER := -o faulthandler_timeout=600 -o faulthandler_exit_on_timeout=true
 export UV_PYTHON_DOWNLOADS := never
 
 help:  ## Show this list
@@ -27,20 +25,28 @@ $(UV):
 demo: setup  ## A tour through the commands and a drive; leaves demo/flat.owl, session.rrd, drive.rrd, scene.png
 	$(BIN)/python -m demo.tour
 
-test: setup  ## The tests, about ten minutes
+test-pure: setup  ## The tests that need no processes; PART=tests/coordinator runs those of a folder in seconds
+	$(BIN)/pytest -q $(if $(PART),$(PART),-n 2 --dist worksteal) -m "not process and not long"
+
+test: setup  ## Style, types, import rules and all tests but the long ones
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n 3 --dist worksteal -m "not long" --ignore tests/page $(NO_TEST_FOR_EVER)  # on two cores: many wait for a system
-	$(BIN)/pytest -m "not long" $(NO_TEST_FOR_EVER) tests/page  # alone: Chromium draws with both cores
+	$(BIN)/python -m tests.suite
 
 test-long: setup  ## The tests that take longer too, and all tries of those that search
 	SEMMAP_THOROUGH=1 $(BIN)/pytest -n 2 -o faulthandler_timeout=7200 -o faulthandler_exit_on_timeout=true
 
+test-flaky: setup  ## The tests that need processes, N=10 times in random order, beside LOAD=2 busy loops
+	$(BIN)/python -m tests.suite.repeats --times $(or $(N),10) --load $(or $(LOAD),0)
+
 test-faults: setup  ## Kill, stop, forge, send nonsense: nothing acknowledged may be lost or done twice; half an hour
 	$(BIN)/python -m tests.faults.mutations 20000
 	$(BIN)/python -m tests.faults
+
+mutants: setup  ## Change lines of a node at random, and list what its tests miss; PART=nodes/coordinator N=60 SEED=1
+	$(BIN)/python -m tests.mutants $(PART) --number $(or $(N),60) --seed $(or $(SEED),1) --jobs $(or $(JOBS),2)
 
 lint: setup  ## Style, types and the rules of who imports whom
 	$(BIN)/ruff check .

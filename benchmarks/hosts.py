@@ -11,8 +11,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from nodes.extern.client import Client, connect
-from tests.faults import on_a_host
 from tests.faults.cut_hosts import spread_out
+from tests.faults.ground import free_place
 from tests.faults.hosts import Host, Link, Network
 
 _ROUNDS = 5
@@ -45,7 +45,7 @@ def add(endpoint: str, count: int) -> None:
 
 
 def _add(client: Client) -> None:
-    client.add("Cup", at=on_a_host.free_place())
+    client.add("Cup", at=free_place())
 
 
 def _took_ms(function: Callable[[], object]) -> float:

@@ -43,7 +43,7 @@ def environment(folder: Path, *requirements: str) -> Path:
     else:
         subprocess.run([sys.executable, "-m", "venv", folder], check=True)
         install = [python, "-m", "pip", "install", "-q", "--disable-pip-version-check"]
-    subprocess.run([*install, *requirements], check=True)
+    subprocess.run([*map(str, install), *requirements], check=True)
     return python
 
 
@@ -61,7 +61,7 @@ def _size(entry: Path) -> int:
 
 def import_s(python: Path) -> float:
     """The least that `import semmap` takes in a new process, of some tries [s]."""
-    command = [python, "-P", "-c", _IMPORT]
+    command = [str(python), "-P", "-c", _IMPORT]
     return min(float(subprocess.check_output(command, cwd="/")) for _ in range(_IMPORTS))
 
 

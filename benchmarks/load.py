@@ -90,7 +90,7 @@ def memory_mb(client: Client) -> dict[str, float]:
 
 def _uss_mb(process: psutil.Process) -> float:
     try:
-        return round(process.memory_full_info().uss / 1e6, 1)
+        return float(round(process.memory_full_info().uss / 1e6, 1))
     except psutil.NoSuchProcess:
         return 0.0
 

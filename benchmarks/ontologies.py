@@ -20,7 +20,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import psutil
+import psutil  # type: ignore[import-untyped]
 
 from nodes.kb_node.documents import catalogue, ontology_files
 from nodes.kb_node.documents.tbox import tbox_check

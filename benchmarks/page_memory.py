@@ -19,6 +19,8 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from playwright.sync_api import sync_playwright
@@ -36,11 +38,11 @@ def change(client: Client, ended: threading.Event) -> None:
     """A change about every second, in rounds that leave nothing behind, until `ended`."""
     for number in itertools.count():
         name = f"passing{number}"
-        steps = (
-            lambda name=name: client.add("Cup", name, at=(2.0, 3.0, 1.0)),
-            lambda name=name: client.update(name, ref="the cup that comes and goes"),
-            lambda name=name: client.update(name, at=(2.5, 3.2, 1.0)),
-            lambda name=name: client.remove(name),
+        steps: tuple[Callable[[], object], ...] = (
+            partial(client.add, "Cup", name, at=(2.0, 3.0, 1.0)),
+            partial(client.update, name, ref="the cup that comes and goes"),
+            partial(client.update, name, at=(2.5, 3.2, 1.0)),
+            partial(client.remove, name),
         )
         for step in steps:
             with contextlib.suppress(errors.SemmapError):  # a busy machine may not answer in time

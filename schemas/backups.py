@@ -123,7 +123,8 @@ def verify(file: Path) -> Opening:
     """The opening of a backup that is whole. Raises BadFile."""
     rows = read(file)
     opening = next(rows)
-    assert isinstance(opening, Opening)
+    if not isinstance(opening, Opening):
+        raise BadFile(f"{file} does not begin with the opening of a backup")
     deque(rows, maxlen=0)
     return opening
 

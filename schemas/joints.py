@@ -7,6 +7,8 @@ from typing import Final, Literal
 
 from msgspec import Struct
 
+from schemas import errors
+
 OPEN_FROM: Final = 0.05
 """A thing counts as open from this share of the way on; less is a door that stands ajar by its play."""
 
@@ -66,8 +68,10 @@ class Joint(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_
     @property
     def open_end(self) -> float:
         """The limit at which what it carries is wide open, or on; only of one that has ends."""
-        assert self.lower is not None
-        assert self.upper is not None
+        if self.lower is None:
+            raise errors.InternalError("the joint has no lower limit")
+        if self.upper is None:
+            raise errors.InternalError("the joint has no upper limit")
         return self.upper if self.closed == self.lower else self.lower
 
     @property
@@ -85,7 +89,8 @@ class Joint(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_
         return self._share_at(self.position) if self.has_ends else None
 
     def _share_at(self, position: float) -> float:
-        assert self.closed is not None
+        if self.closed is None:
+            raise errors.InternalError("the joint has no closed position")
         way = self.open_end - self.closed
         return min(1.0, max(0.0, (position - self.closed) / way)) if way else 0.0
 
@@ -96,7 +101,8 @@ class Joint(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_
 
     def position_at(self, share: float) -> float:
         """Where it stands when it is so far open, or on; only of one that has ends."""
-        assert self.closed is not None
+        if self.closed is None:
+            raise errors.InternalError("the joint has no closed position")
         return self.closed + share * (self.open_end - self.closed)
 
 

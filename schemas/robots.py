@@ -25,5 +25,6 @@ class Answer(Struct, Generic[R], frozen=True, kw_only=True):
         """The reply. Raises the error that came instead."""
         if self.error is not None:
             raise errors.from_message(self.error)
-        assert self.reply is not None
+        if self.reply is None:
+            raise errors.InternalError("the robot gave neither a reply nor an error")
         return self.reply

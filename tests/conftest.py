@@ -28,6 +28,7 @@ from nodes.kb_node.storage.journal import FILENAME
 from nodes.kb_node.storage.seed import seed
 from nodes.runtime.loop import Node
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
+from tests import tiers
 
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -39,6 +40,8 @@ sys.dont_write_bytecode = False
 # On a busy machine the clock says nothing of the code: no deadlines, and input may take its time to be made.
 settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("busy")
+
+tiers.forbid_processes()
 
 _BIN = Path(sys.executable).parent
 _START_S = 120.0
@@ -202,3 +205,21 @@ def _await_end(process: subprocess.Popen[str]) -> None:
         process.kill()
         process.wait()
         pytest.fail(f"{process.args} did not end within {_END_S:g} s of Ctrl-C")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the tests that need real processes."""
+    for item in items:
+        if tiers.needs_process(item):
+            item.add_marker("process")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """The other tests start none."""
+    tiers.watch(item)
+    try:
+        return (yield)
+    finally:
+        tiers.watch(None)

@@ -45,9 +45,9 @@ def measure(where: Path | None, size: int) -> Disk:
         return Disk(size, bulk_load, start_up, list_all, _sync(path / "sync"))
 
 
-def prepare(folder: Path, size: int) -> Cost:
+def prepare(folder: Path, size: int, tbox: Path = HOUSEHOLD_TTL) -> Cost:
     """A journal of `size` entities in `folder`, as a node leaves it that was stopped; its bulk load."""
-    seed(folder, HOUSEHOLD_TTL, None)
+    seed(folder, tbox, None)
     journal = Journal(folder / FILENAME)
     semantic_map = SemanticMap(journal)
     random_ = random.Random(size)

@@ -57,9 +57,7 @@ def system(folder: Path, size: int, tbox: Path | None) -> Iterator[Callable[[str
 
     With the time, in ms a command, that the processors spent on that in all processes, this one's too.
     """
-    if tbox is not None:
-        disk.HOUSEHOLD_TTL = tbox
-    disk.prepare(folder, size)
+    disk.prepare(folder, size, *([tbox] if tbox else []))
     random_, live = random.Random(), list[str]()
     with own_system(folder, *_UP) as client:
         processes = [psutil.Process(), *(psutil.Process(node.pid) for node in client.status().nodes)]
@@ -78,7 +76,7 @@ def system(folder: Path, size: int, tbox: Path | None) -> Iterator[Callable[[str
 
 def _cpu_s(processes: Sequence[psutil.Process]) -> float:
     times = [process.cpu_times() for process in processes]
-    return sum(t.user + t.system for t in times)
+    return float(sum(t.user + t.system for t in times))
 
 
 def _timed(client: Client, word: str, random_: random.Random, size: int, live: list[str]) -> float:

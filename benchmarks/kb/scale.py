@@ -22,7 +22,7 @@ from nodes.extern.client import Client
 from nodes.extern.testing import free_endpoint, own_system
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.health import Health
+from schemas.replies import NodeStatus
 
 _UP = ("--abox", "none", "--no-sim", "--no-record", "--world", "empty")
 _COUNTED = "Cup"
@@ -197,7 +197,7 @@ def _pss_mb(process: psutil.Process) -> float:
         return 0.0
 
 
-def _nodes(client: Client) -> Sequence[Health]:
+def _nodes(client: Client) -> Sequence[NodeStatus]:
     deadline_s = time.monotonic() + 60.0
     while True:
         try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
@@ -23,7 +23,7 @@ from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import Find
 from schemas.commits import Transaction
-from schemas.entities import Pose, orientation_from_yaw
+from schemas.entities import Pose, Size, orientation_from_yaw
 from schemas.explanations import Triple
 from schemas.language import Found
 
@@ -34,7 +34,7 @@ _ENTITIES: Final = 1000
 class Tried(NamedTuple):
     """A description, what was found, and whether that is right."""
 
-    index: int
+    number: int
     asked: Mapping[str, Any]
     found: Found | str
     is_right: bool
@@ -42,7 +42,7 @@ class Tried(NamedTuple):
     @property
     def was_looked_at(self) -> bool:
         """Whether it was read while the grammar was written: every third was; of the rest only the score."""
-        return self.index % 3 == 0
+        return self.number % 3 == 0
 
 
 def tried() -> list[Tried]:
@@ -54,7 +54,7 @@ def tried() -> list[Tried]:
         with _map(_flat() if isinstance(room, str) else _room(room)) as there:
             finding = Finding(there)
             found += [_try(finding, index, description) for index, description in asked]
-    return sorted(found, key=lambda one: one.index)
+    return sorted(found, key=lambda one: one.number)
 
 
 def _try(finding: Finding, index: int, asked: Mapping[str, Any]) -> Tried:
@@ -132,6 +132,11 @@ def _room(room: list[Mapping[str, Any]]) -> list[Triple]:
     return [triple for entity in room for triple in _star(entity)]
 
 
+def _size(said: Sequence[float]) -> Size:
+    width, depth, height = map(float, said)
+    return width, depth, height
+
+
 def _star(
     entity: Mapping[str, Any], suffix: str = "", by: tuple[float, float] = (0.0, 0.0)
 ) -> Iterator[Triple]:
@@ -144,7 +149,7 @@ def _star(
             position_m=(float(x) + by[0], float(y) + by[1], float(z)),
             orientation_wxyz=orientation_from_yaw(entity["yaw"]),
         ),
-        size_m=tuple(map(float, entity["size"])),
+        size_m=_size(entity["size"]),
         preferred=entity["ref"], alternatives=tuple(entity["alt"]),
     )  # fmt: skip
     subject = v.entity_iri(name)

@@ -85,7 +85,7 @@ def tallies(
             for n, one in enumerate(stood):
                 if dealt[one.thing.name] != fold or (mask == n + 1).sum() < LEAST_PIXELS:
                     continue
-                said = None if of[n] is None else classes[of[n]]
+                said = None if (i := of[n]) is None else classes[i]
                 if one.thing.new:
                     new[outcome(said, (*one.thing.classes, UNKNOWN), learnt[fold])] += 1
                 elif one.thing.size_m[2] >= _THIN_M:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -50,7 +50,7 @@ def measure(folder: Path, tables: int, learnt: Learnt) -> list[Row]:
     lessons = _lessons(things, learnt, studio, rng)
     likely = likeness.shipped()
     knowing_all = taught(learnt, list(lessons.values()), likely)
-    alone, together, took_s = Counter[str](), Counter[str](), Counter[str]()
+    alone, together, took_s = Counter[str](), Counter[str](), defaultdict[str, float](float)
     for _ in range(tables):
         stood = _table(things, rng)
         cloud, mask = _frame(studio, stood, float(rng.uniform(*_TOGETHER_M)), rng)

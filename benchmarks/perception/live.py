@@ -12,6 +12,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from statistics import median
 from typing import NamedTuple
@@ -86,9 +87,9 @@ def new_things(folder: Path, things: int = 10) -> Latency:
             pose = Pose(position_m=(*at, _TABLE_Z + 0.002))
             body = BodyOrder(name=f"body{n}", class_="Object", model=model, pose=pose, commit=0)
             bus.ask(client.session, keys.SIM, "spawn", Spawn(bodies=(body,)), Spawned)
-            seconds.append(_until(lambda at=at: _is_there(known, at)))
+            seconds.append(_until(partial(_is_there, known, at)))
             bus.ask(client.session, keys.SIM, "delete", Delete(names=(body.name,)), Deleted)
-            _until(lambda at=at: not _is_there(known, at))
+            _until(partial(_is_gone, known, at))
         look_ms = float(_detail(client).rpartition("seen, ")[2].split(" ")[0])
     return Latency(tuple(s for s in seconds if s is not None), seconds.count(None), look_ms)
 
@@ -104,6 +105,10 @@ def _is_there(known: dict[str, Entity], at: tuple[float, float]) -> bool:
 
 def _detail(client: Client) -> str:
     return next((n.detail for n in client.status().nodes if n.node == "perception_node"), "")
+
+
+def _is_gone(known: dict[str, Entity], at: tuple[float, float]) -> bool:
+    return not _is_there(known, at)
 
 
 def _until(condition: Callable[[], bool], every_s: float = 0.01) -> float | None:

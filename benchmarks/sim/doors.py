@@ -230,7 +230,8 @@ def _told(entity: Entity) -> str:
 
 def _scene(client: Client) -> Scene:
     """The scene as it is now."""
-    return bus.ask(client.session, keys.SIM, SceneQuery.VERB, SceneQuery(), Scene)
+    scene: Scene = bus.ask(client.session, keys.SIM, SceneQuery.VERB, SceneQuery(), Scene)
+    return scene
 
 
 def agrees(entity: Entity) -> bool:

@@ -343,7 +343,8 @@ def _raise(error: errors.SemmapError) -> NoReturn:
 def read_whole(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Encoded:
     """The message of a reply that came in one, of type `kind`; raises the error that it carries."""
     whole = read_reply(key, reply, kind, timeout_s)
-    assert whole is not None
+    if whole is None:
+        raise errors.InternalError(f"{key} replied with a piece of a message")
     return whole
 
 
@@ -360,7 +361,8 @@ def read_reply(
         whole = gathered.take(piece, sample.payload)
         return None if whole is None else Encoded(whole, sample.encoding, kind)
     error = reply.err
-    assert error is not None
+    if error is None:
+        raise errors.InternalError(f"{key} replied with neither a message nor an error")
     if str(error.encoding) != _ERROR_ENCODING:
         raise TimedOut(f"{key} did not answer within {timeout_s:g} s")
     raise errors.from_message(codec.decode(error.payload.to_bytes(), errors.ErrorMessage))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from schemas import errors
 from schemas.entities import Entity
 
 
@@ -44,5 +45,6 @@ def _legacy(entity: Entity, class_iri: str) -> dict[str, Any]:
 
 
 def _xyz(entity: Entity) -> dict[str, str]:
-    assert entity.pose is not None
+    if entity.pose is None:
+        raise errors.InternalError(f"{entity.name} has no pose")
     return dict(zip("xyz", map(str, map(float, entity.pose.position_m)), strict=True))

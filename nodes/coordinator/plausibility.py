@@ -53,8 +53,10 @@ def _outside(
 
 def _is_over(place: Entity, pose: Pose) -> bool:
     """Is the pose above the place's ground?"""
-    assert place.pose is not None
-    assert place.size_m is not None
+    if place.pose is None:
+        raise errors.InternalError(f"{place.name} has no pose")
+    if place.size_m is None:
+        raise errors.InternalError(f"{place.name} has no size")
     if (extent := extent_of(place)) is not None:
         return extent.contains(pose.position_m[:2])
     dx, dy = (a - b for a, b in zip(pose.position_m[:2], place.pose.position_m[:2], strict=True))

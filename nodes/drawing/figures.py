@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from schemas import errors
 from schemas.entities import Entity, Pose, Size, angle_rad, distance_m
 from schemas.polygons import Polygon, extent_of
 from schemas.scenes import Body, Surface
@@ -45,7 +46,8 @@ def figure_of(
     if entity is None and body is None:
         return None
     if entity is None:
-        assert body is not None
+        if body is None:
+            raise errors.InternalError("a figure needs an entity or a body")
         return Figure(body.name, body.class_ or "", body.size_m, _look_of(body), surface)
     if entity.place:
         label = entity.preferred_reference or entity.name

@@ -296,12 +296,14 @@ def _route(
 
 
 def _entities(reply: tuple[Entity, ...] | dict[str, Any]) -> tuple[Entity, ...]:
-    assert isinstance(reply, tuple)
+    if not isinstance(reply, tuple):
+        raise errors.InternalError("the entities came in another format")
     return reply
 
 
 def _document(reply: tuple[Entity, ...] | dict[str, Any]) -> dict[str, Any]:
-    assert isinstance(reply, dict)
+    if not isinstance(reply, dict):
+        raise errors.InternalError("the entities came without the format that was asked for")
     return reply
 
 

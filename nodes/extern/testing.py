@@ -12,6 +12,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from nodes.extern.client import Client, connect
+from schemas import errors
 
 _READY = "stop "
 """How the last line of the greeting begins."""
@@ -36,7 +37,8 @@ def own_system(
         [*up, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     ) as process:
         try:
-            assert process.stdout is not None
+            if process.stdout is None:
+                raise errors.InternalError("the output of the system is not a pipe")
             said = []
             for line in process.stdout:
                 said.append(line)

@@ -195,7 +195,8 @@ def _authority(folder: Path) -> tuple[x509.Certificate, _Key]:
         raise errors.BadFile(f"the authority's {error.filename} cannot be read: {error.strerror}") from None
     except ValueError as error:
         raise errors.BadFile(f"the authority in {folder} is damaged: {error}") from None
-    assert isinstance(key, _Key)
+    if not isinstance(key, _Key):
+        raise errors.BadFile(f"the authority's key in {folder} is not an elliptic-curve key")
     return certificate, key
 
 

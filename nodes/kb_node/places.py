@@ -122,8 +122,10 @@ class Places:
         load: list[Edit] = []
         for name in names:
             pose = self._entities[name].pose
-            assert was is not None
-            assert pose is not None
+            if was is None:
+                raise errors.InternalError(f"{edit.name} carries others, and has no pose")
+            if pose is None:
+                raise errors.InternalError(f"{name} is carried, and has no pose")
             there = carried(pose, was, now)
             load.append(Edit(name=name, at=there.position_m, orientation=there.orientation_wxyz))
         return load

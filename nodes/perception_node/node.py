@@ -40,7 +40,7 @@ from nodes.perception_node.watching import Watching
 from nodes.runtime.following import Begun, Follower
 from nodes.runtime.loop import Node, open_node
 from nodes.runtime.map_replica import MapReplica
-from schemas import codec, keys, wording
+from schemas import codec, errors, keys, wording
 from schemas.commands import Add, Command, LastSeen
 from schemas.commits import Effects
 from schemas.entities import Size
@@ -218,7 +218,8 @@ class Perception:
 
     def _add(self, command: Add) -> None:
         """Ask first whether anything was ever called so: names were given before this process began."""
-        assert command.name is not None
+        if command.name is None:
+            raise errors.InternalError("a new thing has no name")
         asked = self._node.ask_later(keys.BRIDGE, LastSeen(name=command.name))
         asked.add_done_callback(partial(self._on_sighting, command))
 

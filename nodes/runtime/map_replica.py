@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final, Generic, TypeVar
 
 from nodes.runtime.shared_parts import SharedParts
+from schemas import errors
 from schemas.bridge import SnapshotQuery
 from schemas.commits import Commit, Effects, Snapshot
 from schemas.entities import Entity
@@ -47,7 +48,8 @@ class SnapshotPages:
     @property
     def snapshot(self) -> Snapshot:
         """All that was fetched, with the number of the first page: what came later is taken again."""
-        assert self._seq is not None
+        if self._seq is None:
+            raise errors.InternalError("no page of the map was fetched")
         return Snapshot(seq=self._seq, entities=tuple(self._entities), digest=self._digest)
 
 

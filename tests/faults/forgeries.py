@@ -24,23 +24,23 @@ from schemas.health import Health
 from schemas.replies import Changed
 from schemas.scenes import BodyOrder, Poses, Spawn, Spawned
 from tests.faults.ground import Ground, free_place, wait_for
-from tests.faults.processes import ALL, NOTICED_S, _runs, pids_of
+from tests.faults.processes import ALL, NOTICED_S, _runs, all_pids_of
 from tests.faults.table import Fault
 
 
 def health_of_nobody(ground: Ground) -> None:
     """A node that there is not says that it lives, and later says nothing."""
-    pids = pids_of(ground.data)
+    pids = all_pids_of(ground.data)
     with _stranger(ground) as session:
         session.put(keys.health_key("x"), codec.encode(_health("x", 1)))
         ground.observe(2 * NOTICED_S)
     assert ground.system.process.poll() is None
-    assert pids_of(ground.data) == pids
+    assert all_pids_of(ground.data) == pids
 
 
 def health_of_a_stopped_node(ground: Ground) -> None:
     """Forged beats do not keep a node that hangs from being replaced."""
-    pid = pids_of(ground.data)["kb_node"]
+    pid = all_pids_of(ground.data)["kb_node"]
     with (
         _stranger(ground) as session,
         _repeated(session, keys.health_key("kb_node"), _health("kb_node", pid)),

@@ -15,7 +15,7 @@ from pathlib import Path
 import psutil
 
 from tests.faults.ground import Ground, wait_for
-from tests.faults.processes import pids_of
+from tests.faults.processes import all_pids_of
 from tests.faults.table import Fault
 
 _BIN = Path(sys.executable).parent
@@ -27,7 +27,7 @@ _SPARE_BYTES = 4 << 20
 def disk_full(ground: Ground) -> None:
     """Commits are refused, `status` says so, and they go on when there is room."""
     ground.may_be_refused = "could not be written"
-    pid = pids_of(ground.data)["kb_node"]
+    pid = all_pids_of(ground.data)["kb_node"]
     largest = max(path.stat().st_size for path in ground.data.glob("journal.sqlite*"))
     refused = len(ground.load.refused)
     with _limited(pid, resource.RLIMIT_FSIZE, largest):
@@ -37,13 +37,13 @@ def disk_full(ground: Ground) -> None:
             "the status says that it is full",
         )
         ground.observe(_GIVEN_OUT_S)
-    assert pids_of(ground.data)["kb_node"] == pid
+    assert all_pids_of(ground.data)["kb_node"] == pid
 
 
 def no_memory(ground: Ground) -> None:
     """What takes memory that there is not is answered as an error, or the node is started again."""
     ground.may_be_refused = ""
-    pid = pids_of(ground.data)["kb_node"]
+    pid = all_pids_of(ground.data)["kb_node"]
     with (
         contextlib.suppress(ProcessLookupError),
         _limited(pid, resource.RLIMIT_AS, psutil.Process(pid).memory_info().vms + _SPARE_BYTES),

@@ -19,6 +19,8 @@ from schemas.commits import NewEntity, Statement, Transaction
 from schemas.entities import Pose, orientation_from_yaw
 from tests.kb_node import home
 
+pytestmark = pytest.mark.process  # a large commit of a map starts one
+
 MANY = 120
 CLASSES = ("Table", "Cup", "Book", "Tray", "Fridge", "Kitchen")
 DIES = [sys.executable, "-c", "raise SystemExit(9)"]

@@ -81,7 +81,8 @@ class Frames:
     def _in_frame(self, command: Framed, handle: Callable[[Any], Any]) -> Any:
         """In its turn: a frame is where the commands before this one have left it."""
         word = command.frame
-        assert word is not None
+        if word is None:
+            raise errors.InternalError("a command without a frame was to be converted")
 
         def answer(tree: Tree) -> Any:
             try:

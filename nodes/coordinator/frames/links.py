@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 from nodes.coordinator.frames.tree import Link
-from schemas import wording
+from schemas import errors, wording
 from schemas.entities import Entity, Live, Pose, relative
 from schemas.frames import MAP, FrameSource
 from schemas.scenes import Body, CameraPose
@@ -54,7 +54,8 @@ class EntityLinks:
         above = self._stand(whole).pose if stand.source != "map" else whole.pose
         if above is None:
             above = whole.pose
-        assert above is not None
+        if above is None:
+            raise errors.InternalError(f"{whole.name} is the parent of a frame, and has no pose")
         pose = relative(stand.pose, above)
         return Link(whole.name, pose, stand.source, stand.age_s, stand.stale, stand.problem)
 

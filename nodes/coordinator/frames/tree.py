@@ -53,7 +53,8 @@ class Tree:
         """
         pose = ORIGIN
         for _, link in self._chain(name):
-            assert link.pose is not None
+            if link.pose is None:
+                raise errors.InternalError(f"a frame above {name} has no pose")
             pose = compose(link.pose, pose)
         return pose
 

@@ -21,6 +21,7 @@ from collections.abc import Container, Mapping, Set
 from typing import NamedTuple
 
 from nodes.coordinator.config import Thresholds, Truth
+from schemas import errors
 from schemas.entities import Entity, Pose, angle_rad, distance_m
 from schemas.grips import grip_of, holder_of
 from schemas.joints import (
@@ -180,7 +181,8 @@ def order(entity: Entity, pose: Pose) -> BodyOrder:
 
 def _placement(entity: Entity) -> Placement:
     """A body is put where the map says that the entity stands."""
-    assert entity.pose is not None
+    if entity.pose is None:
+        raise errors.InternalError(f"{entity.name} has no pose")
     return Placement(name=entity.name, pose=entity.pose, commit=entity.pose_provenance.commit)
 
 

@@ -21,7 +21,8 @@ _VARIABLE = "_SEMMAP_COMPLETE"
 def script(app: click.Command, shell: str) -> str:
     """What a shell must evaluate so that it completes `semmap`."""
     found = get_completion_class(shell)
-    assert found is not None
+    if found is None:
+        raise errors.InternalError(f"no completion for the shell '{shell}'")
     return found(app, {}, "semmap", _VARIABLE).source()
 
 

@@ -12,6 +12,7 @@ from typing import Any, Final, NamedTuple
 from nodes.extern.fleet import facts as f
 from nodes.extern.fleet.facts import Facts
 from nodes.extern.fleet.frames import Frame
+from schemas import errors
 from schemas.bridge import CopyQuery, MapCopy, Recall
 from schemas.calls import Call
 from schemas.commits import Commit
@@ -50,8 +51,10 @@ def catch_up(
         return None
     reason, same_map = _reason(ask, head, copy, frame, far)
     if not reason:
-        assert copy is not None
-        assert copy.commit is not None
+        if copy is None:
+            raise errors.InternalError("a map that was never copied cannot be continued")
+        if copy.commit is None:
+            raise errors.InternalError("a map that was never copied cannot be continued")
         commits = _recalled(ask, copy.commit, head.seq)
         if commits is not None:
             return Continued(commits)

@@ -14,6 +14,7 @@ from nodes.extern.fleet import facts as f
 from nodes.extern.fleet.catching_up import Anew, Continued
 from nodes.extern.fleet.facts import Facts
 from nodes.extern.fleet.updates import Change
+from schemas import errors
 from schemas.commits import Commit
 
 MOST_AHEAD: Final = 5000
@@ -96,7 +97,8 @@ class Following:
             commit = self._next[seq]
             change.take(commit)
             seq += 1
-        assert commit is not None
+        if commit is None:
+            raise errors.InternalError("there is no commit to write")
         return change, structs.replace(
             facts, commit=commit.seq, digest=commit.digest, stamp=f.iso(commit.stamp_ns)
         )

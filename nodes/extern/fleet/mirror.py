@@ -313,7 +313,8 @@ class Mirror:
         """Write a robot's whole map, in one request if it is small."""
         following = robot.following
         anew, before = following.copying, following.facts
-        assert anew is not None
+        if anew is None:
+            raise errors.InternalError(f"there is no copy of the map of {robot.name} to write")
         wanted = structs.replace(anew.facts, copying=os.urandom(8).hex())
         operations = list(updates.copying(before, wanted, anew.whole))
         small = len(anew.whole.triples) <= 2 * updates.CHUNK

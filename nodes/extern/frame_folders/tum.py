@@ -15,6 +15,7 @@ from nodes.extern.frame_folders.pairs import pairs
 from nodes.extern.frame_folders.pinhole import of_centres, read_pinhole, scaled
 from nodes.extern.frame_folders.poses import Trajectory
 from nodes.perception_node.input.files.image_files import is_depth, opened
+from schemas import errors
 from schemas.errors import BadFile, BadRequest, SemmapError
 
 _COLOUR, _DEPTH, _POSES = "rgb", "depth", "groundtruth.txt"
@@ -120,7 +121,8 @@ def _camera(
         )
         whence, of_size = str(intrinsics), camera.size
     else:
-        assert told is not None
+        if told is None:
+            raise errors.InternalError("the calibration of the camera is unknown")
         matrix, scale_m, whence = of_centres(*_CALIBRATED[told[1]]), _SCALE_M, f"TUM's freiburg{told[1]}"
         of_size = _SIZE
 

@@ -53,7 +53,8 @@ def film(journal: Journal, file: Path, wanted: Film, tell: Callable[[str], None]
     stage = FilmSet(wanted.world, models=wanted.models, data=wanted.data, graphics=wanted.graphics)
     with _opened(file) as container:
         stream = container.add_stream("libx264", rate=Fraction(wanted.fps), options=_QUALITY)
-        assert isinstance(stream, av.VideoStream)
+        if not isinstance(stream, av.VideoStream):
+            raise errors.InternalError("libx264 did not give a video stream")
         (stream.width, stream.height), stream.pix_fmt = wanted.even_size, "yuv420p"
         view: View | None = None
         for number, scene in enumerate(board, start=1):
@@ -94,7 +95,8 @@ def _pictures(stage: FilmSet, scene: Scene, view: View, fps: int) -> Iterator[tu
 
 
 def _order(entity: Entity) -> BodyOrder:
-    assert entity.pose is not None
+    if entity.pose is None:
+        raise errors.InternalError(f"{entity.name} has no pose")
     return BodyOrder(
         name=entity.name,
         class_=entity.class_,

@@ -11,7 +11,7 @@ from msgspec import Struct
 
 from nodes.extern.phrasing import author, changed_in_short
 from nodes.runtime import rhythm
-from schemas import wording
+from schemas import errors, wording
 from schemas.commits import Commit
 from schemas.entities import Entity, Pose
 
@@ -86,7 +86,8 @@ def _of_commit(commit: Commit, there: dict[str, Entity], seconds: float) -> Scen
             add.append(entity)
             labels[entity.name] = f"{entity.name} is added"
             continue
-        assert entity.pose is not None
+        if entity.pose is None:
+            raise errors.InternalError(f"{entity.name} has no pose")
         if (was.model, was.size_m, was.fixed) != (entity.model, entity.size_m, entity.fixed):
             add.append(entity)
         elif was.pose != entity.pose:

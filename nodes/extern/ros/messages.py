@@ -12,6 +12,7 @@ from nodes.drawing.palette import colour_of
 from nodes.extern.ros.things import Thing, header, middle, pose_of, time_of, transform_of, vector
 from nodes.extern.ros.types import new
 from nodes.navigation.grid import OccupancyGrid
+from schemas import errors
 from schemas.entities import Pose
 from schemas.frames import MAP
 from schemas.scenes import Surface
@@ -162,7 +163,8 @@ def _is_solid(thing: Thing) -> bool:
 
 
 def _obstacle(thing: Thing, surface: Surface | None, at: Moment) -> Any:
-    assert thing.size_m is not None
+    if thing.size_m is None:
+        raise errors.InternalError(f"{thing.name} has no size")
     what = new("object_recognition_msgs/msg/ObjectType", key=thing.class_)
     shape: dict[str, Any]
     if surface is None:

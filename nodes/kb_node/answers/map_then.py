@@ -21,6 +21,7 @@ from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
 from ontology import prefixes
 from ontology import vocabulary as v
+from schemas import errors
 from schemas.commands import Export, Sparql
 from schemas.entities import Entity
 from schemas.explanations import Triple
@@ -76,7 +77,8 @@ def export_then(journal: Journal, past: Past, query: Export) -> Document:
     With `inferred` what followed and was measured then is worked out again, by the rules of today. Raises
     Refused when there was no map; BadRequest for what is no moment.
     """
-    assert query.as_of is not None
+    if query.as_of is None:
+        raise errors.InternalError("the question names no moment")
     seq = past.commit_at(query.as_of)
     if query.inferred:
         held = _held(journal, past, seq, asserted_after(journal, seq))
@@ -104,7 +106,8 @@ def ask_then(journal: Journal, past: Past, query: Sparql) -> SparqlResult:
 
     Raises the query's error; Refused when there was no map, BadRequest for what is no moment.
     """
-    assert query.as_of is not None
+    if query.as_of is None:
+        raise errors.InternalError("the question names no moment")
     then = map_then(journal, past, past.commit_at(query.as_of), inferred=query.inferred)
     service = SparqlService(
         lambda: then.asserted,

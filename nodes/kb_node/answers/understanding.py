@@ -70,7 +70,8 @@ class Understanding:
         if self._classes is not self._map.classes:
             self._classes, self._scene = self._map.classes, None
             self._vocabulary = _named(self._map.classes, self._lexicon)
-        assert self._vocabulary is not None
+        if self._vocabulary is None:
+            raise errors.InternalError("the vocabulary of the map was not read")
         if self._scene is None or self._scene[0] != self._map.seq:
             things = map(_thing, self._map.entities())
             self._scene = (self._map.seq, scene(things, self._vocabulary, self._lexicon))

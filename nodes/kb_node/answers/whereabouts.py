@@ -120,7 +120,8 @@ class Now:
             if name not in space.solids:
                 raise errors.Refused(f"{name} has no position, so it is in no relation to anything")
         seen = explained(space, ends[0], relation, ends[1])
-        assert seen is not None
+        if seen is None:
+            raise errors.InternalError(f"the relation '{relation}' is not computed")
         if not seen.holds:
             raise errors.Refused(seen.text)
         return Explanation(conclusion=None, support=(), steps=(), text=seen.text)
@@ -206,7 +207,8 @@ class Then:
 
     def entities(self, query: Entities) -> tuple[Entity, ...]:
         """See `Now.entities`."""
-        assert query.as_of is not None
+        if query.as_of is None:
+            raise errors.InternalError("the question names no moment")
         found = self._past.entities(query.as_of, query.class_, tuple(self._map.classes.iris))
         if query.where is None:
             return found
@@ -215,7 +217,8 @@ class Then:
 
     def entity(self, query: Get) -> Described:
         """See `Now.entity`; what was wrongly said is not looked for."""
-        assert query.as_of is not None
+        if query.as_of is None:
+            raise errors.InternalError("the question names no moment")
         entity = self._past.entity(query.name, query.as_of)
         if not query.where:
             return Described.of(entity)
@@ -225,7 +228,8 @@ class Then:
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """See `Now.relations`."""
-        assert query.as_of is not None
+        if query.as_of is None:
+            raise errors.InternalError("the question names no moment")
         everyone = self._past.entities(query.as_of, None, ())
         there = {entity.name: entity for entity in everyone}
         named = _named(query, there.get, lambda: everyone)

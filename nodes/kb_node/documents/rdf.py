@@ -203,7 +203,8 @@ def serialise(
         return lines
     quads = pyoxigraph.parse(lines, pyoxigraph.RdfFormat.N_TRIPLES)
     document = pyoxigraph.serialize(quads, format=_SYNTAX[syntax], prefixes=dict(prefixes))
-    assert document is not None
+    if document is None:
+        raise errors.InternalError("the triples were not serialized")
     if syntax == "jsonld":
         return json.dumps(json.loads(document), indent=1, ensure_ascii=False).encode()
     return _as_xml(document) if syntax == "rdfxml" else document

@@ -72,7 +72,8 @@ def read_entity(
     if classes.alignments and iri.startswith("_:"):
         return None  # a part that somebody describes without naming it: nobody could ask for it
     kind = classes.kind(types, frozenset(said.get(v.RDF_TYPE, ())))
-    assert kind is not None
+    if kind is None:
+        raise errors.InternalError(f"{iri} is a spatial individual without a class")
     pose, size_m = read_place(about, classes, iri)
     preferred = _references(about, said.get(v.HAS_PREFERRED_REFERENCE, ()))
     if classes.alignments:

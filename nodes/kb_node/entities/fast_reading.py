@@ -15,6 +15,7 @@ from nodes.kb_node.entities.class_table import ClassTable, Kind
 from nodes.kb_node.entities.entity_reading import entity_of
 from nodes.kb_node.reasoner import Alike, Form, Reasoner
 from ontology import vocabulary as v
+from schemas import errors
 from schemas.entities import REACH_M, Entity, Pose, Provenance
 from schemas.explanations import Term
 
@@ -144,7 +145,8 @@ def _pattern(form: Form, star: _Star, reasoner: Reasoner, classes: ClassTable) -
     if said.is_out_of_the_ordinary or said.speaks(classes.first_words) or said.speaks(_EXTENT):
         return None
     kind = classes.kind(entity, frozenset(said.classes))
-    assert kind is not None
+    if kind is None:
+        raise errors.InternalError("a spatial individual has no class")
     try:
         coordinates, size = said.node(v.HAS_POSITION), said.node(v.HAS_SIZE)
         return Pattern(

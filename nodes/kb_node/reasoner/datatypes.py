@@ -188,7 +188,7 @@ def contains(datatype: Term, term: Term) -> bool:
     kind, key = found
     name = datatype[1:-1].removeprefix(_XSD)
     if kind == "decimal":
-        return name == "decimal" or (name in _INTEGERS and _in_range(key, name))
+        return name == "decimal" or (name in _INTEGERS and isinstance(key, Fraction) and _in_range(key, name))
     if kind == "text":
         text, language = key
         if language:
@@ -265,9 +265,8 @@ def _integer(text: str, name: str) -> Value | None:
     return ("decimal", number)
 
 
-def _in_range(number: Hashable, name: str) -> bool:
+def _in_range(number: Fraction, name: str) -> bool:
     low, high = _INTEGERS[name]
-    assert isinstance(number, Fraction)
     if number.denominator != 1:
         return False
     return (low is None or number >= low) and (high is None or number <= high)

@@ -179,7 +179,8 @@ class Lanes:
             beyond = self._taking_long(time.monotonic())[AT_LENGTH:]
             for lane in beyond[: len(self._waiting)]:
                 query, lane.query, lane.is_closing = lane.query, None, True
-                assert query is not None
+                if query is None:
+                    raise errors.InternalError("a lane that takes long has no query")
                 query.was_set_aside = True
                 self._set_aside.put(query.asker, query)
                 self._send(Dismiss(lane=lane.number), None)

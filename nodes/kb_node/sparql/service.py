@@ -185,7 +185,8 @@ class SparqlService:
                 self._take_over(*kept)
 
     def _fill(self, commit: Commit | None = None) -> None:
-        assert self._large is not None
+        if self._large is None:
+            raise errors.InternalError("only a large map has a store of its own")
         since: list[Delta] = []
         self._since_filling = since
 

@@ -203,7 +203,8 @@ def main(node: Connection, lanes: Sequence[Connection]) -> None:
                 if ready is node:
                     worker.take(to_worker.decode(node.recv_bytes()))
                 else:
-                    assert isinstance(ready, Connection)
+                    if not isinstance(ready, Connection):
+                        raise errors.InternalError("the SPARQL process waits for connections only")
                     worker.done(ready)
             worker.lookout.go_on()
     except (EOFError, ConnectionError, KeyboardInterrupt):

@@ -47,7 +47,8 @@ def find(text: str, known: Known, around: Surroundings, asker: str | None = None
             best = rank, made
         if rank == 0:
             break
-    assert best is not None
+    if best is None:
+        raise errors.InternalError("a phrase has no reading at all")
     return best[1]
 
 

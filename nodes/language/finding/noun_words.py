@@ -19,6 +19,7 @@ from nodes.language.finding.description import (
     Unknown,
 )
 from nodes.language.finding.reading import Reading
+from schemas import errors
 
 _BOUNDS: Final = (
     *("relations", "relative", "where", "be", "have", "lack", "not", "except", "no", "and", "or", "of"),
@@ -166,7 +167,8 @@ class NounWords:
             else:
                 start, stop = min(spans, key=lambda span: (span[0], span[0] - span[1]))
             sense = self._sense(f"noun{stop - start}", start)
-            assert sense is not None
+            if sense is None:
+                raise errors.InternalError("a word that was recognised has no meaning")
             draft.head, draft.key, draft.noun = "noun", sense[1], self._said(start, stop)
             self._say_number(draft, stop - 1 if is_last else start)
             return start, stop
@@ -228,7 +230,8 @@ class NounWords:
             draft.restrictions.append(Unknown(self._words[i]))
             return i + 1
         sense = self._sense(best, i)
-        assert sense is not None
+        if sense is None:
+            raise errors.InternalError("a word that was recognised has no meaning")
         length, value = sense
         said = self._said(i, i + length)
         match best:

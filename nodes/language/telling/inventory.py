@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import Final, Literal
 
 from nodes.language import nouns
+from schemas import errors
 
 How = Literal["on", "in", "round"]
 """How a thing is at another that bears or holds it, or that it stands round."""
@@ -170,7 +171,8 @@ class Inventory:
         by_how: dict[How, list[Thing]] = {}
         for name in names:
             for thing in self._above.get(name, ()):
-                assert thing.at is not None
+                if thing.at is None:
+                    raise errors.InternalError(f"{thing.name} is on another thing, and has no place")
                 by_how.setdefault(thing.at[0], []).append(thing)
         return {how: self._groups(by_how[how]) for how in HOWS if how in by_how}
 

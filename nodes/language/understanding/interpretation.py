@@ -28,6 +28,7 @@ from nodes.language.understanding.grounding import Scene, Thing, Things
 from nodes.language.understanding.referents import Referents, Resolve
 from nodes.language.understanding.sentence import Sentence, sentence
 from nodes.language.words import PartOfSpeech, split
+from schemas import errors
 from schemas.language import Argument, Frame, Grounded, Language, Understood
 
 _LEAST: Final = 0.05  # a frame less probable than this is not looked at
@@ -133,7 +134,8 @@ class Interpreter:
             )
             if best is None or score > best[0]:
                 best = (score, name, labels)
-        assert best is not None
+        if best is None:
+            raise errors.InternalError("no frame was tried")
         return best[1], _spans(best[2])
 
 

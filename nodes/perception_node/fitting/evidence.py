@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 from nodes.perception_node.fitting.model_surfaces import ModelSurface
 from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.views.boxes import Numbers
+from schemas import errors
 
 _FACING = 0.25
 """What is seen at a flatter angle than this (cosine) is left out: there depth is not to be relied on."""
@@ -59,7 +60,8 @@ def not_seen_through(
 
 def _gaps(points: Numbers, whole: Numbers, cloud: Cloud, within_m: float) -> NDArray[np.float64]:
     """How far behind the points (camera frame) that are not hidden by the model itself something was seen."""
-    assert cloud.intrinsics is not None
+    if cloud.intrinsics is None:
+        raise errors.InternalError("the intrinsics of the camera are unknown")
     height, width = cloud.points_camera.shape[:2]
     whole = whole[whole[:, 2] > _NEAREST_M]
     if not len(points):

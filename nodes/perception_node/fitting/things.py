@@ -17,6 +17,7 @@ from nodes.perception_node.recognition.shipped_votes import UNKNOWN
 from nodes.perception_node.views.boxes import Numbers
 from nodes.perception_node.views.segmented_view import Sight
 from nodes.perception_node.views.segments import map_points
+from schemas import errors
 from schemas.entities import Pose, Size
 from schemas.perception import Observation
 
@@ -38,7 +39,8 @@ def points_of(number: int, clouds: Sequence[Cloud], found: Look) -> Numbers:
     """(N, 3) what clouds, `posed`, show of the n-th thing of a look, counted from 1; map frame [m]."""
     seen = []
     for cloud, labels in zip(clouds, found.labels, strict=True):
-        assert cloud.map_from_camera is not None
+        if cloud.map_from_camera is None:
+            raise errors.InternalError("the pose of the camera is unknown")
         points = map_points(
             replace(cloud, points_camera=cloud.points_camera[labels == number]), cloud.map_from_camera
         )

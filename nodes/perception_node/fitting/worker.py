@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from nodes.perception_node.fitting.fit import Fit
 from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.pipeline import Look
+from schemas import errors
 from schemas.entities import Pose
 from schemas.perception import Observation
 
@@ -78,7 +79,8 @@ class FitWorker:
                 if self._stopping:
                     return
                 request = self._request
-            assert request is not None
+            if request is None:
+                raise errors.InternalError("there is nothing to fit")
             found = None
             try:
                 found = self._fit(request)

@@ -34,6 +34,7 @@ from nodes.perception_node.tracking.occupancy import OccupancyOf
 from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, left_behind, share
 from nodes.perception_node.tracking.tracks import Track, Tracks, slack_m
 from nodes.perception_node.tracking.votes import Votes
+from schemas import errors
 from schemas.commands import Add, Command
 from schemas.entities import Entity, Size, distance_m, free_name
 from schemas.perception import Observation
@@ -120,7 +121,8 @@ def associate(
 
 def renamed(tracks: Tracks, add: Add, entities: Iterable[str]) -> tuple[Tracks, Add]:
     """Another name for a new thing, whose name turns out to have been given before this memory began."""
-    assert add.name is not None
+    if add.name is None:
+        raise errors.InternalError("a new thing has no name")
     name = free_name(add.class_, tracks.names.union(entities))
     known = {name if old == add.name else old: track for old, track in tracks.known.items()}
     tracks = replace(tracks, known=known, names=tracks.names | {name})
@@ -134,7 +136,8 @@ def _candidate(
 
     What the process before this one believed of perception's own is remembered by the map.
     """
-    assert entity.pose is not None
+    if entity.pose is None:
+        raise errors.InternalError(f"{entity.name} has no pose")
     usual_m = classes.usual_m.get(entity.class_)
     own = entity.shape_provenance.source == "perception"
     if track is None:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.input.cloud import Cloud, Transform
+from schemas import errors
 from schemas.entities import Pose, Size
 
 Occupancy = Literal["free", "occupied", "unknown"]
@@ -47,7 +48,8 @@ def _occupancy(clouds: Sequence[Cloud], pose: Pose, size_m: Size) -> Occupancy:
 
 
 def _occupancy_by(cloud: Cloud, pose: Pose, size_m: Size) -> Occupancy:
-    assert cloud.intrinsics is not None
+    if cloud.intrinsics is None:
+        raise errors.InternalError("the intrinsics of the camera are unknown")
     camera_from_box = np.linalg.inv(_pose_of(cloud)) @ _map_from_box(pose, size_m)
     half = np.array([size_m[0] * _SHRINK, size_m[1] * _SHRINK, size_m[2]]) / 2.0
     rows, columns = _pixels(cloud, camera_from_box, half)
@@ -85,7 +87,8 @@ def _pixels(
     nothing = np.empty(0, np.intp)
     if corners[:, 2].min() < _NEAREST_M:
         return nothing, nothing
-    assert cloud.intrinsics is not None
+    if cloud.intrinsics is None:
+        raise errors.InternalError("the intrinsics of the camera are unknown")
     pixels = corners @ cloud.intrinsics.T
     pixels = pixels[:, :2] / pixels[:, 2:]
     low, high = pixels.min(axis=0), pixels.max(axis=0)

@@ -19,6 +19,7 @@ from scipy.spatial import KDTree
 from nodes.perception_node.input.cloud import Cloud, Transform
 from nodes.perception_node.views.segmented_view import Sight
 from nodes.perception_node.views.segments import Segment
+from schemas import errors
 
 MOST_SEGMENTS = 100
 """So many are remembered at most, those that were seen last."""
@@ -138,7 +139,8 @@ def _looked_up(
     points: NDArray[np.float32], cloud: Cloud, pose: Transform, labels: NDArray[np.int32]
 ) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
     """Which map points (N, 3) a camera does not see, nor look through; the labels of those on a surface."""
-    assert cloud.intrinsics is not None
+    if cloud.intrinsics is None:
+        raise errors.InternalError("the intrinsics of the camera are unknown")
     height, width = labels.shape
     camera = (points - pose[:3, 3].astype(np.float32)) @ pose[:3, :3].astype(np.float32)
     ahead = camera[:, 2] > 0.1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from nodes.sim_node.models.parts import Floats, Part, Shape, rotation_matrix
 from ontology.model_shapes import ConvexPart, Corner
+from schemas import errors
 
 
 def convex_part(part: Part) -> ConvexPart:
@@ -33,6 +34,7 @@ def _hull(part: Part) -> Floats:
     """The corners of a mesh's hull: (N, 3) [m]."""
     from scipy.spatial import ConvexHull
 
-    assert part.mesh is not None
+    if part.mesh is None:
+        raise errors.InternalError("the part is not a mesh")
     corners: Floats = part.mesh.vertices[ConvexHull(part.mesh.vertices).vertices]
     return corners

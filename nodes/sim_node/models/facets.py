@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from nodes.sim_node.models.library import Model
 from nodes.sim_node.models.parts import Floats, Joint, Part, Role, Shape, rotation_matrix
+from schemas import errors
 from schemas.scenes import Leaf, Surface
 
 _SLICES = 14
@@ -121,7 +122,8 @@ def _box() -> Facets:
 
 def _flat(part: Part) -> Facets:
     """A mesh, each triangle with corners of its own."""
-    assert part.mesh is not None
+    if part.mesh is None:
+        raise errors.InternalError("the part is not a mesh")
     corners = part.mesh.vertices[part.mesh.faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)

@@ -22,6 +22,7 @@ from nodes.sim_node.models.convex_parts import convex_part
 from nodes.sim_node.models.library import Model
 from nodes.sim_node.models.parts import Floats, Part, Role, Shape, rotation_matrix
 from ontology.model_shapes import Interior, LeafShape, ModelShape, Surface
+from schemas import errors
 
 CELLS = 64
 """Cells along the longer side of the footprint."""
@@ -364,7 +365,8 @@ def _hull(part: Part, origin: Floats, up: Floats) -> tuple[Floats, Floats]:
     """A mesh collides as its convex hull: the planes of the hull cut each line."""
     from scipy.spatial import ConvexHull
 
-    assert part.mesh is not None
+    if part.mesh is None:
+        raise errors.InternalError("the part is not a mesh")
     planes = ConvexHull(part.mesh.vertices).equations
     enter, leave = np.full(origin.shape[:2], -np.inf), np.full(origin.shape[:2], np.inf)
     for *normal, offset in planes:

@@ -41,7 +41,8 @@ def learn_likeness(samples: Samples, kept: int, seed: int = 0) -> Likeness:
     own = np.array([foreign_class(kind) is None for kind in samples.kind])
     samples = samples[small & own]
     views = np.concatenate([samples.geometry, samples.shape, samples.colour], axis=1)
-    assert views.shape[1] == WIDTH, "the columns of likeness.py are not those of features.py"
+    if views.shape[1] != WIDTH:
+        raise ValueError("the columns of likeness.py are not those of features.py")
     pairs = np.array(list(_pairs(samples, views, kept, np.random.default_rng(seed))))
     rows = Rows(signs(views[pairs[:, 0]], views[pairs[:, 1]]), pairs[:, 2] == 1, np.ones(len(pairs)))
     story = f"{len(pairs)} pairs of views, {rows.one.sum()} of the same thing"

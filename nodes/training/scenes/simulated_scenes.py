@@ -84,7 +84,8 @@ def tinted(item: Item) -> Model:
     kind = MODELS.get(item.kind)
     x, y, z = item.size_m
     form = item.form or (kind and kind.parts)
-    assert form is not None, item.kind
+    if form is None:
+        raise ValueError(f"{item.kind} has no form")
     return assemble(item.kind, form(x, y, z, item.colour), kind.mass_kg if kind else _MASS_KG)
 
 

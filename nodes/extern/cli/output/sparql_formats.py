@@ -116,7 +116,8 @@ def _turtle(result: SparqlResult) -> str:
 
     triples = ox.parse(lines, ox.RdfFormat.N_TRIPLES)
     document = ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=_prefixes(result))
-    assert document is not None
+    if document is None:
+        raise errors.InternalError("the triples were not serialized")
     return document.decode()
 
 

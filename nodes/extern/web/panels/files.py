@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import time
-from typing import Final, get_args
+from typing import Final
 
 from nicegui import events, ui
 
@@ -32,7 +32,6 @@ _FORMATS: Final[dict[RdfFormat, str]] = {
 _ENDINGS: Final[dict[RdfFormat, str]] = {
     "turtle": "ttl", "rdfxml": "rdf", "ntriples": "nt", "jsonld": "jsonld"
 }  # fmt: skip
-assert set(_FORMATS) == set(get_args(RdfFormat))
 
 
 def files(page: Page) -> None:
@@ -152,7 +151,8 @@ class _Loading:
             await self._try()
 
     async def _try(self) -> None:
-        assert self._tried is not None
+        if self._tried is None:
+            raise errors.InternalError("no file was uploaded")
         self._tried = Load(
             content=self._tried.content,
             filename=self._tried.filename,

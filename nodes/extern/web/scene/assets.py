@@ -40,7 +40,8 @@ class Assets:
             return known
         look, model, size_m, bends = key
         surface = self.surface_of(model, size_m, bends)
-        assert surface is not None
+        if surface is None:
+            raise errors.InternalError(f"the model '{model}' is unknown")
         made = glb(surface, look)
         if not bends:  # ways to stand open are many
             self._glbs[key] = made

@@ -12,6 +12,7 @@ from nodes.drawing.palette import colour_of
 from nodes.drawing.sheets import triangles_of
 from nodes.extern.web.scene.marks import Written
 from nodes.extern.web.scene.meshes import cube, glb, linear, srgb
+from schemas import errors
 from schemas.entities import Entity
 from schemas.polygons import Polygon, extent_of
 from schemas.scenes import Surface
@@ -141,7 +142,8 @@ def _is_around(place: Entity, places: Iterable[Entity]) -> bool:
 
 
 def _written(place: Entity) -> Written:
-    assert place.pose is not None
+    if place.pose is None:
+        raise errors.InternalError(f"{place.name} has no pose")
     return _called(place).upper(), place.pose.position_m
 
 

@@ -315,7 +315,8 @@ class TabScene:
         for found in drawn(self.page.differences):
             rgb, size_m = _CHANGED[found.mark], self._known_size_of(found.name) or found.size_m
             at = found.then or found.now
-            assert at is not None
+            if at is None:
+                raise errors.InternalError(f"{found.name} has a pose neither now nor then")
             pieces.append((edges_of(at, size_m), rgb))
             if found.then is not None and found.now is not None:
                 pieces.append((edges_of(found.now, size_m), rgb))

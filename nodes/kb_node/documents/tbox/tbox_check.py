@@ -52,7 +52,8 @@ def check(named: Sequence[Path], imports: Mapping[str, Path], spatial_root: Sequ
     unsatisfiable = list(_unsatisfiable(reasoner, classes))
     allowed = [class_ for class_, why in unsatisfiable if not why]
     for empty in empty_classes(reasoner, allowed, _PATIENCE_S):
-        assert empty.conclusion is not None
+        if empty.conclusion is None:
+            raise errors.InternalError("an empty class has no conclusion")
         unsatisfiable.append((empty.conclusion[0], empty.text))
     wrong = {class_ for class_, why in unsatisfiable if why}
     quickness = Quickness(

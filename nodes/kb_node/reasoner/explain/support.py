@@ -267,5 +267,6 @@ class Support:
 
 
 def _known(value: _T | None) -> _T:
-    assert value is not None
+    if value is None:
+        raise LookupError("what was concluded has no reason")
     return value

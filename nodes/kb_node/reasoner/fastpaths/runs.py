@@ -177,7 +177,8 @@ class Runs:
         if first in numbers or len(words) > _LONGEST:
             return Run(None, run, tuple(places), tuple(others), ())
         kinds = self.kinds_of(others)
-        assert kinds is not None
+        if kinds is None:
+            raise LookupError("a run mentions what is neither a literal nor known")
         return Run(self._form(tuple(words)), run, tuple(places), tuple(others), kinds)
 
     def kinds_of(self, terms: Iterable[Term]) -> tuple[Kind, ...] | None:

@@ -14,6 +14,7 @@ from nodes.kb_node.relations.geometry.fitting import fitted
 from nodes.kb_node.relations.geometry.lazily import lazily
 from nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, opened
 from ontology.model_shapes import ModelShape
+from schemas import errors
 from schemas.entities import IDENTITY, Quaternion, Size, Vector
 from schemas.polygons import Polygon, read_wkt
 
@@ -220,13 +221,15 @@ class Expanse(Form):
     @lazily
     def outline(self) -> list[Point]:
         """The convex hull of what it covers."""
-        assert self.region is not None
+        if self.region is None:
+            raise errors.InternalError("the solid has no region")
         return hull([point for piece in self.region.pieces for point in piece.corners])
 
     @lazily
     def footprint(self) -> float:
         """Of what it covers [m^2]."""
-        assert self.region is not None
+        if self.region is None:
+            raise errors.InternalError("the solid has no region")
         return self.region.area
 
     @lazily

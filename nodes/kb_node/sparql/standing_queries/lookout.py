@@ -211,7 +211,8 @@ class Lookout:
 
     def _finish(self) -> None:
         look, self._looking = self._looking, None
-        assert look is not None
+        if look is None:
+            raise errors.InternalError("no standing query is being evaluated")
         try:
             result = self._result()
         except errors.SemmapError as error:
@@ -229,7 +230,8 @@ class Lookout:
 
     def _result(self) -> SparqlResult:
         """What the reader found. Raises the query's error, also that the reader died of it."""
-        assert self._on_duty is not None
+        if self._on_duty is None:
+            raise errors.InternalError("no reader evaluates a standing query")
         try:
             outcome = outcomes.decode(self._on_duty.lane.recv_bytes())
         except (EOFError, OSError):

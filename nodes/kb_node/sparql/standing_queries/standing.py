@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from nodes.kb_node.sparql.triples.dataset import Delta
+from schemas import errors
 from schemas.commands import Watch
 from schemas.sparql import Row, RowsChanged
 
@@ -36,7 +37,8 @@ class Standing:
         # rdflib's parser takes longer to load than all else that the first look-up waits for
         from nodes.kb_node.sparql.queries.footprint import footprint
 
-        assert command.query is not None
+        if command.query is None:
+            raise errors.InternalError("a standing query has no text")
         return cls(
             watch=name,
             query=command.query,

@@ -60,8 +60,10 @@ class StoreFiller:
             command += [self._base, PACKED] if is_packed(self._turtle) else [self._base]
         with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
             self._process = process
-            assert process.stdin is not None
-            assert process.stdout is not None
+            if process.stdin is None:
+                raise errors.InternalError("the input of the filling process is not a pipe")
+            if process.stdout is None:
+                raise errors.InternalError("the output of the filling process is not a pipe")
             sent = 0
             for piece in pieces:
                 if not self._is_wanted:

@@ -51,7 +51,8 @@ def _made(file: Path, new: Path, tell: Callable[[str], None]) -> tuple[Opening, 
     seed.remove(new)
     rows = backups.read(file)
     opening = next(rows)
-    assert isinstance(opening, Opening)
+    if not isinstance(opening, Opening):
+        raise errors.BadFile(f"{file} does not begin with the opening of a backup")
     try:
         with closing(sqlite3.connect(new)) as db:
             db.executescript(SCHEMA)
@@ -73,7 +74,8 @@ def _made(file: Path, new: Path, tell: Callable[[str], None]) -> tuple[Opening, 
 def _fill(db: sqlite3.Connection, rows: Iterator[Opening | Piece], tell: Callable[[str], None]) -> None:
     head: Piece | None = None
     for row in rows:
-        assert isinstance(row, Piece)
+        if not isinstance(row, Piece):
+            raise errors.InternalError("a backup has a second opening")
         if row.kind == "commit":
             commit: Commit = dense.decode(row.content, Commit)
             db.executemany("INSERT INTO touches VALUES (?, ?)", [(name, row.seq) for name in commit.names])

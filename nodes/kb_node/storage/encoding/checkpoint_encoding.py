@@ -21,7 +21,7 @@ from nodes.kb_node.storage.encoding import columns_encoding, dense
 from nodes.kb_node.storage.encoding.columns_encoding import StoredColumns
 from nodes.kb_node.storage.encoding.frames import Compressing, unpacked
 from nodes.runtime.shared_parts import SharedParts
-from schemas import codec
+from schemas import codec, errors
 from schemas.entities import Entity
 from schemas.explanations import Triple
 
@@ -141,7 +141,8 @@ def _numbers(content: bytes) -> array[int]:
 
 
 def _in_order(numbers: array[int]) -> array[int]:
-    assert numbers.itemsize == 4
+    if numbers.itemsize != 4:
+        raise errors.InternalError("integers of this machine do not have 32 bits")
     if sys.byteorder == "big":
         numbers.byteswap()
     return numbers

@@ -11,7 +11,7 @@ from msgspec import Struct, msgpack
 
 from nodes.kb_node.reasoner.abox.columns import Claimed, Columns, KindSaid
 from nodes.kb_node.storage.encoding.frames import Compressing, unpacked
-from schemas import codec
+from schemas import codec, errors
 
 _TERMS: Final = 100_000
 _NUMBERS: Final = 1 << 20
@@ -110,7 +110,8 @@ def _frames(column: array[int]) -> Iterator[bytes]:
 
 def _in_order(numbers: array[int]) -> array[int]:
     """32 bits each, the lowest first; a column that is given is not needed any more."""
-    assert numbers.itemsize == 4
+    if numbers.itemsize != 4:
+        raise errors.InternalError("integers of this machine do not have 32 bits")
     if sys.byteorder == "big":
         numbers.byteswap()
     return numbers

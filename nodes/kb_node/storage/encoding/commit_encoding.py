@@ -31,7 +31,6 @@ _OTHERS: Final = ("removed", "notes")
 _EFFECTS: Final = (*_CHANGED, *_OTHERS)
 """The end of a commit."""
 _BEGINNING: Final = _FIELDS[: -len(_EFFECTS)]
-assert (*_BEGINNING, *_EFFECTS) == _FIELDS == Commit.__struct_fields__
 
 
 class EarlyBody:

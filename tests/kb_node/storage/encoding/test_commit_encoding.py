@@ -27,6 +27,11 @@ def test_a_body_that_was_begun_is_the_whole(semantic_map):
     assert len(body) < len(codec.encode(whole)) / 10
 
 
+def test_a_commit_ends_with_its_effects():
+    names = (*commit_encoding._CHANGED, *commit_encoding._OTHERS)
+    assert Commit.__struct_fields__[-len(names) :] == names == Commit.__struct_encode_fields__[-len(names) :]
+
+
 @pytest.mark.parametrize("comes", [0, 1, 2])
 def test_effects_are_those_that_were_expected_or_others(semantic_map, comes):
     changed = semantic_map.commit(transaction("a", chair())).changed * 300

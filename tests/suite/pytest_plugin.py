@@ -1,0 +1,74 @@
+"""A plugin of pytest that writes down which tests failed, and shuffles them when told to."""
+
+from __future__ import annotations
+
+import random
+from itertools import groupby
+from pathlib import Path
+
+import pytest
+
+from tests.suite.failures import Failure, write_failures
+
+
+class _Recorder:
+    """Keeps the first failure of each test, and writes all of them at the end."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._failures: dict[str, Failure] = {}
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.failed:
+            self._note(report, needs_process="process" in report.keywords)
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        if report.failed:
+            self._note(report, needs_process=False)
+
+    def pytest_sessionfinish(self) -> None:
+        write_failures(self._path, [*self._failures.values()])
+
+    def _note(self, report: pytest.TestReport | pytest.CollectReport, needs_process: bool) -> None:
+        failure = Failure(report.nodeid, needs_process, _message(report))
+        self._failures.setdefault(report.nodeid, failure)
+
+
+class _Shuffler:
+    """Puts the files in an order drawn by a seed, and the tests of each file."""
+
+    def __init__(self, seed: int) -> None:
+        self._seed = seed
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        items[:] = shuffle(items, self._seed)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--failures", type=Path, help="write the failures to this file")
+    parser.addoption("--shuffle", type=int, metavar="SEED", help="run in an order drawn by this seed")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if (path := config.getoption("--failures")) and not hasattr(config, "workerinput"):
+        config.pluginmanager.register(_Recorder(path))
+    if (seed := config.getoption("--shuffle")) is not None:
+        config.pluginmanager.register(_Shuffler(seed))
+
+
+def shuffle(items: list[pytest.Item], seed: int) -> list[pytest.Item]:
+    """Return the tests in an order drawn by `seed`; those of a file stay together, with what they share."""
+    dice = random.Random(seed)
+    files = [[*several] for _, several in groupby(items, lambda item: item.path)]
+    dice.shuffle(files)
+    for several in files:
+        dice.shuffle(several)
+    return [item for several in files for item in several]
+
+
+def _message(report: pytest.TestReport | pytest.CollectReport) -> str:
+    """The first line of what went wrong."""
+    crash = getattr(report.longrepr, "reprcrash", None)
+    text = str(getattr(crash, "message", None) or report.longrepr or "")
+    return next((line for line in map(str.strip, text.splitlines()) if line), "")
