@@ -1,4 +1,4 @@
-"""What the knowledge base and perception have been shipped of the library's models, to hold models against."""
+"""What the knowledge base and perception are shipped of the library's models, to compare models with."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The library's models are those that the knowledge base and perception know: `make shapes` makes both files."""
+"""The models are those that the knowledge base and perception know: `make shapes` makes both files."""
 
 from __future__ import annotations
 
