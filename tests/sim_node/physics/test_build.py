@@ -31,7 +31,7 @@ def compiled(*orders, degrees=True, **how):
 
 def test_a_body_stands_at_its_pose_with_the_mass_of_its_model():
     model, made = compiled(order("cup1", "cup", pose(1.0, 2.0, 0.7)))
-    record, shape = made["cup1"]
+    _, shape = made["cup1"]
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     body = model.body("cup1")
