@@ -51,13 +51,13 @@ def test_points_are_as_far_apart_as_the_box_s_sides_share_out():
 )
 def test_what_lies_on_the_surface_bears_it_out_and_less_so_beside_it(off_m, share):
     own = plate()
-    points = own.points + (0.5, 0.2, 1.0 + off_m)
+    points = own.points + np.array([0.5, 0.2, 1.0 + off_m])
     assert borne_out(points, own, at(0.5, 0.2), WITHIN_M) == pytest.approx(share, abs=1e-3)
 
 
 def test_between_the_points_of_a_surface_is_on_it_and_beyond_its_edge_is_not():
     own = plate()
-    between = own.points[:1] + (0.005, 0.005, 1.0)
+    between = own.points[:1] + np.array([0.005, 0.005, 1.0])
     assert borne_out(between, own, at(), WITHIN_M) == pytest.approx(1.0)
     beyond = np.array([[0.2 + 0.02 + spacing_m(own), 0.0, 1.0]])
     assert borne_out(beyond, own, at(), WITHIN_M) == pytest.approx(math.exp(-4.0), abs=0.01)

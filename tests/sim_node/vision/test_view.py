@@ -89,7 +89,7 @@ def test_who_looks_at_a_point_has_it_in_the_middle_and_up_is_up(eye, target):
     pixel, depth = seen_at(view, target)
     assert pixel == pytest.approx((40.0, 30.0), abs=1e-6)
     assert depth == pytest.approx(np.linalg.norm(target - eye))
-    above, _ = seen_at(view, target + (0.0, 0.0, 0.01))
+    above, _ = seen_at(view, target + np.array([0.0, 0.0, 0.01]))
     assert above[0] == pytest.approx(40.0, abs=1e-6)
     assert above[1] < 30.0
 

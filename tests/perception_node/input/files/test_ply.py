@@ -14,7 +14,8 @@ TYPES = {"f4": "float", "f8": "double", "u1": "uchar"}
 def header(encoding="ascii", count=2, before="", after="", properties=ROW):
     listed = "".join(f"property {TYPES.get(kind, kind)} {name}\n" for name, kind in properties)
     return (
-        f"ply\nformat {encoding} 1.0\ncomment made\n{before}element vertex {count}\n{listed}{after}end_header\n"
+        f"ply\nformat {encoding} 1.0\ncomment made\n{before}"
+        f"element vertex {count}\n{listed}{after}end_header\n"
     ).encode()
 
 
