@@ -99,7 +99,7 @@ def test_sums_of_points_squares_normals_and_colours():
     upright = s.Upright(np.array([[0.0, 1, 0], [0, 0, 1], [-1, 0, 0]]), np.array([0.3]))
     known = s.statistics(LABELS, points, normals, shades, upright)
     for label in range(1, 5):
-        here = LABELS == label
+        here = label == LABELS
         x, y, z = points[:, here]
         row = known.inside[label - 1]
         assert row[s.COUNT] == here.sum()

@@ -158,3 +158,10 @@ def test_what_is_shifted_takes_its_joint_along():
     (plain,) = forms.shifted(felt(box((1, 1, 1), (0, 0, 0), RED)), z=-1.0)
     assert plain.centre == (0, 0, -1.0)
     assert plain.joint is None
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in vars(forms) if name.isupper() and isinstance(vars(forms)[name], tuple)]
+)
+def test_a_colour_can_be_shown(name):
+    assert all(0.0 <= channel <= 1.0 for channel in vars(forms)[name])
