@@ -20,7 +20,8 @@ def film():
 
 def boxes(*x, fixed=False):
     return [
-        order(f"box{k}", "", pose(at, 0.0, 0.5), size_m=(0.4, 0.4, 0.4), fixed=fixed) for k, at in enumerate(x)
+        order(f"box{k}", "", pose(at, 0.0, 0.5), size_m=(0.4, 0.4, 0.4), fixed=fixed)
+        for k, at in enumerate(x)
     ]
 
 
