@@ -48,7 +48,7 @@ def surface_of(model: Model) -> ModelSurface:
     points, normals, owners = _drawn(parts, _TRIES * POINTS, rng)
     seen = np.ones(len(points), bool)
     for number, part in enumerate(parts):
-        seen &= (owners == number) | (_outside_m(points, part) > -_WITHIN * max(model.size_m))
+        seen &= (owners == number) | (outside_m(points, part) > -_WITHIN * max(model.size_m))
     points, normals = points[seen], normals[seen]
     kept, size_m = _spread(points, POINTS), np.array(model.size_m)
     return ModelSurface(points[kept], normals[kept], size_m, _fold(points, parts, size_m))
@@ -78,7 +78,7 @@ def _drawn(
     return points, normal / np.linalg.norm(normal, axis=1, keepdims=True), owner[chosen]
 
 
-def _outside_m(points: Floats, part: Part) -> Floats:
+def outside_m(points: Floats, part: Part) -> Floats:
     """(N,) how far points are from the surface of a part, negative within it; far away for a mesh."""
     own = (points - np.asarray(part.centre)) @ rotation_matrix(part.turn)
     half = np.asarray(part.half)
@@ -105,7 +105,7 @@ def _fold(points: Floats, parts: Sequence[Part], size_m: Floats) -> int:
     def same(turn_rad: float) -> bool:
         c, s = np.cos(turn_rad), np.sin(turn_rad)
         turned = points @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        away = np.abs(np.min([_outside_m(turned, part) for part in parts], axis=0))
+        away = np.abs(np.min([outside_m(turned, part) for part in parts], axis=0))
         return float(np.mean(away < within)) > _MOST
 
     if all(same(turn) for turn in _TURNS_RAD):

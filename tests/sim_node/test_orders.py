@@ -1,7 +1,14 @@
+"""Which orders are accepted, and why the others are not."""
+
+import pytest
+
 from nodes.sim_node.models.library import build as library_model
-from nodes.sim_node.orders import moves, newcomers
-from schemas.scenes import Placement
+from nodes.sim_node.orders import REACH_M, grips, joint_targets, moves, newcomers
+from schemas.entities import Pose
+from schemas.joints import Joint
+from schemas.scenes import GripOrder, JointOrder, Placement
 from tests.sim_node.orders import hand, order, pose
+from tests.sim_node.test_bodies import record
 
 
 def test_each_order_is_accepted_or_has_a_reason():
@@ -27,17 +34,164 @@ def test_each_order_is_accepted_or_has_a_reason():
     assert "1000 m" in failed["huge"]
 
 
-def test_with_commit_0_a_body_is_the_worlds_own():
-    accepted, _ = newcomers([order("cup1", "cup", pose(0, 0), commit=0)], library_model, lambda _: False)
-    assert not accepted["cup1"][0].entity
+@pytest.mark.parametrize(("x", "is_accepted"), [(REACH_M, True), (REACH_M + 1.0, False)])
+def test_a_body_may_be_a_kilometre_away_and_no_farther(x, is_accepted):
+    accepted, failed = newcomers([order("cup1", "cup", pose(x, 0))], library_model, lambda _: False)
+    assert ("cup1" in accepted, "cup1" in failed) == (is_accepted, not is_accepted)
+
+
+@pytest.mark.parametrize(("commit", "entity"), [(0, False), (1, True)])
+def test_with_commit_0_a_body_is_the_worlds_own(commit, entity):
+    accepted, _ = newcomers([order("cup1", "cup", pose(0, 0), commit=commit)], library_model, lambda _: False)
+    assert accepted["cup1"][0].entity is entity
+    assert accepted["cup1"][0].joint_commit == commit
+
+
+def test_the_frame_of_a_body_is_its_centre_of_mass():
+    accepted, _ = newcomers([order("cup1", "cup", pose(0, 0))], library_model, lambda _: False)
+    made, model = accepted["cup1"]
+    assert made.origin_m == pytest.approx([-value for value in model.inertial.centre_m])
+    assert len(made.masks) == len(model.parts)
+
+
+def test_a_body_that_opens_has_its_joints_shut_unless_the_map_says_otherwise():
+    accepted, _ = newcomers([order("fridge1", "fridge", pose(0, 0))], library_model, lambda _: False)
+    made, model = accepted["fridge1"]
+    assert [joint.name for joint in made.joints] == [leaf.joint.name for leaf in model.leaves]
+    assert made.joint_names == ("fridge1/freezer", "fridge1/door") or made.joint_names == (
+        "fridge1/door",
+        "fridge1/freezer",
+    )
+    for joint, leaf in zip(made.joints, model.leaves, strict=True):
+        assert (joint.lower, joint.upper) == leaf.joint.range
+        assert joint.position == joint.closed == leaf.joint.closed
+
+
+def cabinet(**more):
+    joints = (
+        Joint(name="door", kind="hinge", lower=0.0, upper=2.0, closed=0.0),
+        Joint(name="drawer", kind="slide", lower=-0.5, upper=0.0, closed=0.0),
+        Joint(name="knob", kind="hinge", lower=0.0, upper=1.0, closed=0.0, switch=True),
+        Joint(name="wheel", kind="hinge"),
+        Joint(name="gimbal", kind="ball"),
+    )
+    return record("cabinet1", joints=joints, **more)
+
+
+def targets(*orders):
+    return joint_targets(orders, {"cabinet1": cabinet(), "stone1": record("stone1")})
+
+
+@pytest.mark.parametrize(
+    ("asked", "expected"),
+    [
+        ({}, {"door": 2.0, "drawer": -0.5}),
+        ({"openness": 0.25}, {"door": 0.5, "drawer": -0.125}),
+        ({"openness": 0.0}, {"door": 0.0, "drawer": 0.0}),
+        ({"openness": 0.5, "joint": "door"}, {"door": 1.0}),
+        ({"openness": 1.0, "joint": "knob"}, {"knob": 1.0}),
+        ({"positions": {"door": 1.5, "drawer": -0.2}}, {"door": 1.5, "drawer": -0.2}),
+        ({"positions": {"door": 9.0, "drawer": -9.0}}, {"door": 2.0, "drawer": -0.5}),
+        ({"positions": {"door": -9.0}}, {"door": 0.0}),
+        ({"positions": {"wheel": 9.0, "gimbal": 1.0}}, {"wheel": 9.0}),
+        ({"positions": {"door": 1.0, "knob": 1.0}, "joint": "door"}, {"door": 1.0}),
+    ],
+    ids=str,
+)
+def test_joints_go_where_they_are_ordered_within_their_limits(asked, expected):
+    accepted, failed = targets(JointOrder(name="cabinet1", **asked))
+    assert failed == {}
+    assert accepted["cabinet1"] == pytest.approx(expected)
+
+
+def test_of_several_orders_about_one_joint_the_last_counts():
+    accepted, _ = targets(
+        JointOrder(name="cabinet1", openness=1.0),
+        JointOrder(name="cabinet1", openness=0.5, joint="door"),
+    )
+    assert accepted["cabinet1"] == pytest.approx({"door": 1.0, "drawer": -0.5})
+
+
+@pytest.mark.parametrize(
+    ("asked", "why"),
+    [
+        ({"name": "x"}, "the scene has no body named x"),
+        ({"name": "stone1"}, "stone1 has no joint that opens it"),
+        ({"name": "stone1", "joint": "lid"}, "no joint named lid that can be moved; it has: none"),
+        ({"name": "cabinet1", "joint": "lid"}, "it has: door, drawer, knob, wheel, gimbal"),
+        ({"name": "cabinet1", "joint": "gimbal"}, "no joint named gimbal that can be moved"),
+        ({"name": "cabinet1", "joint": "wheel", "openness": 1.0}, "no joint that opens it"),
+    ],
+    ids=str,
+)
+def test_what_does_not_open_has_a_reason(asked, why):
+    accepted, failed = targets(JointOrder(**asked))
+    assert not any(accepted.values())
+    assert why in failed[asked["name"]]
 
 
 def test_what_cannot_be_moved_has_a_reason():
     first, last = hand("cup1", pose(1, 0)), Placement(name="cup1", pose=pose(2, 0), commit=3)
-    ordered = [order(name, "cup", pose(0, 0)) for name in ("cup1", "can1")]
-    made, _ = newcomers(ordered, library_model, taken=lambda name: False)
-    there = {name: record for name, (record, _) in made.items()}
-    accepted, failed = moves([first, hand("x", pose(0, 0)), hand("can1", pose(0, 2000)), last], there)
+    there = {
+        "cup1": record("cup1"),
+        "can1": record("can1"),
+        "door1": record("door1", anchored=True),
+        "lid1": record("lid1", anchored=True, part_of="pot1"),
+        "ring1": record("ring1", held_by="hand1"),
+    }
+    stays = [hand(name, pose(0, 0)) for name in ("x", "door1", "lid1", "ring1")]
+    accepted, failed = moves([first, *stays, hand("can1", pose(0, 2000)), last], there)
     assert accepted == [first, last]
     assert "no body named x" in failed["x"]
-    assert "too far" in failed["can1"]
+    assert "2000 m from the origin is too far; the limit is 1000 m" in failed["can1"]
+    assert failed["door1"] == "door1 is held by its joint; only its joints move it"
+    assert failed["lid1"] == "lid1 is held by pot1; only its joints move it"
+    assert "semmap detach ring1" in failed["ring1"]
+
+
+THERE = {
+    "hand1": record("hand1", part_of="robot1"),
+    "robot1": record("robot1"),
+    "cup1": record("cup1"),
+    "ring1": record("ring1", held_by="hand1", grip=Pose(position_m=(0.0, 0.0, 0.0))),
+    "wall1": record("wall1", fixed=True),
+    "door1": record("door1", anchored=True),
+    "lid1": record("lid1", anchored=True, part_of="pot1"),
+}
+
+
+@pytest.mark.parametrize(
+    ("asked", "why"),
+    [
+        ({"name": "x", "holder": "hand1"}, "no body named x"),
+        ({"name": "cup1", "holder": "x"}, "no body named x"),
+        ({"name": "cup1", "holder": "cup1"}, "cannot hold itself"),
+        ({"name": "robot1", "holder": "hand1"}, "hand1 is held by robot1 or part of it"),
+        ({"name": "hand1", "holder": "ring1"}, "ring1 is held by hand1 or part of it"),
+        ({"name": "wall1", "holder": "hand1"}, "wall1 is fixed where it stands"),
+        ({"name": "door1", "holder": "hand1"}, "door1 is held by its joint"),
+        ({"name": "lid1", "holder": "hand1"}, "lid1 is held by pot1"),
+        ({"name": "ring1", "holder": "robot1"}, "ring1 is held by hand1 already"),
+    ],
+    ids=str,
+)
+def test_what_cannot_be_held_has_a_reason(asked, why):
+    accepted, failed = grips([GripOrder(**asked)], THERE)
+    assert accepted == []
+    assert why in failed[asked["name"]]
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        {"name": "cup1", "holder": "hand1"},
+        {"name": "cup1", "holder": ""},
+        {"name": "wall1", "holder": ""},
+        {"name": "ring1", "holder": "hand1"},
+        {"name": "ring1", "holder": "robot1", "commit": 4},
+    ],
+    ids=["taken", "let go", "never held", "held already", "the map has another hold it"],
+)
+def test_these_may_be_held_or_let_go(asked):
+    wanted = GripOrder(**asked)
+    assert grips([wanted], THERE) == ([wanted], {})

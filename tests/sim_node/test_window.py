@@ -1,5 +1,9 @@
+import contextlib
 import os
+import sys
+from types import SimpleNamespace
 
+import mujoco
 import pytest
 
 from nodes.sim_node.window import Window
@@ -43,3 +47,75 @@ def test_the_mouse_pulls_a_body_and_lets_it_go():
     chair = world.scene().bodies[0]
     assert distance_m(chair.pose, pose(0, 0)) > 0.1
     assert chair.resting
+
+
+class Viewer:
+    """MuJoCo's viewer without a display: what it is told of."""
+
+    def __init__(self, world):
+        self.cam, self.perturb = mujoco.MjvCamera(), mujoco.MjvPerturb()
+        self.user_scn = mujoco.MjvScene(world.model, maxgeom=10)
+        self.loaded, self.synced, self.running, self.closed = [], 0, True, False
+
+    def is_running(self):
+        return self.running
+
+    def lock(self):
+        return contextlib.nullcontext()
+
+    def sync(self):
+        self.synced += 1
+
+    def close(self):
+        self.closed = True
+
+    def _get_sim(self):
+        return SimpleNamespace(load=lambda model, data, name: self.loaded.append(model))
+
+
+@pytest.fixture
+def opened(monkeypatch):
+    world = World()
+    viewer = Viewer(world)
+    monkeypatch.setattr("nodes.sim_node.window._require_display", lambda: None)
+    shown = SimpleNamespace(launch_passive=lambda model, data, **how: viewer)
+    monkeypatch.setattr(mujoco, "viewer", shown, raising=False)
+    monkeypatch.setitem(sys.modules, "mujoco.viewer", shown)
+    return world, viewer, Window(world)
+
+
+def test_another_model_is_loaded_once_and_each_refresh_shows_the_world(opened):
+    world, viewer, window = opened
+    window.refresh()
+    assert (viewer.loaded, viewer.synced) == ([], 1)
+    world.spawn([order("fridge1", "fridge", pose(0, 0))])
+    window.refresh()
+    window.refresh()
+    assert (viewer.loaded, viewer.synced) == ([world.model], 3)
+
+
+def test_a_window_that_was_closed_shows_nothing(opened):
+    world, viewer, window = opened
+    viewer.running = False
+    world.spawn([order("fridge1", "fridge", pose(0, 0))])
+    window.refresh()
+    assert (viewer.loaded, viewer.synced) == ([], 0)
+    window.close()
+    assert viewer.closed
+
+
+def test_the_selected_body_has_its_name_above_it(opened):
+    world, viewer, window = opened
+    world.spawn([order("can1", "can", pose(1, 2))])
+    window.refresh()
+    assert viewer.user_scn.ngeom == 0
+    viewer.perturb.select = world.model.geom_bodyid[world.body_names().index("can1")]
+    window.refresh()
+    assert viewer.user_scn.ngeom == 1
+    label = viewer.user_scn.geoms[0]
+    assert label.label == "can1"
+    assert label.type == mujoco.mjtGeom.mjGEOM_LABEL
+    assert label.pos == pytest.approx((1.0, 2.0, world.data.xpos[viewer.perturb.select][2] + 0.3))
+    viewer.perturb.select = world.model.nbody
+    window.refresh()
+    assert viewer.user_scn.ngeom == 0

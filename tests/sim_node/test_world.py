@@ -1,14 +1,18 @@
+import math
+
 import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.physics import build
+from nodes.sim_node.models.facets import surface_of
+from nodes.sim_node.models.library import build as library_model
+from nodes.sim_node.physics import base_scene, build
 from nodes.sim_node.physics.base_scene import read_mjcf
-from nodes.sim_node.vision.view import camera_names
+from nodes.sim_node.vision.view import camera_names, overview
 from nodes.sim_node.world import World
-from schemas.entities import angle_rad, distance_m
-from schemas.errors import BadFile
-from schemas.scenes import Placement
+from schemas.entities import Pose, angle_rad, distance_m
+from schemas.errors import BadFile, Refused
+from schemas.scenes import DriveBase, GripOrder, JointOrder, Placement
 from tests.sim_node.orders import hand, order, pose
 
 
@@ -367,3 +371,248 @@ def test_bodies_are_no_walls_whichever_way_they_came():
     before = world.walls()
     world.spawn([order("late", "cup", pose(0, 3)), order("later", "shelf", pose(4, 0), fixed=True)])
     assert world.walls() == before
+
+
+ROVER = """<mujoco><worldbody>
+  <geom type="plane" size="0 0 1"/>
+  <camera name="above" pos="0 0 5"/>
+  <body name="rover" pos="0 0 0.1"><freejoint name="rover_free"/>
+    <geom type="box" size="0.3 0.3 0.1" mass="20"/>
+    <camera name="eye" pos="0.3 0 0"/>
+    <body name="gripper" pos="0.4 0 0"><joint name="finger" type="slide" axis="1 0 0" range="0 0.1"/>
+      <geom type="box" size="0.05 0.05 0.05" mass="0.1"/></body>
+    <body><geom type="box" size="0.01 0.01 0.1"/></body></body>
+  <body name="shelf_1" pos="5 0 0.5"><geom type="box" size="0.2 0.5 0.5"/></body>
+</worldbody>
+<actuator>
+  <general name="rover_drive_x" joint="rover_free" gear="1 0 0 0 0 0"/>
+  <general name="rover_drive_y" joint="rover_free" gear="0 1 0 0 0 0"/>
+  <general name="rover_drive_yaw" joint="rover_free" gear="0 0 0 0 0 1"/>
+</actuator></mujoco>"""
+
+
+@pytest.fixture
+def rover():
+    ground = mujoco.MjSpec.from_string(ROVER)
+    world = World(ground, name="hall", is_class=lambda word: word == "gripper")
+    world.mark_robot("rover")
+    return world
+
+
+def commits(world):
+    return dict(zip(world.poses().names, world.poses().commits, strict=True))
+
+
+def test_a_robot_and_its_parts_have_been_placed_by_nobody_and_open_nothing(rover):
+    assert commits(rover) == {"rover": -1, "gripper": -1, "shelf_1": 0}
+    assert (body(rover, "rover").robot, body(rover, "gripper").robot) == (True, True)
+    assert not body(rover, "shelf_1").robot
+    assert [joint.closed for joint in body(rover, "gripper").joints] == [None]
+
+
+def test_a_robot_that_is_moved_or_driven_has_been_placed_with_its_parts(rover):
+    rover.move([hand("rover", pose(1.0, 1.0))])
+    assert commits(rover) == {"rover": 0, "gripper": 0, "shelf_1": 0}
+
+
+def test_what_else_is_moved_does_not_place_a_robot(rover):
+    rover.spawn([order("can1", "can", pose(3, 3), commit=4)])
+    rover.move([hand("can1", pose(2.0, 3.0))])
+    assert commits(rover) == {"rover": -1, "gripper": -1, "shelf_1": 0, "can1": 4}
+
+
+@pytest.mark.parametrize(
+    ("asked", "why"),
+    [
+        (DriveBase(name="nobody", to=((1.0, 0.0),)), "the scene has no body named nobody"),
+        (DriveBase(name="shelf_1", to=((1.0, 0.0),)), "shelf_1 cannot drive: its model has no velocity"),
+        (DriveBase(name="rover", to=((1.0, 0.0), (900.0, 900.0))), r"\(900, 900\) is too far; .* 1000 m"),
+    ],
+    ids=["nobody", "a shelf", "too far"],
+)
+def test_what_cannot_be_driven_there_has_a_reason(rover, asked, why):
+    with pytest.raises(Refused, match=why):
+        rover.drive(asked)
+    assert rover.ended() == {}
+
+
+def test_a_base_that_has_fallen_or_is_held_does_not_drive(rover):
+    over = Pose(position_m=(0.0, 0.0, 0.5), orientation_wxyz=(math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0))
+    rover.move([Placement(name="rover", pose=over)])
+    with pytest.raises(Refused, match="rover"):
+        rover.drive(DriveBase(name="rover", to=((1.0, 0.0),)))
+    rover.drive(DriveBase(name="rover", to=()))  # to stop is possible all the same
+    rover.move([hand("rover", pose(2.0, 0.0))])
+    rover._engine.records["rover"].ghost = True
+    with pytest.raises(Refused, match="another body is in its place"):
+        rover.drive(DriveBase(name="rover", to=((1.0, 0.0),)))
+
+
+def test_a_base_drives_until_it_is_stopped_or_lifted_and_each_end_is_told_once(rover):
+    rover.drive(DriveBase(name="rover", to=((1000.0, 0.0),)))
+    assert commits(rover)["rover"] == 0
+    assert not rover.asleep
+    assert rover.ended() == {}
+    rover.drive(DriveBase(name="rover", to=()))
+    assert rover.ended() == {"rover": "stopped"}
+    assert rover.ended() == {}
+    rover.drive(DriveBase(name="rover", to=((4.0, 0.0),)))
+    rover.move([hand("rover", pose(1.0, 1.0))])
+    assert rover.ended() == {"rover": "stopped"}
+
+
+def test_a_camera_is_told_with_who_carries_it(rover):
+    above, eye = rover.cameras()
+    assert (above.camera, above.part_of) == ("above", "")
+    assert (eye.camera, eye.part_of) == ("eye", "rover")
+    assert above.pose.position_m == pytest.approx((0.0, 0.0, 5.0))
+
+
+def test_geoms_belong_to_the_body_that_they_are_a_part_of(rover):
+    assert rover.body_names()[:5] == ["", "rover", "gripper", "rover", "shelf_1"]
+    model, _, names = rover.snapshot()
+    assert names == rover.body_names()
+    assert rover.snapshot()[0] is model  # until bodies come or go
+    rover.spawn([order("can1", "can", pose(3, 3))])
+    assert rover.snapshot()[0] is not model
+    assert "can1" in rover.snapshot()[2]
+
+
+def test_a_world_s_own_geometry_stands_in_the_way_and_bodies_do_not(rover):
+    assert rover.walls() == ()
+    wall = mujoco.MjSpec.from_string(
+        '<mujoco><worldbody><geom type="box" size="1 0.1 1" pos="0 0 1"/></worldbody></mujoco>'
+    )
+    assert len(World(wall).walls()) == 1
+
+
+def test_the_tops_of_entities_can_be_asked_for_also_within_a_box():
+    world = World()
+    boxes = [order(f"box{i}", "", pose(2.0 * i, 0), size_m=(0.4, 0.4, 0.3), commit=i) for i in range(3)]
+    world.spawn(boxes)
+    tops = world.tops()
+    assert tops.keys() == {"box1", "box2"}  # the first is the world's own
+    assert tops["box1"] == pytest.approx((2.0, 0.0, 0.3))
+    assert world.tops((np.array([3.0, -1, 0]), np.array([5.0, 1, 1]))).keys() == {"box2"}
+    assert world.tops((np.array([3.0, -1, 0.2]), np.array([5.0, 1, 1]))).keys() == set()
+
+
+def test_the_extent_is_that_of_all_bodies():
+    world = World()
+    world.spawn(
+        [order(f"box{i}", "", pose(2.0 * i, 0, 0.5), size_m=(0.4, 0.4, 0.3), fixed=True) for i in range(3)]
+    )
+    low, high = world.extent()
+    assert low == pytest.approx((-0.2, -0.2, 0.5))
+    assert high == pytest.approx((4.2, 0.2, 0.8))
+    assert len(world) == 3
+
+
+def test_the_overview_looks_at_all_bodies():
+    world = World()
+    world.spawn([order("box1", "", pose(50.0, 20.0), size_m=(4.0, 4.0, 3.0))])
+    world.look_over()
+    (camera,) = world.cameras()
+    view = overview(*world.extent(), 4, 3, fovy_rad=base_scene.OVERVIEW_FOVY_RAD)
+    assert camera.pose.position_m == pytest.approx(view.map_from_camera[:3, 3])
+
+
+def test_each_order_to_hold_is_told_and_remembered_with_its_commit():
+    world = World()
+    world.spawn([order("tray1", "tray", pose(0, 0)), order("cup1", "cup", pose(0, 2, 1.0))])
+    held = world.grip([GripOrder(name="cup1", holder="tray1")])
+    (cup,) = held.bodies
+    assert (cup.held_by, cup.grip_commit, held.failed) == ("tray1", 0, {})
+    assert cup.grip.position_m == pytest.approx((0.0, 2.0, 1.0))  # where it is
+    version = world.scene().version
+    again = world.grip([GripOrder(name="cup1", holder="tray1")])
+    assert again.bodies[0].grip == cup.grip
+    assert world.scene().version == version
+    world.grip([GripOrder(name="cup1", holder="tray1", grip=pose(0.0, 0.0, 0.5), commit=7)])
+    assert body(world, "cup1").grip_commit == 7
+    assert body(world, "cup1").pose.position_m == pytest.approx((0.0, 0.0, 0.5), abs=0.01)
+    assert world.scene().version > version
+    world.grip([GripOrder(name="cup1", holder="")])
+    assert (body(world, "cup1").held_by, body(world, "cup1").grip) == ("", None)
+    assert body(world, "cup1").grip_commit == 7
+
+
+def test_held_by_another_it_is_held_where_it_is_then():
+    world = World()
+    trays = [order(f"tray{i}", "tray", pose(2.0 * i, 0)) for i in range(2)]
+    world.spawn([*trays, order("cup1", "cup", pose(0, 2, 1.0))])
+    world.grip([GripOrder(name="cup1", holder="tray0", commit=3)])
+    world.grip([GripOrder(name="cup1", holder="tray1", commit=4)])
+    assert body(world, "cup1").grip.position_m == pytest.approx((-2.0, 2.0, 1.0), abs=0.01)
+
+
+def test_an_order_for_joints_counts_with_its_commit():
+    world = World()
+    world.spawn([order("fridge1", "fridge", pose(0, 0)), order("cup1", "cup", pose(3, 3))])
+    assert world.joints_at_rest == 0
+    world.step(2.0)
+    assert world.joints_at_rest == 2
+    moving = world.move_joints([JointOrder(name="fridge1", openness=1.0, commit=9)])
+    assert (moving.failed, moving.bodies[0].joint_commit) == ({}, 9)
+    assert world.poses().joint_commits == (9,)
+    assert world.joints_at_rest == 0
+    world.move_joints([JointOrder(name="fridge1", openness=0.5)])
+    assert world.poses().joint_commits == (9,)
+
+
+def test_an_order_to_move_counts_as_tried_also_where_it_fails():
+    world = World()
+    world.spawn([order("cup1", "cup", pose(0, 0))])
+    failed = world.move(
+        [
+            Placement(name="cup1", pose=pose(0, 2000), commit=5),
+            Placement(name="nobody", pose=pose(0, 2), commit=6),
+        ]
+    ).failed
+    assert failed.keys() == {"cup1", "nobody"}
+    assert commits(world) == {"cup1": 5}
+    world.move([Placement(name="cup1", pose=pose(0, 3))])
+    assert commits(world) == {"cup1": 5}
+    world.reset()  # a hand has moved it, not the map
+    assert body(world, "cup1").pose.position_m[:2] == pytest.approx((0.0, 0.0))
+
+
+def test_reset_puts_joints_back_and_leaves_what_is_held():
+    world = World()
+    world.spawn([order("fridge1", "fridge", pose(0, 0)), order("cup1", "cup", pose(3, 3))])
+    world.grip([GripOrder(name="cup1", holder="fridge1", commit=2)])
+    world.move_joints([JointOrder(name="fridge1", openness=1.0)])
+    world.step(3.0)
+    assert world.reset() == 2
+    assert world.poses().joints == pytest.approx((0.0, 0.0))
+    assert body(world, "cup1").held_by == "fridge1"
+
+
+def test_bodies_look_like_their_models_and_a_world_s_own_like_their_parts(rover):
+    rover.spawn([order("can1", "can", pose(3, 3))])
+    found = rover.surfaces(["can1", "shelf_1", "nobody"]).surfaces
+    assert found.keys() == {"can1", "shelf_1"}
+    assert found["can1"] == surface_of(library_model("can", None))
+    shelf = np.frombuffer(found["shelf_1"].points, "<f4").reshape(-1, 3)
+    assert shelf.max(axis=0) == pytest.approx((0.2, 0.5, 1.0), abs=1e-5)
+    assert shelf[:, 2].min() == pytest.approx(0.0, abs=1e-5)
+    assert rover.surface().points == b""  # of an endless floor
+
+
+def test_names_that_are_not_there_are_not_deleted_and_each_is_once():
+    world = World()
+    world.spawn([order("cup1", "cup", pose(0, 0))])
+    assert world.delete(["cup1", "nobody", "cup1"]).names == ("cup1",)
+    assert world.delete(["cup1"]).names == ()
+
+
+def test_a_world_that_can_rest_can_be_asked_how_much_is_awake():
+    world = World()
+    world.spawn([order("cup1", "cup", pose(0, 0))])
+    assert (world.asleep, world.awake > 0) == (False, True)
+    world.step(2.0)
+    assert (world.asleep, world.awake) == (True, 0)
+    assert world.poses().sim_time_s == pytest.approx(2.0)
+    assert world.scene().sim_time_s == pytest.approx(2.0)
+    assert world.poses().version == world.scene().version
+    assert world.poses().run == world.run

@@ -164,7 +164,7 @@ class Engine:
         sleep.wake(self.data, int(self.index.tree[self.index.row[name]]))
 
     def set_joints(self, names: Iterable[str]) -> None:
-        """Put the joints of these bodies where their records say, with no speed."""
+        """Put the joints of these bodies where their records say, with no speed and not pushed any more."""
         for name in names:
             record = self.records[name]
             self._drives.stop(record.joint_names)
@@ -173,6 +173,7 @@ class Engine:
                 if joint.kind != "ball":
                     self.data.qpos[self.index.joint_qpos[row]] = joint.position
                     self.data.qvel[self.index.joint_dof[row]] = 0.0
+                    self.data.qfrc_applied[self.index.joint_dof[row]] = 0.0  # else a drive's last push stays
 
     def lift(self, row: int, rise_m: float) -> None:
         """Raise a free body."""

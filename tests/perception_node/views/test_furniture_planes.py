@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from nodes.perception_node.segmentation import Plane, Segmentation
-from nodes.perception_node.views.furniture_planes import with_furniture, with_what_hangs_below
+from nodes.perception_node.views.furniture_planes import (
+    _box,
+    _stands_free,
+    _touching,
+    with_furniture,
+    with_what_hangs_below,
+)
 from nodes.perception_node.views.segments import Segment
 
 
@@ -47,3 +54,59 @@ def test_what_stands_on_a_top_ends_there():
     assert furniture == {2}
     assert (cut[points[..., 2] < 0.73] == 2).all()
     assert (cut[:, :20][points[:, :20, 2] > 0.83] == 1).all()
+
+
+def corners(low, high):
+    return np.array(low, np.float32), np.array(high, np.float32)
+
+
+def test_boxes_that_touch_hang_together_also_by_others():
+    row = [corners((k, 0, 0), (k + 0.98, 1, 1)) for k in range(3)]  # two centimetres apart
+    assert _touching(row) == [0, 0, 0]
+    assert len(set(_touching([row[0], row[2], row[1]]))) == 1
+    assert _touching([row[0], row[2]]) == [0, 1]
+    assert _touching([]) == []
+
+
+def test_boxes_that_are_apart_along_any_axis_do_not_hang_together():
+    cube = corners((0, 0, 0), (1, 1, 1))
+    for axis in range(3):
+        for away in (1.05, -1.05):
+            low, high = cube[0].copy(), cube[1].copy()
+            low[axis] += away
+            high[axis] += away
+            assert _touching([cube, (low, high)]) == [0, 1]
+
+
+def upright(width_m, height_m):
+    across, up = np.meshgrid(np.linspace(0, width_m, 60), np.linspace(0, height_m, 60))
+    return np.stack([0 * across, across, up], axis=-1).reshape(-1, 3).astype(np.float32)
+
+
+def test_an_upright_plane_stands_free_if_it_ends_within_the_picture_and_is_no_wall():
+    mask = np.zeros((20, 20), bool)
+    mask[5:, 5:15] = True  # down to the picture's lower edge
+    assert _stands_free(upright(1.0, 1.8), mask)
+    assert not _stands_free(upright(1.0, 2.4), mask)
+    assert not _stands_free(upright(2.4, 1.8), mask)
+    for edge in (np.s_[0, 7], np.s_[9, 0], np.s_[9, -1]):
+        cut = mask.copy()
+        cut[edge] = True
+        assert not _stands_free(upright(1.0, 1.8), cut)
+
+
+def test_the_box_of_points_leaves_stray_ones_out():
+    points = np.concatenate([upright(1.0, 2.0), [[0.0, 50.0, 50.0]]]).astype(np.float32)
+    low, high = _box(points)
+    assert high[2] == pytest.approx(2.0, abs=0.05)
+    assert low[2] == pytest.approx(0.0, abs=0.05)
+    low, high = _box(np.empty((0, 3), np.float32))
+    assert (low == np.inf).all()
+    assert (high == -np.inf).all()
+
+
+def test_what_lies_on_a_top_is_another_thing():
+    plate = segment([-0.1, -0.1, 0.755], [0.1, 0.1, 0.76])
+    assert with_what_hangs_below([[TOP], [plate]]) == [[0], [1]]
+    rim = segment([-0.5, -0.3, 0.7], [0.5, -0.29, 0.74])
+    assert with_what_hangs_below([[TOP], [rim], [plate]]) == [[0, 1], [2]]

@@ -4,8 +4,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.library import ModelError, build
-from nodes.sim_node.models.parts import Role, bounds
+from nodes.sim_node.models.library import ModelError, assemble, build, check_size
+from nodes.sim_node.models.parts import Joint, Role, bounds, box, moving, seen
 from nodes.sim_node.models.variety_table import KINDS
 
 HOUSEHOLD = Path(__file__).parents[3] / "ontology" / "household.ttl"
@@ -83,3 +83,80 @@ def test_inertia_of_a_box_is_that_of_the_textbook():
     expected = mass / 12 * np.array([0.36 + 3.24, 0.36 + 3.24, 0.72])
     assert model.inertial.moments == pytest.approx(expected)
     assert model.inertial.centre_m == pytest.approx((0, 0, 0.9))
+
+
+RED = (1.0, 0.0, 0.0)
+
+
+def hinged(axis=(0.0, 1.0, 0.0), *, kind="hinge", friction=0.0, anchor=(0.0, 0.0, 1.0), seen_only=False):
+    """A box of a metre with a lid of a metre beside it, which a joint moves."""
+    joint = Joint("lid", kind, anchor, axis, (0.0, 1.0), friction=friction)
+    lid = moving(joint, box((1.0, 1.0, 0.1), (0.5, 0.0, 1.05), RED))
+    return assemble(
+        "box", [box((1.0, 1.0, 1.0), (0.0, 0.0, 0.5), RED), *(seen(lid) if seen_only else lid)], 11.0
+    )
+
+
+def test_a_model_is_put_on_its_bottom_centre_with_its_joints():
+    model = hinged()
+    assert model.size_m == pytest.approx((1.5, 1.0, 1.1))
+    low, _ = bounds(model.parts)
+    assert low == pytest.approx((-0.75, -0.5, 0.0))
+    assert model.leaves[0].joint.anchor == pytest.approx((-0.25, 0.0, 1.0))
+    assert [part.joint for part in model.parts] == [None, model.leaves[0].joint]
+    assert len(model.frame) == 1
+    assert model.frame[0].joint is None
+    plain = build("cup", None)
+    assert plain.frame is plain.parts
+
+
+def test_mass_is_shared_out_by_the_volume_of_what_collides():
+    model = hinged()
+    assert model.inertial.mass_kg == pytest.approx(10.0)
+    assert model.leaves[0].inertial.mass_kg == pytest.approx(1.0)
+    assert model.mass_kg == pytest.approx(11.0)
+    decoration = hinged(seen_only=True)
+    assert decoration.leaves[0].inertial.mass_kg == pytest.approx(0.001)
+    assert decoration.inertial.mass_kg == pytest.approx(11.0)
+
+
+@pytest.mark.parametrize(
+    ("how", "friction"),
+    [
+        ({}, 1.3 * 9.81 * 0.5),  # the arm to the middle of the lid, at its height
+        ({"axis": (0.0, 0.0, 1.0)}, 0.0),
+        ({"friction": 50.0}, 50.0),
+        ({"kind": "slide", "axis": (0.0, 0.0, 1.0)}, 1.3 * 9.81),
+        ({"kind": "slide", "axis": (1.0, 0.0, 0.0)}, 0.0),
+    ],
+    ids=str,
+)
+def test_what_hangs_on_a_joint_is_held_where_it_is_left(how, friction):
+    (leaf,) = hinged(**how).leaves
+    assert leaf.joint.friction == pytest.approx(friction, rel=0.02)
+
+
+def test_nothing_is_lighter_than_two_grams_or_heavier_than_five_tonnes():
+    mote = [box((0.01, 0.01, 0.01), (0, 0, 0), RED)]
+    assert assemble("mote", mote, 1e-6).mass_kg == 0.002
+    assert assemble("star", mote, 1e9).mass_kg == 5000.0
+
+
+@pytest.mark.parametrize(
+    ("extent", "is_possible"), [(0.001, True), (0.0009, False), (100.0, True), (101.0, False)]
+)
+def test_a_body_measures_from_a_millimetre_to_a_hundred_metres(extent, is_possible):
+    for axis in range(3):
+        size_m = [1.0, 1.0, 1.0]
+        size_m[axis] = extent
+        if is_possible:
+            check_size(size_m)
+        else:
+            with pytest.raises(ModelError, match=r"0\.001 to 100 m along each axis, not .*; look here"):
+                check_size(size_m, "; look here")
+    check_size(None)
+
+
+def test_mass_grows_with_volume():
+    assert build("table", (1.6, 2.4, 1.5)).mass_kg == pytest.approx(8 * 22.0)
+    assert build("", (0.2, 0.3, 0.4)).mass_kg == pytest.approx(150.0 * 0.024)

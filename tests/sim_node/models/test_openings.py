@@ -1,11 +1,17 @@
 """Models that open: in the simulator, by hand, with what is in them."""
 
+import math
+
 import pytest
 
+from nodes.sim_node.models import openings
+from nodes.sim_node.models.forms import WHITE
 from nodes.sim_node.models.library import build
+from nodes.sim_node.models.parts import bounds, box, moved
 from nodes.sim_node.models.variety_table import KINDS
 from nodes.sim_node.world import World
 from schemas.scenes import JointOrder
+from tests.sim_node.models.known_models import differences
 from tests.sim_node.orders import bodies, order, pose, spawned
 
 OPENING = {
@@ -115,3 +121,94 @@ def test_what_is_put_on_a_shut_box_does_not_press_its_flaps_in():
     assert bodies(world)["book0"].pose.position_m[2] == pytest.approx(top, abs=0.01)
     assert [joint.openness for joint in bodies(world)["box1"].joints] == pytest.approx([0.0, 0.0], abs=0.02)
     assert all(body.resting for body in bodies(world).values())
+
+
+@pytest.mark.parametrize("model", OPENING)
+def test_it_opens_as_the_knowledge_base_knows_it(model):
+    assert differences(model) == []
+
+
+def test_a_cabinet_is_open_at_its_front_and_has_boards_that_reach_from_the_back():
+    parts = openings.cabinet_box((0.8, 1.0, 2.0), (0.1, 0.2, 1.0), WHITE, boards=(0.25,), depth=0.5)
+    low, high = bounds(parts)
+    assert (low.tolist(), high.tolist()) == (pytest.approx([-0.3, -0.3, 0.0]), pytest.approx([0.5, 0.7, 2.0]))
+    assert len(parts) == 6
+    assert not any(bounds([part])[0][0] > 0.4 for part in parts)  # nothing closes the front
+    low, high = bounds(parts[-1:])
+    assert (low[0], high[0]) == pytest.approx((-0.3 + 0.02, -0.3 + 0.5 * 0.78))
+    assert (low[2] + high[2]) / 2 == pytest.approx(0.5)
+    assert high[1] - low[1] == pytest.approx(0.96)
+    volume = sum(part.volume for part in parts[:-1])
+    assert volume == pytest.approx(0.8 * 1.0 * 2.0 - 0.78 * 0.96 * 1.96)
+
+
+def test_the_inside_of_a_cabinet_is_a_little_darker_or_of_another_colour():
+    board = openings.cabinet_box((0.8, 1.0, 2.0), (0, 0, 1), (0.5, 0.5, 0.5), boards=(0.5,))[-1]
+    assert board.colour == pytest.approx((0.46, 0.46, 0.46))
+    lined = openings.cabinet_box((0.8, 1.0, 2.0), (0, 0, 1), WHITE, boards=(0.5,), lining=(0.1, 0.2, 0.3))
+    assert lined[-1].colour == (0.1, 0.2, 0.3)
+
+
+def test_a_frame_leaves_its_hole_free():
+    size, hole = (0.8, 1.0, 2.0), (-0.3, 0.3, 0.5, 1.5)
+    plain = openings.cabinet_box(size, (0.0, 0.0, 1.0), WHITE)
+    framed = openings.framed_box(size, (0.0, 0.0, 1.0), WHITE, hole)
+    front = framed[len(plain) :]
+    assert len(front) == 4
+    low, high = bounds(front)
+    assert (low.tolist(), high.tolist()) == (
+        pytest.approx([0.38, -0.5, 0.0]),
+        pytest.approx([0.4, 0.5, 2.0]),
+    )
+    assert sum(part.volume for part in front) == pytest.approx(0.02 * (1.0 * 2.0 - 0.6 * 1.0))
+    for part in front:
+        low, high = bounds([part])
+        assert high[1] <= -0.3 + 1e-9 or low[1] >= 0.3 - 1e-9 or high[2] <= 0.5 + 1e-9 or low[2] >= 1.5 - 1e-9
+    wide = openings.framed_box(size, (0.0, 0.0, 1.0), WHITE, (-0.5, 0.5, 0.5, 2.0))
+    assert len(wide) == len(plain) + 1  # no strips of no width
+
+
+def test_walls_are_thicker_of_what_is_larger_and_thinner_of_what_is_small():
+    assert openings.wall_of((0.8, 1.0, 2.0)) == 0.02
+    assert openings.wall_of((1.0, 2.0, 2.0)) == openings.wall_of((2.0, 1.0, 2.0)) == pytest.approx(0.036)
+    assert openings.wall_of((0.1, 1.0, 2.0)) == pytest.approx(0.01)
+
+
+def test_a_drawer_is_a_tray_behind_a_panel_that_slides_out():
+    parts = openings.pull_out("d", (0.4, 0.6, 0.2), (0.1, 0.2, 0.3), (0.5, 0.5, 0.5), panel=(0.7, 0.25))
+    joint = parts[0].joint
+    assert all(part.joint == joint for part in parts)
+    assert (joint.kind, joint.axis, joint.anchor) == ("slide", (1.0, 0.0, 0.0), (0.1, 0.2, 0.3))
+    assert joint.range == pytest.approx((0.0, 0.26))
+    assert (joint.closed, joint.friction) == (0.0, 3.0)
+    low, high = bounds(parts[:4])
+    assert (low.tolist(), high.tolist()) == (
+        pytest.approx([-0.1, -0.1, 0.2]),
+        pytest.approx([0.3, 0.5, 0.4]),
+    )
+    low, high = bounds(parts[4:])
+    assert (low.tolist(), high.tolist()) == (
+        pytest.approx([0.3, -0.15, 0.175]),
+        pytest.approx([0.312, 0.55, 0.425]),
+    )
+    walls = 0.4 * 0.6 * 0.008 + 0.192 * 0.008 * (0.6 + 2 * 0.392)
+    assert sum(part.volume for part in parts[:4]) == pytest.approx(walls)
+    assert (parts[0].colour, parts[4].colour) == (pytest.approx((0.4,) * 3), pytest.approx((0.6,) * 3))
+
+
+@pytest.mark.parametrize("hinge", [1, -1])
+def test_a_door_turns_about_its_outer_edge(hinge):
+    (leaf,) = openings.side_door("d", (0.02, 0.6, 2.0), (0.3, 0.1, 1.0), WHITE, hinge=hinge)
+    joint = leaf.joint
+    assert joint.anchor == pytest.approx((0.31, 0.1 + hinge * 0.3, 1.0))
+    assert joint.axis == (0.0, 0.0, float(hinge))
+    assert joint.range == pytest.approx((0.0, math.radians(100.0)))
+    opened = moved(leaf, math.pi / 2)
+    assert bounds([opened])[0][0] >= 0.3  # outwards
+
+
+def test_a_flap_tips_forwards_about_its_lower_edge():
+    (leaf,) = openings.flap("d", box((0.02, 0.6, 0.5), (0.3, 0.0, 0.25), WHITE), (0.3, 0.0, 0.0))
+    assert leaf.joint.range == pytest.approx((0.0, math.pi / 2))
+    low, high = bounds([moved(leaf, math.pi / 2)])
+    assert (low[0], high[0], high[2]) == pytest.approx((0.3, 0.8, 0.01))

@@ -1,11 +1,18 @@
 import json
+import math
+from itertools import product as product_of
 
+import mujoco
+import numpy as np
 import pytest
 
-from nodes.sim_node.models.library import build
-from nodes.sim_node.models.spaces import shape_of
+from nodes.sim_node.models.forms import hollow_box, slab
+from nodes.sim_node.models.library import assemble, build
+from nodes.sim_node.models.parts import UPRIGHT, about, ball, box, mesh, pill, product, rod, seen
+from nodes.sim_node.models.spaces import _cut, shape_of
 from nodes.sim_node.models.variety_table import KINDS
 from nodes.sim_node.models.write_shapes import as_json, library_shapes
+from nodes.sim_node.physics.build import add_part
 from ontology import MODEL_SHAPES_JSON
 
 
@@ -78,3 +85,146 @@ def test_a_drawer_carries_what_is_in_its_tray(model):
         assert all(high <= most + 0.02 for high, most in zip(tray.high, room.high, strict=True))
         assert tray.high[2] == pytest.approx(room.high[2])
         assert any(shape.surfaces[k].height == pytest.approx(tray.low[2], abs=0.01) for k in leaf.surfaces)
+
+
+RED = (1.0, 0.0, 0.0)
+TURNS = (UPRIGHT, about("x", 0.5), product(about("z", 0.7), about("y", 1.1)), about("y", math.pi / 2))
+
+
+def pieces(turn):
+    at = (0.1, -0.05, 0.3)
+    return [
+        box((0.4, 0.3, 0.5), at, RED, turn),
+        ball((0.4, 0.3, 0.5), at, RED, turn),
+        rod(0.2, 0.5, at, RED, turn),
+        pill(0.12, 0.6, at, RED, turn),
+    ]
+
+
+@pytest.mark.parametrize("turn", TURNS)
+@pytest.mark.parametrize("number", range(4), ids=["box", "ball", "rod", "pill"])
+def test_upright_lines_enter_and_leave_a_part_at_its_surface(number, turn):
+    """As MuJoCo's rays do from above and from below."""
+    part = pieces(turn)[number]
+    spec = mujoco.MjSpec()
+    add_part(spec.worldbody.add_body(), part)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    xs, ys = np.linspace(-0.31, 0.43, 7), np.linspace(-0.37, 0.33, 6)
+    enter, leave = _cut(part, xs, ys)
+    assert (~np.isnan(enter)).sum() > 2
+    for (i, x), (j, y) in product_of(enumerate(xs), enumerate(ys)):
+        low, high = (_ray(model, data, x, y, side) for side in (-1.0, 1.0))
+        assert np.isnan(enter[i, j]) == np.isnan(leave[i, j]) == (low is None)
+        if low is not None:
+            assert enter[i, j] == pytest.approx(low, abs=1e-6)
+            assert leave[i, j] == pytest.approx(high, abs=1e-6)
+
+
+def _ray(model, data, x, y, side):
+    """How high an upright line from below (-1) or above (1) meets the geometry first."""
+    geom = np.array([-1], np.int32)
+    start, way = np.array([x, y, 5.0 * side]), np.array([0.0, 0.0, -side])
+    distance = mujoco.mj_ray(model, data, start, way, None, 1, -1, geom)
+    return None if distance < 0 else 5.0 * side - side * distance
+
+
+def test_a_line_through_a_mesh_is_cut_by_its_hull():
+    faces = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)], dtype=np.int32)
+    wedge = mesh(np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], dtype=float), faces, RED)
+    enter, leave = _cut(wedge, np.array([0.2, 0.9]), np.array([0.3, 0.9]))
+    assert enter[0, 0] == pytest.approx(0.0)
+    assert leave[0, 0] == pytest.approx(0.5)
+    assert np.isnan(enter[1, 1])
+
+
+def shape(*parts):
+    return shape_of(assemble("it", list(parts), 1.0))
+
+
+def walled(height, *, lid=False):
+    walls = hollow_box(1.0, 1.2, height, 0.05, RED)
+    return [*walls, *([slab(1.0, 1.2, height, height + 0.05, RED)] if lid else [])]
+
+
+def test_a_hollow_box_holds_and_is_open_until_it_has_a_lid():
+    (inside,) = shape(*walled(0.6)).interiors
+    assert inside.open
+    assert inside.low == pytest.approx((-0.45, -0.55, 0.05), abs=0.02)
+    assert inside.high == pytest.approx((0.45, 0.55, 0.6), abs=0.02)
+    assert inside.fill == pytest.approx(1.0)
+    (closed,) = shape(*walled(0.6, lid=True)).interiors
+    assert not closed.open
+    assert closed.high[2] == pytest.approx(0.6, abs=1e-6)  # to its lid, not to a cell's end
+    assert closed.low[2] == pytest.approx(0.05, abs=1e-6)
+
+
+def test_what_lacks_a_wall_or_its_floor_holds_nothing():
+    for missing in range(5):
+        parts = walled(0.6)
+        del parts[missing]
+        assert shape(*parts).interiors == ()
+
+
+def test_what_is_only_seen_is_a_wall_too_and_carries_nothing():
+    parts = walled(0.6)
+    (inside,) = shape(slab(1.0, 1.2, 0.0, 0.05, RED), *seen(parts[1:])).interiors
+    assert inside.open
+    (top,) = shape(slab(1.0, 1.2, 0.0, 0.05, RED), *seen(slab(0.5, 0.5, 0.05, 0.6, RED))).surfaces
+    assert top.height == pytest.approx(0.05)
+
+
+def test_two_hollows_are_told_apart_and_a_tiny_one_is_none():
+    wide = [*walled(0.6), box((0.9, 0.05, 0.55), (0.0, 0.1, 0.325), RED)]
+    first, second = shape(*wide).interiors
+    assert first.high[1] == pytest.approx(0.075, abs=0.02)
+    assert second.low[1] == pytest.approx(0.125, abs=0.02)
+    narrow = [*walled(0.6), box((0.9, 1.05, 0.55), (0.0, -0.02, 0.325), RED)]
+    assert shape(*narrow).interiors == ()
+
+
+@pytest.mark.parametrize(("gap_m", "heights"), [(0.05, [0.25, 0.1]), (0.02, [0.22])])
+def test_a_board_carries_where_there_is_room_above_it(gap_m, heights):
+    lower, upper = slab(1.0, 1.0, 0.0, 0.1, RED), slab(1.0, 1.0, 0.1 + gap_m, 0.2 + gap_m, RED)
+    assert [top.height for top in shape(lower, upper).surfaces] == pytest.approx(heights)
+
+
+def test_parts_that_touch_are_one_solid():
+    stack = [slab(1.0, 1.0, 0.0, 0.1, RED), slab(1.0, 1.0, 0.102, 0.2, RED)]
+    assert [top.height for top in shape(*stack).surfaces] == pytest.approx([0.2])
+
+
+def test_levels_that_differ_by_little_are_one_surface_and_steps_are_several():
+    def tops(step_m):
+        left, right = (
+            box((0.5, 1, 0.2), (-0.25, 0, 0.1), RED),
+            box((0.5, 1, 0.2 + step_m), (0.25, 0, 0.1 + step_m / 2), RED),
+        )
+        return [
+            (round(top.height, 3), round(top.high[0] - top.low[0], 1)) for top in shape(left, right).surfaces
+        ]
+
+    assert len(tops(0.004)) == 1
+    assert tops(0.05) == [(0.25, 0.5), (0.2, 0.5)]
+
+
+def test_a_disc_fills_most_of_its_rectangle_and_a_rim_carries_only_at_the_top():
+    (disc,) = shape(rod(0.5, 0.1, (0, 0, 0.05), RED)).surfaces
+    assert disc.fill == pytest.approx(math.pi / 4, abs=0.02)
+    assert disc.low == pytest.approx((-0.5, -0.5), abs=0.02)
+    rim = hollow_box(1.0, 1.0, 0.3, 0.04, RED)
+    assert [top.height for top in shape(*rim).surfaces] == pytest.approx([0.3, 0.04])
+    post = box((0.1, 0.1, 0.5), (0.0, 0.0, 0.25), RED)
+    assert 0.3 not in [round(top.height, 2) for top in shape(*rim, *_board(post)).surfaces]
+
+
+def _board(post):
+    return [post, box((0.6, 0.6, 0.1), (0.0, 0.0, 0.55), RED)]
+
+
+def test_an_edge_is_too_small_to_carry():
+    base, knob = slab(1.0, 1.0, 0.0, 0.1, RED), box((0.1, 0.1, 0.1), (0.3, 0.3, 0.15), RED)
+    assert [round(top.height, 3) for top in shape(base, knob).surfaces] == [0.1]
+    larger = box((0.2, 0.2, 0.1), (0.3, 0.3, 0.15), RED)
+    assert [round(top.height, 3) for top in shape(base, larger).surfaces] == [0.2, 0.1]
