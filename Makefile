@@ -1,6 +1,6 @@
 # Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-long test-faults lint format docs diagrams pictures schema shapes models relations-picture drive-picture foreign-picture train-perception wheel clean
+.PHONY: help setup demo test test-long test-faults mutants lint format docs diagrams pictures schema shapes models relations-picture drive-picture foreign-picture train-perception wheel clean
 
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
@@ -41,6 +41,9 @@ test-long: setup  ## The tests that take longer too, and all tries of those that
 test-faults: setup  ## Kill, stop, forge, send nonsense: nothing acknowledged may be lost or done twice; half an hour
 	$(BIN)/python -m tests.faults.mutations 20000
 	$(BIN)/python -m tests.faults
+
+mutants: setup  ## Change lines of a node at random, and list what its tests miss; PART=nodes/coordinator N=60 SEED=1
+	$(BIN)/python -m tests.mutants $(PART) --number $(or $(N),60) --seed $(or $(SEED),1) --jobs $(or $(JOBS),2)
 
 lint: setup  ## Style, types and the rules of who imports whom
 	$(BIN)/ruff check .
