@@ -76,6 +76,32 @@ def test_what_follows_is_what_the_rules_make(reasoner):
         assert reasoner.types(individual) == general.types(individual)
 
 
+PLAIN = """
+:cup1 a :B ; :on :tray1 . :cup2 a :B , :C ; :on :tray1 . :tray1 a :A ; :touches :cup1 . :lamp1 :bears :cup2 .
+"""
+WHOLE = ":tray1 :part :shelf1 . :shelf1 :part :room1 . :room1 :has :lamp1 . "
+
+
+@pytest.mark.parametrize(
+    "facts", [PLAIN, PLAIN + WHOLE, PLAIN + ":cup2 :weight 3 . "], ids=["things", "parts", "a value"]
+)
+def test_what_follows_of_things_without_values_is_what_the_rules_make(facts):
+    """Where nothing is the same as another, and no value is spelled in two ways, there is a shorter way."""
+    reasoner = Reasoner(triples(TBOX))
+    reasoner.apply(insert=triples(facts))
+    general = GeneralEngine(list(reasoner.asserted()))
+    wanted = set(general.inferred(None, None, None))
+    for _ in range(2):
+        found = list(reasoner.inferred())
+        assert len(found) == len(set(found))
+        assert set(found) == wanted
+    for pattern in patterns_of(wanted):
+        assert set(reasoner.inferred(*pattern)) == {fact for fact in wanted if matches(pattern, fact)}
+    reasoner.believe(come=triples(":cup1 :on :lamp1 ."))
+    assert triple(":lamp1 :bears :cup1") in set(reasoner.inferred())
+    assert triple(":lamp1 :touches :cup1") in set(reasoner.inferred())
+
+
 @pytest.mark.parametrize(
     ("fact", "holds"),
     [
