@@ -63,7 +63,9 @@ def test_a_thing_is_opened_all_the_way_or_in_part_and_closed(command, share, wor
 
 
 def test_a_switch_is_turned():
-    assert _on_its_way(c.Open(name="thing1", joint="knob1", to=0.5), "knob1") == "turning knob1 of thing1 to 50%"
+    assert (
+        _on_its_way(c.Open(name="thing1", joint="knob1", to=0.5), "knob1") == "turning knob1 of thing1 to 50%"
+    )
     assert _on_its_way(c.Close(name="thing1", joint="knob1"), "knob1") == "turning knob1 of thing1 to 0%"
 
 

@@ -142,9 +142,7 @@ def test_where_a_held_body_is_follows_from_its_holder():
 def jointed(position: float, *, commit: int = 4, resting: bool = True, kind="hinge", ends=(0.0, 2.0)) -> Body:
     lower, upper = ends
     door = Joint(name="door1", kind=kind, lower=lower, upper=upper, closed=lower, position=position)
-    return structs.replace(
-        body("fridge1", at(0.0), resting=resting), joints=(door,), joint_commit=commit
-    )
+    return structs.replace(body("fridge1", at(0.0), resting=resting), joints=(door,), joint_commit=commit)
 
 
 def fridge(since: int = 5, source: str = "operator", **said) -> Entity:
@@ -209,9 +207,7 @@ def test_a_joint_differs_by_a_share_of_its_way_or_as_poses_do(said, stands, foll
     ],
 )
 def test_a_switch_is_on_or_off_unless_the_map_says_how_far(said, position, follows):
-    knob = Joint(
-        name="knob1", kind="hinge", lower=0.0, upper=1.0, closed=0.0, switch=True, position=position
-    )
+    knob = Joint(name="knob1", kind="hinge", lower=0.0, upper=1.0, closed=0.0, switch=True, position=position)
     stands = structs.replace(body("fridge1", at(0.0)), joints=(knob,), joint_commit=5)
     assert look([fridge(**said)], [stands]).opened == (("fridge1",) if follows else ())
 

@@ -436,9 +436,7 @@ def test_bodies_that_the_map_rejects_are_put_back_and_that_is_reported(door, nam
     map_.keeping.keep()
     map_.refuse(errors.Refused("they may not stand there"))
     who = " and ".join(names)
-    assert map_.said == [
-        f"{who} {were} put back, because the map rejected {told}: they may not stand there"
-    ]
+    assert map_.said == [f"{who} {were} put back, because the map rejected {told}: they may not stand there"]
     ((back),) = [call.placements for call in map_.asked if call.VERB == "move"]
     assert {p.name: p.pose for p in back} == {n: door.map.entity(n).pose for n in names}
 
@@ -446,9 +444,7 @@ def test_bodies_that_the_map_rejects_are_put_back_and_that_is_reported(door, nam
 def test_poses_that_show_a_body_elsewhere_are_followed_and_older_ones_are_not(door):
     map_ = Refusing(door, "chair1", "chair2")
     bodies = tuple(map_.keeping.scene.bodies.values())
-    map_.keeping.scene.take(
-        Scene(run="r", version=1, stamp_ns=10, sim_time_s=0.0, world="w", bodies=bodies)
-    )
+    map_.keeping.scene.take(Scene(run="r", version=1, stamp_ns=10, sim_time_s=0.0, world="w", bodies=bodies))
 
     def poses(x, stamp_ns, *, resting=True, version=1):
         entity = door.map.entity("chair1")
@@ -500,7 +496,12 @@ def test_a_reset_puts_back_what_stands_by_itself_and_moves_joints(door):
     ("name", "fields", "status", "detail"),
     [
         ("chair1", {}, "present", ""),
-        ("chair1", {"ghost": True}, "ghost", "overlaps another body, so it does not collide until there is room"),
+        (
+            "chair1",
+            {"ghost": True},
+            "ghost",
+            "overlaps another body, so it does not collide until there is room",
+        ),
         (
             "chair1",
             {"ghost": True, "in_the_way": "table1"},
@@ -546,7 +547,11 @@ def test_the_world_s_bodies_that_are_no_entities_are_problems_where_the_scene_is
 def test_a_body_of_the_scene_becomes_an_entity_after_what_it_is_part_of(door):
     added = []
     keeping = Keeping(
-        CoordinatorConfig("scene"), door, lambda change: added.append(change) or Future(), lambda call: Future(), print
+        CoordinatorConfig("scene"),
+        door,
+        lambda change: added.append(change) or Future(),
+        lambda call: Future(),
+        print,
     )
     keeping.scene.known = True
     sofa = standing(BodyOrder(name="sofa", class_="Chair", pose=Pose(position_m=(1.0, 2.0, 0.0)), commit=0))

@@ -79,7 +79,9 @@ def test_a_place_is_drawn_with_its_height_as_a_box_or_a_polygon_with_holes():
     (ring,) = kitchen.rings
     assert area(ring) == pytest.approx(36.0)
     assert (corner.name, corner.part, corner.forbidden) == ("corner1", False, False)
-    drawn = structs.replace(ROOM, pose=structs.replace(ROOM.pose, position_m=(2.0, 1.0, 0.5)), size_m=(4.0, 2.0, 2.5))
+    drawn = structs.replace(
+        ROOM, pose=structs.replace(ROOM.pose, position_m=(2.0, 1.0, 0.5)), size_m=(4.0, 2.0, 2.5)
+    )
     (place,) = plan_of([said(drawn, "Building_Subparts", hasExtent=SQUARE, isForbidden=True)], ()).places
     outer, hole = place.rings
     assert (area(outer), area(hole)) == (pytest.approx(8.0), pytest.approx(-1.0))

@@ -27,7 +27,9 @@ FACTS = """
 :cup1 :near :cup2 .
 """
 SAME = ":mug1 owl:sameAs :cup1 . :mug1 :near :lamp1 . :lamp1 owl:sameAs :light1 . "
-COMPUTED = triples(":cup1 :near :shelf1 . :cup2 :near :shelf1 . :tray1 :near :cup1 . :cup1 :on :tray1 . :lamp1 :on :shelf1 .")
+COMPUTED = triples(
+    ":cup1 :near :shelf1 . :cup2 :near :shelf1 . :tray1 :near :cup1 . :cup1 :on :tray1 . :lamp1 :on :shelf1 ."
+)
 
 
 def matches(pattern, fact):
@@ -42,7 +44,14 @@ def patterns_of(facts):
         for mask in product((True, False), repeat=3)
     }
     none = "<http://example.org/none>"
-    return [*found, (none, None, None), (None, none, None), (None, None, none), (none, TYPE, none), (None, TYPE, none)]
+    return [
+        *found,
+        (none, None, None),
+        (None, none, None),
+        (None, None, none),
+        (none, TYPE, none),
+        (None, TYPE, none),
+    ]
 
 
 @pytest.fixture(params=["", SAME], ids=["all different", "some the same"])
@@ -150,13 +159,22 @@ def test_what_is_computed_is_told_from_what_is_asserted(reasoner):
         assert reasoner.is_computed(fact) is (fact not in asserted)
     for fact in asserted:
         assert not reasoner.is_computed(fact)
-    for nothing in (":none :near :cup1", ":cup1 :near :none", ":cup1 :none :shelf1", ":cup1 :touches :shelf1"):
+    for nothing in (
+        ":none :near :cup1",
+        ":cup1 :near :none",
+        ":cup1 :none :shelf1",
+        ":cup1 :touches :shelf1",
+    ):
         assert not reasoner.is_computed(triple(nothing))
 
 
 def test_a_class_has_its_individuals(reasoner):
     def named(cls):
-        return {term for term in reasoner.instances(f"<http://example.org/{cls}>") if "cup" in term or "tray" in term}
+        return {
+            term
+            for term in reasoner.instances(f"<http://example.org/{cls}>")
+            if "cup" in term or "tray" in term
+        }
 
     cup1, cup2, tray1 = (f"<http://example.org/{name}>" for name in ("cup1", "cup2", "tray1"))
     assert (named("A"), named("B"), named("C")) == ({cup1, cup2, tray1}, {cup1, cup2}, {cup2})

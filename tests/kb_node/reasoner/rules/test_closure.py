@@ -56,7 +56,9 @@ def test_a_closure_that_starts_from_another_has_what_one_from_nothing_has(theme)
     for world in consistent(theme):
         everything = list(world.asserted)
         schema, facts = everything[::2], everything[1::2]
-        owned = [fact for fact in world.asserted if "22-rdf-syntax-ns#" in fact[1] or fact[0].startswith("_:")]
+        owned = [
+            fact for fact in world.asserted if "22-rdf-syntax-ns#" in fact[1] or fact[0].startswith("_:")
+        ]
         base = Closure(dict.fromkeys([*owned, *schema]))
         before = dict(base.facts)
         both = Closure(facts, base=base)
@@ -89,8 +91,16 @@ CASES = {
     "some": (":S owl:onProperty :p ; owl:someValuesFrom :A . :x :p :y . :y a :A .", ":x a :S", ":y a :S"),
     "only": (":S owl:onProperty :p ; owl:allValuesFrom :A . :x a :S ; :p :y .", ":y a :A", ":x a :A"),
     "has": (":S owl:onProperty :p ; owl:hasValue :y . :x a :S .", ":x :p :y", ":x :p :x"),
-    "key": (":A owl:hasKey ( :p ) . :x a :A ; :p 1 . :y a :A ; :p 1.0 . :z :p 1 .", ":x owl:sameAs :y", ":x owl:sameAs :z"),
-    "spelling": (":p a owl:InverseFunctionalProperty . :x :p 1 . :y :p 01 .", ":x owl:sameAs :y", ":x owl:sameAs :z"),
+    "key": (
+        ":A owl:hasKey ( :p ) . :x a :A ; :p 1 . :y a :A ; :p 1.0 . :z :p 1 .",
+        ":x owl:sameAs :y",
+        ":x owl:sameAs :z",
+    ),
+    "spelling": (
+        ":p a owl:InverseFunctionalProperty . :x :p 1 . :y :p 01 .",
+        ":x owl:sameAs :y",
+        ":x owl:sameAs :z",
+    ),
 }
 
 
@@ -141,8 +151,17 @@ def test_a_general_engine_gives_by_pattern_what_it_has():
     for ask in (engine.asserted, engine.inferred):
         everything = set(ask(None, None, None))
         for s, p, o in sorted(everything, key=str)[::7]:
-            for pattern in ((s, None, None), (None, p, None), (None, None, o), (s, p, None), (None, p, o), (s, p, o)):
+            for pattern in (
+                (s, None, None),
+                (None, p, None),
+                (None, None, o),
+                (s, p, None),
+                (None, p, o),
+                (s, p, o),
+            ):
                 if ask == engine.inferred and p == SAME_AS:
                     continue
-                wanted = {f for f in everything if all(a in (None, b) for a, b in zip(pattern, f, strict=True))}
+                wanted = {
+                    f for f in everything if all(a in (None, b) for a, b in zip(pattern, f, strict=True))
+                }
                 assert set(ask(*pattern)) == wanted, pattern
