@@ -117,7 +117,7 @@ def test_what_a_robot_holds_cannot_hold_the_robot():
         thing("gripper1", part_of="robot1"),
         thing("cup1", held_by="gripper1"),
     )
-    with pytest.raises(errors.Refused, match="^cup1 goes with robot1, so it cannot hold robot1$"):
+    with pytest.raises(errors.Refused, match=r"^cup1 goes with robot1, so it cannot hold robot1$"):
         holding.require_graspable(robot, cup, by_name(robot, gripper, cup), {})
 
 
@@ -230,7 +230,7 @@ def test_where_a_held_thing_is_follows_only_from_a_known_holder_and_grip():
 def test_only_what_nothing_holds_is_put_elsewhere():
     holding.require_free(CUP)
     with pytest.raises(
-        errors.Refused, match="^cup1 is held by hand1; to put it elsewhere, first: semmap detach"
+        errors.Refused, match=r"^cup1 is held by hand1; to put it elsewhere, first: semmap detach"
     ):
         holding.require_free(thing("cup1", held_by="hand1"))
 
@@ -241,7 +241,7 @@ def test_what_leaves_may_hold_only_what_leaves_too():
     )
     holding.require_empty_handed(("cup1",), held)
     holding.require_empty_handed(("hand1", "cup1", "fork1"), held)
-    with pytest.raises(errors.Refused, match="^hand1 holds fork1; first: semmap detach fork1$"):
+    with pytest.raises(errors.Refused, match=r"^hand1 holds fork1; first: semmap detach fork1$"):
         holding.require_empty_handed(("hand1", "cup1"), held)
-    with pytest.raises(errors.Refused, match="^hand1 holds cup1 and fork1; first: semmap detach cup1$"):
+    with pytest.raises(errors.Refused, match=r"^hand1 holds cup1 and fork1; first: semmap detach cup1$"):
         holding.require_empty_handed(("hand1",), held)

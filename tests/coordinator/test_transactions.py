@@ -206,7 +206,7 @@ def test_an_extent_is_refused_of_what_is_no_place_and_with_an_angle(fields, one,
 )
 def test_a_place_with_a_polygon_is_neither_moved_nor_turned_as_a_box(fields):
     with pytest.raises(
-        errors.Refused, match="^the extent of kitchen1 is a polygon: give another with --extent"
+        errors.Refused, match=r"^the extent of kitchen1 is a polygon: give another with --extent"
     ):
         transactions.update(c.Update(name="kitchen1", id="u", **fields), DRAWN)
 
@@ -246,10 +246,10 @@ def test_a_property_is_set_as_people_write_it(fields, condition):
 
 
 def test_a_set_needs_a_value_and_one_condition_at_most():
-    with pytest.raises(errors.BadRequest, match="^give a value of isOpen; to have none: semmap unset$"):
+    with pytest.raises(errors.BadRequest, match=r"^give a value of isOpen; to have none: semmap unset$"):
         transactions.state(c.Set(name="door1", id="s", property="isOpen", values=()))
     both = c.Set(name="door1", id="s", property="isOpen", values=(True,), if_is=False, if_unset=True)
-    with pytest.raises(errors.BadRequest, match="^give either --if-is or --if-unset$"):
+    with pytest.raises(errors.BadRequest, match=r"^give either --if-is or --if-unset$"):
         transactions.state(both)
 
 
@@ -348,7 +348,7 @@ def test_a_place_of_a_file_is_where_its_extent_is_if_it_is_anywhere():
     assert (new.pose, new.size, list(said(new.set))) == (None, None, ["hasExtent"])
     new = transactions.described("kitchen1", KITCHEN, structs.replace(given, at=(0.0, 0.0, 0.0)))
     assert new.pose == Pose(position_m=(2.0, 1.0, 0.0))
-    with pytest.raises(errors.BadRequest, match="^chair1: only places have an extent, and a Chair is none"):
+    with pytest.raises(errors.BadRequest, match=r"^chair1: only places have an extent, and a Chair is none"):
         transactions.described("chair1", CHAIR, given)
 
 

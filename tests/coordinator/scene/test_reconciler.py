@@ -309,7 +309,7 @@ def test_an_answer_that_cannot_be_taken_does_not_end_the_keeping(door):
 
 
 class Refusing:
-    """Changes of the map that are under way until the test gives their errors; what the simulator is asked."""
+    """Changes of the map that are under way until the test ends them, and what the simulator is asked."""
 
     def __init__(self, door, *entities: str):
         self.changes, self.said, self.asked = [], [], []
@@ -362,9 +362,7 @@ def test_joints_go_back_when_the_map_rejects_how_they_stand(door):
         (MemoryError("no memory"), 2, ["the map cannot take over how chair1 stands yet: no memory"]),
     ],
 )
-def test_joints_that_the_map_cannot_take_over_are_tried_again_unless_it_has_no_words_for_them(
-    door, error, tries, said
-):
+def test_joints_that_the_map_cannot_take_over_are_tried_again(door, error, tries, said):
     map_ = Refusing(door, "chair1")
     map_.become("chair1", joints=OPENED, joint_commit=1)
     map_.keeping.keep()

@@ -1,3 +1,4 @@
+# ruff: noqa: E501
 """Phrases in the small kitchen: what they mean to anna, who looks, and in which words that is told."""
 
 PHRASES = [

@@ -262,6 +262,23 @@ def test_a_list_has_an_argument_for_each_thing(text, understood):
     assert [frame.text for frame in told.frames] == understood
 
 
+@pytest.mark.parametrize(
+    ("text", "slot", "entity", "head"),
+    [
+        ("open the door of the fridge", "Containing_object", "fridge1", 6),
+        ("please open the door of the oven", "Containing_object", "oven1", 7),
+        ("open the fridge door", "Containing_object", "fridge1", 3),
+        ("open the door of the kitchen", "Container_portal", "door2", 3),
+        ("open the door of the sofa", "Container_portal", "door1", 3),
+    ],
+)
+def test_what_has_a_door_of_its_own_is_what_is_opened_and_named_by_its_own_word(text, slot, entity, head):
+    """Between rooms a door is a thing of its own."""
+    (frame,) = shipped().understand(text, there(LISTED), resolve=lambda _: ()).frames
+    (argument,) = frame.arguments
+    assert (argument.role, argument.entity, argument.head) == (slot, entity, head)
+
+
 def test_the_corpus_has_lists_and_relative_clauses_whole():
     assert frames("grab the bottle and the novel") == ["Taking(Theme=bottle1)"]
     assert len(frames("take the bottle that is on the side table")) == 2

@@ -1,4 +1,4 @@
-"""The rule table applied to a graph: beside an implementation of the same rules by others, and by its laws."""
+"""The rule table applied to a graph: beside an implementation by others, and by its laws."""
 
 from __future__ import annotations
 
