@@ -36,7 +36,7 @@ def quaternion(rng):
 
 
 def some(count=60):
-    """Forms of every model: as they are drawn and stretched, upright, turned, leaning, on their side and head."""
+    """Forms of every model: drawn and stretched, upright, turned, leaning, on their side and head."""
     rng = random.Random(4)
     ways = [
         UPRIGHT,
