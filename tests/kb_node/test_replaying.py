@@ -48,7 +48,7 @@ def status(*ready, in_agreement=True):
 
 @pytest.fixture
 def replay(tmp_path):
-    """`replay(loop)` plays three commits of another map into one that was begun like that; what it spreads."""
+    """`replay(loop)` plays three commits of another map into one that was begun like that."""
     for folder in ("there", "here"):
         (tmp_path / folder).mkdir()
     there, here = home.new_map(tmp_path / "there"), home.new_map(tmp_path / "here")

@@ -33,9 +33,7 @@ def test_a_mutant_is_the_module_with_one_line_changed(root):
         changed = [i for i, (a, b) in enumerate(zip(there, here, strict=True), 1) if a != b]
         assert changed == [mutant.line]
         compile(mutant.code, mutant.path, "exec")
-        assert mutant.describe().startswith(
-            f"nodes/area.py:{mutant.line}  {there[mutant.line - 1].strip()}  ->"
-        )
+        assert mutant.describe().startswith(f"nodes/area.py:{mutant.line}  {there[mutant.line - 1].strip()}  ->")
 
 
 def test_the_same_seed_draws_the_same(root):
