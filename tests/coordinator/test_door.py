@@ -218,6 +218,74 @@ def test_another_knowledge_base_may_know_less(door, semantic_map):
     assert door.map.take(Commit(seq=1, stamp_ns=0, id="a", source="operator"))
 
 
+@pytest.mark.parametrize("refusals", [1, 4])
+def test_a_name_that_turns_out_to_be_taken_is_thought_of_again(door, monkeypatch, refusals):
+    """Somebody may have published what was never committed."""
+    ask, left = door._ask, [refusals]
+
+    def refuse_first(call):
+        if call.VERB == "commit" and left[0]:
+            left[0] -= 1
+            raise errors.NameTaken("it is taken")
+        return ask(call)
+
+    monkeypatch.setattr(door, "_ask", refuse_first)
+    assert add(door, at=(1.0, 1.0, 0.0)).names == ("chair1",)
+    left[0] = 9
+    with pytest.raises(errors.NameTaken):
+        add(door, at=(2.0, 1.0, 0.0))
+    left[0] = 1
+    with pytest.raises(errors.NameTaken):
+        add(door, name="throne", at=(2.0, 1.0, 0.0))
+
+
+def test_a_removed_entity_frees_its_name_and_is_no_longer_tracked(door):
+    for _ in range(2):
+        add(door, at=(1.0, 1.0, 0.0))
+    door.change(c.Track(name="chair1"))
+    assert set(door.map.tracked) == {"chair1"}
+    door.change(c.Remove(names=("chair1",)))
+    assert door.map.tracked == {}
+    assert add(door, at=(5.0, 1.0, 0.0)).names == ("chair1",)
+
+
+def test_what_is_tracked_no_more_is_forgotten_and_places_are_known_as_they_come_and_go(door):
+    add(door, name="chair1", at=(1.0, 1.0, 0.0))
+    door.change(c.Track(name="chair1", from_="sim"))
+    assert door.change(c.Track(name="chair1", from_="sim")).text == (
+        "unchanged: chair1 is tracked from the simulator already"
+    )
+    door.change(c.Track(name="chair1", from_="stream"))
+    assert (
+        door.change(c.Track(name="chair1")).text
+        == "unchanged: chair1 is tracked from a stream of poses already"
+    )
+    door.change(c.Track(name="chair1", off=True))
+    assert door.map.tracked == {}
+    assert door.change(c.Track(name="chair1", off=True)).text == "unchanged: chair1 is not tracked"
+    assert list(door.map.places) == []
+    add(door, class_="Kitchen", name="kitchen1", at=(0.0, 0.0, 0.0))
+    assert [place.name for place in door.map.places] == ["kitchen1"]
+    with pytest.raises(errors.Refused, match="kitchen1 is a place, which stays where it is"):
+        door.change(c.Track(name="kitchen1"))
+    door.change(c.Update(name="kitchen1", size=(3.0, 3.0, 2.5)))
+    assert [place.size_m for place in door.map.places] == [(3.0, 3.0, 2.5)]
+    door.change(c.Remove(names=("kitchen1",)))
+    assert list(door.map.places) == []
+
+
+def test_an_entity_is_listed_by_its_classes_in_the_order_of_names(door):
+    for name in ("b", "a"):
+        add(door, name=name, at=(1.0, 1.0, 0.0))
+    add(door, class_="Kitchen", name="k", at=(0.0, 0.0, 0.0))
+    assert [e.name for e in door.map.entities_of(None)] == ["a", "b", "k"]
+    assert [e.name for e in door.map.entities_of("Furniture")] == ["a", "b"]
+    assert door.map.where("a").position_m == (1.0, 1.0, 0.0)
+    assert door.map.where("nobody") is None
+    with pytest.raises(errors.UnknownName, match="no entity is named 'c'"):
+        door.map.entity("c")
+
+
 def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(door):
     add(door, name="chair1", at=(1.0, 1.0, 0.0))
     follow(door, "chair1", Pose(position_m=(1.5, 1.0, 0.0)))

@@ -6,9 +6,11 @@ from concurrent.futures import Future
 
 import pytest
 
+from nodes.coordinator.scene.settled import Settled
 from nodes.coordinator.turns import GROUP, Turns
 from schemas import errors
-from schemas.commands import Add, Update
+from schemas.commands import Add, Batch, Clear, Set, Track, Undo, Unset, Update
+from schemas.entities import Pose
 from schemas.replies import Changed
 
 
@@ -19,7 +21,7 @@ class KnowledgeBase:
         self.groups: list[tuple[list[str | None], Future]] = []
 
     def __call__(self, changes):
-        self.groups.append(([change.name for change in changes], Future()))
+        self.groups.append(([getattr(change, "name", None) for change in changes], Future()))
         return self.groups[-1][1]
 
     @property
@@ -146,3 +148,79 @@ def test_an_unexpected_exception_is_told_and_frees_the_turn(at_once):
     turns.go_on()
     futures[1].set_result([Changed(commit=1, text="a")])
     assert second.result(timeout=0).commit == 1
+
+
+HERE = Pose(position_m=(0.0, 0.0, 0.0))
+
+
+def settled(*names):
+    return Settled(dict.fromkeys(names, HERE), dict.fromkeys(names, (1, -1, -1)))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        Add(class_="Chair", name="c", at=(0.0, 0.0, 0.0)),
+        Update(name="c", size=(1.0, 1.0, 1.0)),
+        Set(name="c", property="note", values=("x",)),
+        Unset(name="c", property="note"),
+        Track(name="c", from_="stream"),
+        settled("c"),
+    ],
+    ids=lambda change: type(change).__name__,
+)
+def test_a_change_of_one_entity_goes_together_with_changes_of_others(kb, turns, change):
+    move(turns, "a")
+    turns.change(change)
+    move(turns, "b")
+    turns.go_on()
+    assert [len(names) for names in kb.names] == [3]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        Add(class_="Chair", at=(0.0, 0.0, 0.0)),
+        Add(class_="Chair", name="c", at=(0.0, 0.0, 0.0), dry_run=True),
+        Update(name="c", size=(1.0, 1.0, 1.0), dry_run=True),
+        settled("c", "d"),
+        Batch(changes=()),
+        Clear(),
+        Undo(),
+    ],
+    ids=lambda change: type(change).__name__,
+)
+def test_a_change_of_several_entities_and_a_dry_run_go_alone(kb, turns, change):
+    move(turns, "a")
+    turns.change(change)
+    move(turns, "b")
+    turns.go_on()
+    assert [len(names) for names in kb.names] == [1]
+
+
+def test_a_change_of_the_same_entity_ends_a_group_also_if_others_follow(kb, turns):
+    """Otherwise the second change of `a` would be overtaken."""
+    for name in "aab":
+        move(turns, name)
+    turns.go_on()
+    assert kb.names == [["a"]]
+    kb.finish(0)
+    turns.go_on()
+    assert kb.names == [["a"], ["a", "b"]]
+
+
+def test_a_group_that_goes_alone_has_nothing_beside_it(kb, turns):
+    turns.change(Clear())
+    turns.go_on()
+    move(turns, "a")
+    move(turns, "b")
+    turns.go_on()
+    assert kb.names == [[None]]
+
+
+def test_at_most_two_groups_are_under_way(kb, turns):
+    for name in "abc":
+        move(turns, name)
+        turns.go_on()
+    assert kb.names == [["a"], ["b"]]
+    assert len(turns) == 1

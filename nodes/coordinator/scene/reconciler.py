@@ -474,7 +474,7 @@ class Keeping:
             if not party:
                 yield (placement,)
             elif all(body.resting for body in there):
-                yield self.wanted(party).follow
+                yield self.wanted(sorted(party)).follow
 
     def _follow(self, placements: Sequence[Placement], opened: str = "") -> None:
         """Let the map follow bodies, and how the joints of one stand; if it refuses, they have to go back."""

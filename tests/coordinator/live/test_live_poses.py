@@ -41,6 +41,19 @@ def test_the_newest_pose_wins_and_has_an_age(poses):
     assert (live.pose, live.age_s, live.stale, live.source) == (at(2.0), 0.5, False, "stream")
 
 
+@pytest.mark.parametrize(("later_s", "stale"), [(0.0, False), (2.0, False), (2.01, True)])
+def test_a_pose_is_stale_when_nothing_has_come_for_longer_than_the_rules_allow(poses, later_s, stale):
+    poses.take("robot1", at(1.0), 1 * SECOND, 100.0, "stream")
+    assert poses.live("robot1", 100.0 + later_s).stale is stale
+
+
+def test_what_is_no_longer_tracked_or_tracked_from_elsewhere_is_forgotten(poses):
+    for name in ("robot1", "robot2", "robot3"):
+        poses.take(name, at(1.0), SECOND, 100.0, "stream")
+    poses.forget({**tracked("robot1"), **tracked("robot2", source="sim")})
+    assert [poses.live(name, 100.0) is None for name in ("robot1", "robot2", "robot3")] == [False, True, True]
+
+
 def test_what_comes_late_is_passed_over_and_a_clock_that_was_set_is_followed(poses):
     poses.take("robot1", at(1.0), 100 * SECOND, 0.0, "stream")
     poses.take("robot1", at(9.0), 99 * SECOND, 0.1, "stream")

@@ -6,7 +6,7 @@ import pytest
 from msgspec import structs
 
 from nodes.coordinator.config import CoordinatorConfig
-from nodes.coordinator.scene.opening import Opening, _arrived, _require_joints
+from nodes.coordinator.scene.opening import Opening, _arrived, _on_its_way, _require_joints, _share
 from nodes.coordinator.scene.reconciler import Keeping
 from schemas import commands as c
 from schemas import errors
@@ -150,3 +150,71 @@ def test_which_joints_did_not_get_where_they_were_sent_is_told(command, there, s
     text = _arrived(command, there)
     assert text.startswith("thing1: ")
     assert text.partition("; ")[2] == (said or "")
+
+
+@pytest.mark.parametrize(
+    ("command", "share", "words"),
+    [
+        (c.Open(name="thing1"), 1.0, "opening thing1"),
+        (c.Open(name="thing1", to=0.3), 0.3, "opening thing1 to 30%"),
+        (c.Close(name="thing1"), 0.0, "closing thing1"),
+    ],
+)
+def test_a_thing_is_opened_all_the_way_or_in_part_and_closed(command, share, words):
+    assert _share(command) == share
+    assert _on_its_way(command, "") == words
+
+
+def test_a_switch_is_turned():
+    assert (
+        _on_its_way(c.Open(name="thing1", joint="knob1", to=0.5), "knob1") == "turning knob1 of thing1 to 50%"
+    )
+    assert _on_its_way(c.Close(name="thing1", joint="knob1"), "knob1") == "turning knob1 of thing1 to 0%"
+
+
+@pytest.mark.parametrize(
+    ("command", "door", "short"),
+    [
+        (c.Open(name="thing1"), 2.0, ""),
+        (c.Open(name="thing1"), 1.97, ""),
+        (c.Open(name="thing1"), 1.9, "; something stops door"),
+        (c.Open(name="thing1", to=0.5), 1.0, ""),
+        (c.Open(name="thing1", to=0.5), 1.1, "; something stops door"),
+        (c.Close(name="thing1"), 0.0, ""),
+        (c.Close(name="thing1"), 0.5, "; something stops door"),
+        (c.Close(name="thing1", joint="drawer"), 0.5, ""),
+    ],
+)
+def test_what_did_not_arrive_is_told(command, door, short):
+    drawer = structs.replace(DRAWER, position=DRAWER.position_at(_share(command)))
+    text = _arrived(command, body(structs.replace(DOOR, position=door), drawer, SWITCH))
+    assert text.startswith("thing1: ")
+    assert ("knob1" in text, "door " in text) == (False, command.joint != "drawer")
+    assert text.partition("; something")[1:] == short.partition("; something")[1:]
+
+
+def test_a_switch_moves_only_by_its_name():
+    there = body(DOOR, structs.replace(SWITCH, position=1.0))
+    assert "door" not in _arrived(c.Open(name="thing1", joint="knob1"), there)
+    assert "knob1" in _arrived(c.Open(name="thing1", joint="knob1"), there)
+
+
+@pytest.mark.parametrize(
+    ("joint", "said"),
+    [
+        ("dor", "thing1 has no joint 'dor' to close; did you mean door?"),
+        ("zzz", "thing1 has no joint 'zzz' to close; it has: door, drawer, knob1"),
+    ],
+)
+def test_an_unknown_joint_is_refused_with_those_that_there_are(joint, said):
+    with pytest.raises(errors.Refused) as refused:
+        _require_joints(c.Close(name="thing1", joint=joint), body(DOOR, DRAWER, SWITCH))
+    assert str(refused.value) == said
+
+
+def test_a_joint_that_opens_and_a_switch_may_be_named():
+    for joint in ("door", "knob1"):
+        _require_joints(c.Close(name="thing1", joint=joint), body(DOOR, SWITCH))
+    _require_joints(c.Open(name="thing1", joint="knob1"), body(SWITCH))
+    with pytest.raises(errors.Refused, match="isSwitchedOn false"):
+        _require_joints(c.Close(name="thing1"), body(SWITCH))

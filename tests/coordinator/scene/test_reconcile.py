@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import structs
@@ -9,6 +10,7 @@ from msgspec import structs
 from nodes.coordinator.config import Thresholds
 from nodes.coordinator.scene.reconcile import Actions, latest, reconcile
 from schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
+from schemas.joints import Joint
 from schemas.scenes import Body
 
 THRESHOLDS = Thresholds(distance_m=0.05, angle_rad=0.0873)
@@ -73,6 +75,179 @@ def test_an_entity_without_a_body_gets_one_where_the_map_says():
 
 def test_places_and_things_without_a_position_get_no_body():
     assert look([entity("kitchen1", at(1), place=True), entity("chair1", None)], []) == NOTHING
+
+
+GRIP = "0.1 0 0.3 1 0 0 0"
+
+
+def held(holder: str, *, since: int = 5, source: str = "operator", grip: str = GRIP) -> Entity:
+    """A cup of which the map says what holds it."""
+    said = {"isGraspedBy": holder, "graspPose": grip} if holder else {}
+    return structs.replace(
+        entity("cup1", at(0.0)), properties=said, grip_provenance=provenance(since, source)
+    )
+
+
+def gripped(holder: str, *, commit: int = 4, x: float = 0.1, yaw: float = 0.0) -> Body:
+    """The cup's body, held by another or by none."""
+    grip = at(x, 0.0, 0.3, yaw) if holder else None
+    return structs.replace(body("cup1", at(0.0)), held_by=holder, grip=grip, grip_commit=commit)
+
+
+def test_a_body_is_ordered_to_be_held_once_its_holder_is_there_and_let_go_always():
+    hand = body("hand1", at(5.0), of_entity=False)
+    (order,) = look([held("hand1")], [gripped(""), hand]).grips
+    assert (order.name, order.holder, order.commit) == ("cup1", "hand1", 5)
+    assert order.grip == at(0.1, 0.0, 0.3)
+    assert look([held("hand1")], [gripped("")]) == NOTHING
+    (order,) = look([held("")], [gripped("hand1")]).grips
+    assert (order.name, order.holder, order.grip) == ("cup1", "", None)
+
+
+def test_a_body_that_nobody_was_told_of_is_held_as_the_map_says_whoever_said_it():
+    hand = body("hand1", at(5.0), of_entity=False)
+    assert look([held("hand1", source="scene")], [gripped("", commit=-1), hand]).grips
+    assert not look([held("hand1", source="scene")], [gripped("", commit=4), hand]).grips
+    assert look([held("hand1", source="scene")], [gripped("", commit=4), hand]).gripped == ("cup1",)
+    assert not look([held("")], [gripped("", commit=-1)]).grips
+    assert look([held("hand1", source="scene")], [gripped("", commit=4), hand], "replayed").grips
+
+
+def test_a_grip_differs_beyond_the_thresholds_of_poses():
+    hand = body("hand1", at(5.0), of_entity=False)
+
+    def follows(*, x=0.1, yaw=0.0, grip=GRIP, truth="map"):
+        known = [held("hand1", grip=grip), entity("hand1", at(5.0))]
+        return look(known, [gripped("hand1", commit=5, x=x, yaw=yaw), hand], truth).gripped == ("cup1",)
+
+    for truth in ("map", "scene"):
+        assert not follows(truth=truth)
+        assert not follows(x=0.14, yaw=0.08, truth=truth)
+        assert follows(x=0.16, truth=truth)
+        assert follows(yaw=0.09, truth=truth)
+        assert follows(grip="nonsense", truth=truth)
+
+
+def test_where_a_held_body_is_follows_from_its_holder():
+    """Neither is it put anywhere, nor does the map follow it."""
+    hand, elsewhere = body("hand1", at(5.0), of_entity=False), at(9.0)
+    known = structs.replace(gripped("hand1", commit=5), pose=elsewhere)
+    cup = structs.replace(held("hand1"), pose_provenance=provenance(7))
+    assert look([cup], [known, hand]) == NOTHING
+    taken = structs.replace(gripped("hand1", commit=6), pose=elsewhere)
+    actions = look([held("")], [taken, hand])
+    assert (actions.gripped, actions.place, actions.follow) == (("cup1",), (), ())
+
+
+def jointed(position: float, *, commit: int = 4, resting: bool = True, kind="hinge", ends=(0.0, 2.0)) -> Body:
+    lower, upper = ends
+    door = Joint(name="door1", kind=kind, lower=lower, upper=upper, closed=lower, position=position)
+    return structs.replace(body("fridge1", at(0.0), resting=resting), joints=(door,), joint_commit=commit)
+
+
+def fridge(since: int = 5, source: str = "operator", **said) -> Entity:
+    return structs.replace(
+        entity("fridge1", at(0.0)),
+        properties=said,
+        joint_provenance=provenance(since, source) if said else None,
+    )
+
+
+def test_joints_go_where_the_map_says_since_and_else_the_map_follows_them():
+    (order,) = look([fridge(openness=0.5)], [jointed(0.0)]).joints
+    assert (order.name, order.positions, order.commit) == ("fridge1", {"door1": 1.0}, 5)
+    assert look([fridge(openness=0.5, source="scene")], [jointed(0.0)]).opened == ("fridge1",)
+    assert look([fridge(openness=0.5)], [jointed(0.0, commit=5)]).opened == ("fridge1",)
+    assert look([fridge(openness=0.5)], [jointed(0.0, commit=5, resting=False)]) == NOTHING
+    assert look([fridge(openness=0.5)], [jointed(0.0, commit=5)], "replayed") == NOTHING
+    assert look([fridge(openness=0.5, source="scene")], [jointed(0.0)], "replayed").joints
+    assert look([fridge(openness=0.5)], [jointed(0.0)], "scene").opened == ("fridge1",)
+
+
+def test_joints_that_stand_as_the_map_says_are_ordered_without_moving_them():
+    """The body is told the commit; one that still moves is told where to."""
+    (order,) = look([fridge(openness=0.5)], [jointed(1.0005)]).joints
+    assert order.positions == {}
+    (order,) = look([fridge(openness=0.5)], [jointed(1.0, resting=False)]).joints
+    assert order.positions == {"door1": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("said", "stands", "follows"),
+    [
+        ({"openness": 0.5}, jointed(1.03, commit=5), False),
+        ({"openness": 0.5}, jointed(1.05, commit=5), True),
+        ({"openness": 0.5}, jointed(0.95, commit=5), True),
+        ({"isOpen": True}, jointed(0.5, commit=5), False),
+        ({"isOpen": True}, jointed(0.0, commit=5), True),
+        ({"isOpen": False}, jointed(0.0, commit=5), False),
+        ({"isOpen": False}, jointed(1.0, commit=5), True),
+        ({"isOpen": True, "openness": 1.0}, jointed(1.0, commit=5), True),
+        ({"isOpen": True, "jointPositions": "door1=2"}, jointed(1.0, commit=5), True),
+        ({"jointPositions": "door1=1"}, jointed(1.02, commit=5, ends=(None, None)), False),
+        ({"jointPositions": "door1=1"}, jointed(1.1, commit=5, ends=(None, None)), True),
+        ({"jointPositions": "door1=1"}, jointed(1.04, commit=5, kind="slide", ends=(None, None)), False),
+        ({"jointPositions": "door1=1"}, jointed(1.06, commit=5, kind="slide", ends=(None, None)), True),
+        ({}, jointed(0.0), False),
+        ({}, jointed(1.0), True),
+    ],
+)
+def test_a_joint_differs_by_a_share_of_its_way_or_as_poses_do(said, stands, follows):
+    assert look([fridge(**said)], [stands]).opened == (("fridge1",) if follows else ())
+
+
+@pytest.mark.parametrize(
+    ("said", "position", "follows"),
+    [
+        ({"isSwitchedOn": True}, 1.0, False),
+        ({"isSwitchedOn": True}, 0.0, True),
+        ({"isSwitchedOn": False}, 1.0, True),
+        ({"isSwitchedOn": True, "switchPositions": "knob1=1"}, 0.8, True),
+        ({"isSwitchedOn": True}, 0.8, False),
+    ],
+)
+def test_a_switch_is_on_or_off_unless_the_map_says_how_far(said, position, follows):
+    knob = Joint(name="knob1", kind="hinge", lower=0.0, upper=1.0, closed=0.0, switch=True, position=position)
+    stands = structs.replace(body("fridge1", at(0.0)), joints=(knob,), joint_commit=5)
+    assert look([fridge(**said)], [stands]).opened == (("fridge1",) if follows else ())
+
+
+ROBOT = structs.replace(body("robot1", at(3.0), commit=-1), robot=True)
+ARM = structs.replace(body("arm1", at(3.0), commit=-1), robot=True, part_of="robot1")
+
+
+@pytest.mark.parametrize("truth", ["map", "scene", "perceived", "replayed"])
+def test_a_robot_of_a_new_run_is_put_where_it_last_stood_and_its_parts_go_with_it(truth):
+    actions = look([entity("robot1", at(1.0)), entity("arm1", at(1.0))], [ROBOT, ARM], truth)
+    assert [(p.name, p.pose, p.commit) for p in actions.place] == [("robot1", at(1.0), 1)]
+    assert actions.follow == ()
+    assert look([entity("robot1", None)], [ROBOT], truth).place == ()
+
+
+@pytest.mark.parametrize(
+    ("truth", "adopted", "deleted"),
+    [
+        ("map", ["robot1"], ("chair1",)),
+        ("scene", ["robot1", "chair1"], ()),
+        ("perceived", ["robot1"], ()),
+        ("replayed", [], ("robot1", "chair1")),
+    ],
+)
+def test_which_bodies_become_entities_depends_on_the_truth(truth, adopted, deleted):
+    actions = look([], [ROBOT, body("chair1", at(1.0))], truth)
+    assert [b.name for b in actions.adopt] == adopted
+    assert actions.delete == deleted
+
+
+def test_an_entity_without_a_position_whose_body_rests_somewhere_follows_it():
+    assert [p.name for p in look([entity("chair1", None)], [body("chair1", at(2.0))]).follow] == ["chair1"]
+
+
+def test_a_body_that_holds_nothing_more_in_mode_scene_is_told_by_its_grip_alone():
+    actions = look([held("hand1")], [structs.replace(gripped(""), pose=at(9.0))], "scene")
+    assert (actions.gripped, actions.follow) == (("cup1",), ())
+    still = structs.replace(gripped("hand1"), pose=at(9.0))
+    assert look([held("hand1")], [still], "scene") == NOTHING
 
 
 def test_what_became_a_place_loses_its_body():

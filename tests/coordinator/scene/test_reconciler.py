@@ -15,7 +15,8 @@ from schemas import commands as c
 from schemas import errors
 from schemas.commits import Effects
 from schemas.entities import Pose
-from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Scene, Spawned
+from schemas.joints import Joint
+from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Poses, Scene, Spawned
 from tests.coordinator.conftest import at_once
 
 
@@ -305,6 +306,263 @@ def test_an_answer_that_cannot_be_taken_does_not_end_the_keeping(door):
     keeping.keep()
     keeping.keep()
     assert asked == ["spawn", "spawn"]
+
+
+class Refusing:
+    """Changes of the map that are under way until the test ends them, and what the simulator is asked."""
+
+    def __init__(self, door, *entities: str):
+        self.changes, self.said, self.asked = [], [], []
+        for i, name in enumerate(entities):
+            door.change(c.Add(class_="Chair", name=name, at=(float(i), 1.0, 0.0)))
+        self.keeping = Keeping(CoordinatorConfig("map"), door, self.change, self.ask, self.said.append)
+        self.keeping.scene.known = True
+        for entity in door.map.entities.values():
+            self.keeping.scene.bodies[entity.name] = standing(order(entity, entity.pose))
+
+    def change(self, change):
+        self.changes.append((change, Future()))
+        return self.changes[-1][1]
+
+    def ask(self, call):
+        self.asked.append(call)
+        return Future()
+
+    def become(self, name, **fields):
+        body = self.keeping.scene.bodies[name]
+        self.keeping.scene.bodies[name] = structs.replace(body, **fields)
+
+    def refuse(self, error):
+        self.changes[-1][1].set_exception(error)
+        self.keeping.keep()
+
+
+OPENED = (Joint(name="door1", kind="hinge", lower=0.0, upper=1.0, closed=0.0, position=0.5),)
+GRIP = Pose(position_m=(0.0, 0.0, 1.0))
+
+
+def test_joints_go_back_when_the_map_rejects_how_they_stand(door):
+    map_ = Refusing(door, "chair1")
+    map_.become("chair1", joints=OPENED, joint_commit=1)
+    map_.keeping.keep()
+    assert map_.changes[0][0].joints == {"chair1": OPENED}
+    map_.refuse(errors.Refused("it is locked"))
+    assert map_.said == [
+        "chair1 was put back as it stood, because the map rejected how it stands: it is locked"
+    ]
+    ((moved,),) = [call.orders for call in map_.asked if call.VERB == "move-joints"]
+    assert moved.name == "chair1"
+    assert len(map_.changes) == 1
+
+
+@pytest.mark.parametrize(
+    ("error", "tries", "said"),
+    [
+        (errors.BadRequest("no such property"), 1, []),
+        (MemoryError("no memory"), 2, ["the map cannot take over how chair1 stands yet: no memory"]),
+    ],
+)
+def test_joints_that_the_map_cannot_take_over_are_tried_again(door, error, tries, said):
+    map_ = Refusing(door, "chair1")
+    map_.become("chair1", joints=OPENED, joint_commit=1)
+    map_.keeping.keep()
+    map_.refuse(error)
+    assert (len(map_.changes), map_.said, map_.asked) == (tries, said, [])
+    assert map_.keeping.is_followed("chair1") is (tries == 1)
+
+
+def test_the_map_takes_over_what_was_taken_in_the_scene_and_by_whom(door):
+    map_ = Refusing(door, "chair1", "chair2", "table1")
+    map_.become("chair1", held_by="stranger1", grip=GRIP, grip_commit=0)
+    map_.become("chair2", held_by="table1", grip=GRIP, grip_commit=0)
+    map_.keeping.keep()
+    ((change, _),) = map_.changes  # a stranger is no entity yet
+    assert change.grips == {"chair2": ("table1", GRIP)}
+    assert change.reason == "chair2 was taken by table1 in the scene"
+    map_.keeping.keep()
+    assert len(map_.changes) == 1  # it is under way
+
+
+def test_the_map_takes_over_what_was_let_go_in_the_scene_and_by_whom(door):
+    door.map.bodies = dict
+    map_ = Refusing(door, "chair1", "table1")
+    said = structs.replace(
+        door.map.entities["chair1"],
+        properties={"isGraspedBy": "table1"},
+        grip_provenance=structs.replace(door.map.entities["chair1"].provenance, source="scene"),
+    )
+    door.map.entities["chair1"] = said
+    map_.become("chair1", grip_commit=1)
+    map_.keeping.keep()
+    ((change, _),) = map_.changes
+    assert change.grips == {"chair1": ("", None)}
+    assert change.reason == "chair1 was let go by table1 in the scene"
+
+
+@pytest.mark.parametrize(
+    ("error", "tries", "said", "asked"),
+    [
+        (errors.BadRequest("no such property"), 1, [], []),
+        (MemoryError("no memory"), 2, ["the map cannot take over what holds chair1 yet: no memory"], []),
+        (
+            errors.Refused("it is too heavy"),
+            1,
+            ["chair1 is held as before, because the map rejected what holds it: it is too heavy"],
+            ["grip"],
+        ),
+    ],
+)
+def test_what_holds_a_body_is_put_back_when_the_map_rejects_it(door, error, tries, said, asked):
+    map_ = Refusing(door, "chair1", "table1")
+    map_.become("chair1", held_by="table1", grip=GRIP, grip_commit=0)
+    map_.keeping.keep()
+    map_.refuse(error)
+    assert (len(map_.changes), map_.said) == (tries, said)
+    assert [call.VERB for call in map_.asked] == asked
+
+
+@pytest.mark.parametrize(
+    ("names", "told", "were"),
+    [(("chair1",), "its new pose", "was"), (("chair1", "chair2"), "their new poses", "were")],
+)
+def test_bodies_that_the_map_rejects_are_put_back_and_that_is_reported(door, names, told, were):
+    map_ = Refusing(door, *names)
+    for name in names:
+        map_.become(name, pose=Pose(position_m=(7.0, 7.0, 0.0)))
+    if len(names) > 1:
+        door.hands.let_go(c.Move(name=names[0], at=(7.0, 7.0, 0.0)), names[1:])
+    map_.keeping.keep()
+    map_.refuse(errors.Refused("they may not stand there"))
+    who = " and ".join(names)
+    assert map_.said == [f"{who} {were} put back, because the map rejected {told}: they may not stand there"]
+    ((back),) = [call.placements for call in map_.asked if call.VERB == "move"]
+    assert {p.name: p.pose for p in back} == {n: door.map.entity(n).pose for n in names}
+
+
+def test_poses_that_show_a_body_elsewhere_are_followed_and_older_ones_are_not(door):
+    map_ = Refusing(door, "chair1", "chair2")
+    bodies = tuple(map_.keeping.scene.bodies.values())
+    map_.keeping.scene.take(Scene(run="r", version=1, stamp_ns=10, sim_time_s=0.0, world="w", bodies=bodies))
+
+    def poses(x, stamp_ns, *, resting=True, version=1):
+        entity = door.map.entity("chair1")
+        return Poses(
+            run="r",
+            version=version,
+            stamp_ns=stamp_ns,
+            sim_time_s=0.0,
+            names=("chair1",),
+            poses=(x, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0),
+            resting=(resting,),
+            commits=(entity.pose_provenance.commit,),
+        )
+
+    map_.keeping.on_poses(poses(5.0, 11, resting=False))
+    map_.keeping.on_poses(poses(6.0, 9))
+    assert map_.changes == []
+    map_.keeping.on_poses(poses(7.0, 12))
+    ((change, _),) = map_.changes
+    assert [pose.position_m for pose in change.poses.values()] == [(7.0, 1.0, 0.0)]
+    assert map_.asked == []
+    map_.keeping.on_poses(poses(8.0, 13, version=2))
+    assert [call.VERB for call in map_.asked] == ["snapshot"]
+
+
+def test_a_scene_that_is_silent_is_forgotten_unless_it_has_orders_of_ours(door):
+    map_ = Refusing(door, "chair1")
+    map_.keeping.lose_scene()
+    assert not map_.keeping.scene.known
+    map_ = Refusing(door, "chair2")
+    door.change(c.Add(class_="Chair", name="chair3", at=(5.0, 5.0, 0.0)))
+    map_.keeping.keep()
+    map_.keeping.lose_scene()
+    assert map_.keeping.scene.known
+
+
+def test_a_reset_puts_back_what_stands_by_itself_and_moves_joints(door):
+    map_ = Refusing(door, "chair1", "chair2", "chair3")
+    map_.become("chair1", joints=OPENED, joint_commit=1)
+    map_.become("chair2", held_by="chair3", grip=GRIP, grip_commit=1)
+    door.change(c.Add(class_="Kitchen", name="kitchen1"))
+    map_.keeping.place_all()
+    moves = {call.VERB: call for call in map_.asked}
+    assert [p.name for p in moves["move"].placements] == ["chair1", "chair3"]
+    assert [o.name for o in moves["move-joints"].orders] == ["chair1"]
+
+
+@pytest.mark.parametrize(
+    ("name", "fields", "status", "detail"),
+    [
+        ("chair1", {}, "present", ""),
+        (
+            "chair1",
+            {"ghost": True},
+            "ghost",
+            "overlaps another body, so it does not collide until there is room",
+        ),
+        (
+            "chair1",
+            {"ghost": True, "in_the_way": "table1"},
+            "ghost",
+            "overlaps table1, so it does not collide until there is room",
+        ),
+        ("kitchen1", None, "none", "a place has no body"),
+        ("chair2", None, "pending", ""),
+    ],
+)
+def test_the_state_of_a_body(door, name, fields, status, detail):
+    map_ = Refusing(door, "chair1")
+    door.change(c.Add(class_="Kitchen", name="kitchen1"))
+    door.change(c.Add(class_="Chair", name="chair2", at=(9.0, 9.0, 0.0)))
+    if fields is not None:
+        map_.become(name, **fields)
+    state = map_.keeping.body_state(door.map.entity(name))
+    assert (state.status, state.detail) == (status, detail)
+    map_.keeping.lose_scene()
+    lost = map_.keeping.body_state(door.map.entity(name))
+    assert lost.status == ("none" if name == "kitchen1" else "unknown")
+
+
+def test_the_world_s_bodies_that_are_no_entities_are_problems_where_the_scene_is_the_truth(door):
+    keeping = Keeping(CoordinatorConfig("scene"), door, lambda change: Future(), lambda call: Future(), print)
+    keeping.scene.known = True
+    door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    assert keeping.problems() == ["chair1: missing: it is not in the scene"]
+    fallen = standing(BodyOrder(name="sofa", class_="Chair", pose=Pose(position_m=(0.0, 0.0, 0.0)), commit=0))
+    keeping.scene.bodies["sofa"] = structs.replace(fallen, resting=False)
+    keeping.scene.bodies["leg"] = structs.replace(fallen, name="leg", part_of="sofa")
+    keeping.scene.left_out = ("screw",)
+    assert keeping.problems()[1:] == [
+        "sofa: a scene body that becomes an entity when it comes to rest",
+        "leg: a part of sofa, which is no entity yet",
+        "1 body of the world is only a part of another: screw"
+        ' (to have one, add <text name="semmap:BODY" data="CLASS"/>)',
+    ]
+    keeping.scene.left_out = ("screw", "nut")
+    assert "are only parts of others: screw, nut" in keeping.problems()[-1]
+
+
+def test_a_body_of_the_scene_becomes_an_entity_after_what_it_is_part_of(door):
+    added = []
+    keeping = Keeping(
+        CoordinatorConfig("scene"),
+        door,
+        lambda change: added.append(change) or Future(),
+        lambda call: Future(),
+        print,
+    )
+    keeping.scene.known = True
+    sofa = standing(BodyOrder(name="sofa", class_="Chair", pose=Pose(position_m=(1.0, 2.0, 0.0)), commit=0))
+    keeping.scene.bodies["leg"] = structs.replace(sofa, name="leg", part_of="sofa")
+    keeping.scene.bodies["sofa"] = sofa
+    keeping.keep()
+    keeping.keep()
+    ((add),) = added
+    assert (add.name, add.class_, add.at, add.size) == ("sofa", "Chair", (1.0, 2.0, 0.0), (0.5, 0.5, 0.5))
+    assert (add.source, add.reason, add.track, add.set) == ("scene", "sofa stands in the scene", None, ())
+    door.change(add)
+    keeping.keep({"leg"})
+    assert (added[-1].name, added[-1].set) == ("leg", ("isDirectPartOf=sofa",))
 
 
 def test_what_a_hand_carried_together_is_followed_in_one_commit_once_all_of_it_rests(door):

@@ -154,6 +154,37 @@ def test_a_spelling_that_goes_while_another_comes():
     check_same(reasoner, [*asserted_in(BASE), new], BASE)
 
 
+@pytest.mark.parametrize("odd", ["", ":A rdfs:subClassOf rdf:type . "], ids=["compiled", "general"])
+def test_what_is_set_aside_is_asserted_and_does_not_hold_until_it_is_back(odd):
+    facts = triples(
+        odd + ":A rdfs:subClassOf :B . :on a owl:ObjectProperty . :cup a :A ; :on :tray , :shelf ."
+    )
+    reasoner = Reasoner(facts)
+    assert reasoner.is_compiled is (not odd)
+    on_tray, on_shelf, a_b = triple(":cup :on :tray"), triple(":cup :on :shelf"), triple(":cup a :B")
+    reasoner.believe(aside=[on_tray])
+    assert reasoner.sets_aside
+    assert list(reasoner.set_aside()) == [on_tray]
+    assert reasoner.set_aside_about([on_tray[2]]) == {on_tray}
+    assert reasoner.set_aside_about([on_shelf[2]]) == set()
+    assert len(reasoner) == len(facts)
+    assert set(reasoner.asserted()) == set(facts)
+    assert set(reasoner.asserted(None, on_tray[1])) == {on_tray, on_shelf}
+    assert set(reasoner.given(None, on_tray[1])) == {on_shelf}
+    assert {fact for group in reasoner.by_subject() for fact in group} == set(facts)
+    assert set(reasoner.about(on_tray[0])[on_tray[1]]) == {on_tray[2], on_shelf[2]}
+    assert set(reasoner.about(on_tray[0])) == {TYPE, on_tray[1]}
+    assert reasoner.mentioned({on_tray[2], "<http://example.org/none>"}) == {on_tray[2]}
+    assert (reasoner.holds(on_tray), reasoner.holds(on_shelf), reasoner.holds(a_b)) == (False, True, True)
+    again = Reasoner.of(reasoner.held())
+    assert set(again.given(None, on_tray[1])) == {on_shelf}
+    reasoner.believe(back=[on_tray, on_shelf])
+    assert not reasoner.sets_aside
+    assert reasoner.holds(on_tray)
+    assert set(reasoner.about(on_tray[0])[on_tray[1]]) == {on_tray[2], on_shelf[2]}
+    assert set(reasoner.asserted()) == set(facts)
+
+
 def test_how_an_inferred_value_is_spelled_does_not_depend_on_who_came_first():
     """Spellings met early are told from each other no more; the others bring their edges first."""
     facts = [

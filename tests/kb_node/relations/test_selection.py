@@ -47,6 +47,24 @@ def test_near_within_and_nearest():
     assert names(nearest=9, to="lamp2", within=1.0) == []
 
 
+def test_a_distance_includes_what_is_exactly_so_far_away():
+    boxes = [
+        thing("box1", (1.0, 0.0, 0.0), size=(1.0, 1.0, 1.0)),
+        thing("box2", (4.0, 0.0, 0.0), size=(2.0, 1.0, 1.0)),
+    ]
+
+    def found(**where):
+        return [e.name for e in selected(Space(boxes), boxes, Where(**where), boxes)]
+
+    assert found(near="box1", within=1.5) == ["box2"]
+    assert found(near="box1", within=1.49) == []
+    assert found(nearest=3, to="box1", within=1.5) == ["box2"]
+    assert found(nearest=3, to="box1", within=1.49) == []
+    assert found(nearest=3, to="0,0,0", within=0.5) == ["box1"]
+    assert found(nearest=3, to="0,0,0", within=3.0) == ["box1", "box2"]
+    assert found(nearest=1, to="0,0,0", within=3.0) == ["box1"]
+
+
 def test_near_and_nearest_to_a_position():
     assert names(near="2,2,0", within=0.5) == ["lamp1"]
     assert names(near="-9,-9,0", within=0.5) == []

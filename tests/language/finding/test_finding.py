@@ -11,6 +11,7 @@ from nodes.language.finding.finding import find
 from nodes.language.finding.known import Known
 from schemas import errors
 from tests.language.finding.kitchen import ITEMS, TERMS, Written, found, item, known
+from tests.language.finding.phrases import PHRASES
 
 
 @pytest.mark.parametrize(
@@ -68,6 +69,13 @@ def test_what_is_meant(text, names):
     outcome, there = found(text)
     assert there == names
     assert outcome == {0: "none", 1: "one"}.get(len(names), "several")
+
+
+@pytest.mark.parametrize("row", PHRASES, ids=[row[0] for row in PHRASES])
+def test_a_phrase_means_what_fits_it(row):
+    text, outcome, names, _, _ = row
+    answer = find(text, known(), Written(has_viewer=True), "anna")
+    assert (answer.outcome, " ".join(answer.names)) == (outcome, names)
 
 
 def test_what_may_be_meant_is_all_that_fits():

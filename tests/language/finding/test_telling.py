@@ -6,10 +6,20 @@ from nodes.language.finding import telling
 from nodes.language.finding.finding import find
 from nodes.language.finding.missing import missing
 from tests.language.finding.kitchen import Written, item, known
+from tests.language.finding.phrases import PHRASES
 
 
 def told(text, **options):
     return telling.told(find(text, known(), Written(**options)))
+
+
+@pytest.mark.parametrize("row", PHRASES, ids=[row[0] for row in PHRASES])
+def test_what_is_meant_is_told_with_its_reasons(row):
+    text, _, names, said, reasons = row
+    answer = telling.told(find(text, known(), Written(has_viewer=True), "anna"))
+    assert (answer.question or answer.text) == said
+    assert [candidate.entity for candidate in answer.candidates] == names.split()
+    assert "; ".join(answer.candidates[0].reasons if answer.candidates else ()) == reasons
 
 
 def test_each_thing_comes_with_what_fits_it():

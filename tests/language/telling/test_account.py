@@ -36,6 +36,10 @@ def kitchen():
     )
 
 
+def test_of_an_empty_map_nothing_is_left_out():
+    assert account.of_map(Inventory((), ()), (), 100) == ("The map is empty.", 0)
+
+
 WHOLE = (
     "The map has 3 places and 14 things."
     " The kitchen has a fridge, a lamp that is switched on and a door. In the fridge is milk."

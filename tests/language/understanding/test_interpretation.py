@@ -40,6 +40,138 @@ def test_a_command_is_frames_with_entities(text, understood):
     assert frames(text) == understood
 
 
+@pytest.mark.parametrize(
+    ("text", "understood", "groundings"),
+    [
+        (
+            "bring me the novel and the bottle",
+            ['Bringing(Beneficiary="me", Theme=book1)'],
+            {4: "book1", 7: "bottle1"},
+        ),
+        (
+            "take the bottle and the novel to the kitchen",
+            ["Bringing(Theme=bottle1, Goal=kitchen1)"],
+            {3: "bottle1", 6: "book1", 9: "kitchen1"},
+        ),
+        (
+            "take the mug from the table in the kitchen to the sofa",
+            ['Bringing(Theme="the mug", Source=table2, Goal=kitchen1)'],
+            {6: "table2", 9: "kitchen1", 12: "couch1"},
+        ),
+        (
+            "open the door of the fridge",
+            ['Closure(Container_portal="the door of the fridge")'],
+            {6: "fridge1"},
+        ),
+        ("open the fridge door", ["Closure(Container_portal=fridge1)"], {3: "fridge1", 4: "fridge1"}),
+        (
+            "close the fridge and switch on the lamp",
+            [
+                "Closure(Containing_object=fridge1)",
+                'Change_operational_state(Operational_state="on", Device="the lamp")',
+            ],
+            {3: "fridge1"},
+        ),
+        ("take the blue cup and the red one", ['Taking(Theme="the blue cup and the red one")'], {}),
+        ("bring two books to the sofa", ["Bringing(Theme=book1, Goal=couch1)"], {3: "book1", 6: "couch1"}),
+        ("put it on the table", ['Placing(Theme="it", Goal=table2)'], {5: "table2"}),
+        (
+            "could you please go to the kitchen",
+            ["Motion(Theme=robot1, Goal=kitchen1)"],
+            {2: "robot1", 7: "kitchen1"},
+        ),
+        (
+            "go to the kitchen and then to the bedroom",
+            ['Motion(Goal=kitchen1, Goal="to the bedroom")'],
+            {4: "kitchen1"},
+        ),
+        (
+            "go to the kitchen, take the bottle and bring it here",
+            ["Motion(Goal=kitchen1)", "Taking(Theme=bottle1)", 'Bringing(Theme=bottle1, Goal="here")'],
+            {4: "kitchen1", 7: "bottle1", 10: "bottle1"},
+        ),
+        (
+            "please follow the person slowly to the kitchen",
+            ['Cotheme(Cotheme="the person", Manner="slowly", Goal=kitchen1)'],
+            {8: "kitchen1"},
+        ),
+        (
+            "the book is on the table",
+            ["Being_located(Theme=book1, Location=table2)"],
+            {2: "book1", 6: "table2"},
+        ),
+        (
+            "do not take the bottle and do not open the fridge",
+            ["not Taking(Theme=bottle1)", "not Closure(Containing_object=fridge1)"],
+            {5: "bottle1", 11: "fridge1"},
+        ),
+        (
+            "find the book near the fridge",
+            ["Locating(Sought_entity=book1, Ground=fridge1)"],
+            {3: "book1", 6: "fridge1"},
+        ),
+        (
+            "search for the bottle in the kitchen and in the bedroom",
+            ['Locating(Sought_entity=bottle1, Ground=kitchen1, Ground="in the bedroom")'],
+            {4: "bottle1", 7: "kitchen1"},
+        ),
+        (
+            "check if the fridge is open",
+            ['Inspecting(Ground=fridge1, Desired_state="is open")'],
+            {4: "fridge1"},
+        ),
+        ("give the book to the man", ['Giving(Theme=book1, Recipient="to the man")'], {3: "book1"}),
+        ("give me the book", ['Giving(Recipient="me", Theme=book1)'], {4: "book1"}),
+        ("hand him the novel", ['Giving(Recipient="him", Theme=book1)'], {4: "book1"}),
+        ("move along the wall", ['Motion(Path="along the wall")'], {}),
+        ("move away from the table", ["Motion(Source=table2)"], {5: "table2"}),
+        ("move the chair next to the table", ['Motion(Theme="the chair", Goal=table2)'], {7: "table2"}),
+        ("turn to the left", ['Change_direction(Direction="to the left")'], {}),
+        ("turn around", ['Change_direction(Direction="around")'], {}),
+        ("this is a table", ['Being_in_category(Item="this", Category=table2)'], {4: "table2"}),
+        ("look at the picture", ['Perception_active(Phenomenon="at the picture")'], {}),
+        ("inspect the oven", ['Inspecting(Ground="the oven")'], {}),
+        ("release the bottle", ["Releasing(Theme=bottle1)"], {3: "bottle1"}),
+        (
+            "grasp the handle of the fridge",
+            ['Manipulation(Entity="the handle of the fridge")'],
+            {6: "fridge1"},
+        ),
+        ("come with me to the kitchen", ['Cotheme(Cotheme="with me", Goal=kitchen1)'], {6: "kitchen1"}),
+        (
+            "put the books on the table under the lamp",
+            ["Placing(Theme=book1, Goal=table2)"],
+            {3: "book1", 6: "table2"},
+        ),
+        ("take it to the kitchen", ['Bringing(Theme="it", Goal=kitchen1)'], {5: "kitchen1"}),
+        (
+            "bring the book or the bottle to the table",
+            ["Bringing(Theme=book1, Goal=table2)"],
+            {3: "book1", 6: "bottle1", 9: "table2"},
+        ),
+        ("frobnicate the book", [], {}),
+        (
+            "i want you to bring the newspaper near the couch",
+            ["Bringing(Agent=robot1, Theme=book1, Goal=couch1)"],
+            {3: "robot1", 7: "book1", 10: "couch1"},
+        ),
+        (
+            "take all the books to the kitchen",
+            ["Bringing(Theme=book1, Goal=kitchen1)"],
+            {4: "book1", 7: "kitchen1"},
+        ),
+    ],
+)
+def test_a_command_has_frames_and_words_that_name_entities(text, understood, groundings):
+    found = read(text)
+    assert [frame.text for frame in found.frames] == understood
+    assert {one.token: one.entity for one in found.groundings} == groundings
+    for frame in found.frames:
+        for argument in frame.arguments:
+            first, last = argument.span
+            assert 1 <= first <= argument.head <= last <= len(found.words)
+
+
 def test_where_things_are_tells_taking_from_bringing():
     near = [t for t in THINGS if t.name != "table2"]
     assert frames("take the bottle on the table", near)[0].startswith("Taking")
@@ -128,6 +260,23 @@ LISTED = (
 def test_a_list_has_an_argument_for_each_thing(text, understood):
     told = shipped().understand(text, there(LISTED), resolve=lambda _: ())
     assert [frame.text for frame in told.frames] == understood
+
+
+@pytest.mark.parametrize(
+    ("text", "slot", "entity", "head"),
+    [
+        ("open the door of the fridge", "Containing_object", "fridge1", 6),
+        ("please open the door of the oven", "Containing_object", "oven1", 7),
+        ("open the fridge door", "Containing_object", "fridge1", 3),
+        ("open the door of the kitchen", "Container_portal", "door2", 3),
+        ("open the door of the sofa", "Container_portal", "door1", 3),
+    ],
+)
+def test_what_has_a_door_of_its_own_is_what_is_opened_and_named_by_its_own_word(text, slot, entity, head):
+    """Between rooms a door is a thing of its own."""
+    (frame,) = shipped().understand(text, there(LISTED), resolve=lambda _: ()).frames
+    (argument,) = frame.arguments
+    assert (argument.role, argument.entity, argument.head) == (slot, entity, head)
 
 
 def test_the_corpus_has_lists_and_relative_clauses_whole():

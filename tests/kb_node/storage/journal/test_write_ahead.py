@@ -1,13 +1,16 @@
 """A journal whose process was killed has its last commits in SQLite's log: damage there is noticed, too."""
 
+import io
 import os
 import random
 import shutil
+from pathlib import Path
 
 import pytest
 
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import FILENAME, Journal
+from nodes.kb_node.storage.journal.write_ahead import Log
 from nodes.kb_node.storage.repair.repair import repair
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction
@@ -41,6 +44,24 @@ def names(data):
 
 
 ALL = {f"chair{number}" for number in range(1, 9)}
+
+
+@pytest.mark.parametrize(
+    ("is_before_boot", "recovered", "lost"),
+    [
+        (False, 9, False),
+        (False, 6, True),
+        (False, 3, True),
+        (False, 0, True),
+        (True, 9, False),
+        (True, 6, False),
+        (True, 3, True),
+        (True, 0, True),
+    ],
+)
+def test_a_transaction_may_be_unfinished_only_if_the_machine_lost_power(is_before_boot, recovered, lost):
+    log = Log(Path("journal"), io.BytesIO(), (3, 6, 9), is_before_boot)
+    assert log.lost(recovered) is lost
 
 
 def test_a_sound_log_is_read(data):
