@@ -103,8 +103,6 @@ def test_what_does_not_open_is_refused(client, name, why):
 
 
 def test_on_the_command_line(system):
-    assert "door open to 30% (0.524 rad)" in system.cli(
-        "open", "fridge1", "--to", "0.3", "--joint", "door"
-    )
+    assert "door open to 30% (0.524 rad)" in system.cli("open", "fridge1", "--to", "0.3", "--joint", "door")
     assert "isOpen" in system.cli("get", "fridge1")
     assert "door closed" in system.cli("close", "fridge1", "--wait")
