@@ -8,7 +8,7 @@ from nodes import bus
 from schemas import errors, keys
 from schemas.scenes import Scene, SceneQuery
 from semmap import aio
-from tests.conftest import running
+from tests.conftest import running, until
 
 TIMES = 20
 PLACE = "(2, 1.2,"
@@ -100,6 +100,9 @@ def test_a_robot_is_committed_where_it_was_driven_and_an_undo_takes_that_back(cl
         undone = client.undo()
         assert undone.text.startswith(f"undid commit {driven.commit}: moved robot1 from")
         assert placed(client, "robot1") == before
+        until(
+            lambda: client.get("robot1").live.pose.position_m == pytest.approx(before, abs=0.02), "it is back"
+        )
 
 
 def test_who_does_not_wait_is_answered_at_once_and_an_undo_stops_the_move(client):
