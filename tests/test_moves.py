@@ -36,6 +36,10 @@ def placed(client, name="chair9"):
     return client.get(name).pose.position_m
 
 
+def is_at(client, name, at):
+    return client.get(name).live.pose.position_m == pytest.approx(at, abs=0.02)
+
+
 def height(client, name):
     bodies = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene).bodies
     return next(body.pose.position_m[2] for body in bodies if body.name == name)
@@ -100,9 +104,7 @@ def test_a_robot_is_committed_where_it_was_driven_and_an_undo_takes_that_back(cl
         undone = client.undo()
         assert undone.text.startswith(f"undid commit {driven.commit}: moved robot1 from")
         assert placed(client, "robot1") == before
-        until(
-            lambda: client.get("robot1").live.pose.position_m == pytest.approx(before, abs=0.02), "it is back"
-        )
+        until(lambda at=before: is_at(client, "robot1", at), "that it is back")
 
 
 def test_who_does_not_wait_is_answered_at_once_and_an_undo_stops_the_move(client):
