@@ -180,7 +180,7 @@ def drags(client: Client, shown: Shown, moves: int) -> list[float]:
     time.sleep(1.0)
     for i in range(moves):
         rest.begin()
-        client.move(name, at=(3.0 + 0.4 * ((i + 1) % 2), 2.2, 0.3), carry=True)
+        client.move(name, at=(3.0 + 0.4 * ((i + 1) % 2), 2.2, 0.3), carry=True, wait=False)
         rested_s, commit = rest.wait()
         taken.append(shown.since(commit, rested_s))
         time.sleep(0.37)

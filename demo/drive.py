@@ -19,20 +19,20 @@ def drive(t: Tour) -> None:
     t.do("frames", "robot1_head", holds="a camera")
 
     t.tell("Open the fridge, put the milk in, close it: what a hand does, the map follows")
-    t.do("open", "fridge1", "--joint", "door", "--wait", holds="door open to 100%")
-    t.do("move", "milk1", "--at", "6.55", "0.3", "0.64")
-    t.until("the milk is in the fridge", lambda: t.ask("list", "--in", "fridge1"))
-    t.do("close", "fridge1", "--wait", holds="door closed")
+    t.do("open", "fridge1", "--joint", "door", holds="door open to 100%")
+    t.do("move", "milk1", "--at", "6.55", "0.3", "0.64", holds="moved milk1")
+    t.do("list", "--in", "fridge1", holds="milk1")
+    t.do("close", "fridge1", holds="door closed")
     t.do("explain", "milk1", "type", "Chilled_Food", holds="100% of its volume is within a hollow of fridge1")
 
     t.tell("The robot takes the apple along; what is held is where its holder is")
     t.do("attach", "apple1", "--to", "robot1_gripper", "--at", "0.06", "0", "0", holds="holds apple1")
-    t.do("drive", "robot1", "--to", "6.75", "1.2", "--yaw", "-90deg", "--wait", holds="robot1 is at")
+    t.do("drive", "robot1", "--to", "6.75", "1.2", "--yaw", "-90deg", holds="robot1 is at")
     t.do("list", "--nearest", "3", "--to", "robot1", holds="fridge1")
     t.do("get", "apple1", holds="from where robot1_gripper holds it")
 
     t.tell("On it drives, past the counter where the milk was, and lets the apple go")
-    t.do("drive", "robot1", "--to", "8.4", "1.15", "--yaw", "0", "--wait", holds="robot1 is at")
+    t.do("drive", "robot1", "--to", "8.4", "1.15", "--yaw", "0", holds="robot1 is at")
     t.do("detach", "apple1", holds="let go of apple1")
 
     t.tell("Where is the milk? Nobody sees it, and the map knows")

@@ -545,7 +545,8 @@ class LastSeen(Command[Sighting], frozen=True, tag="last-seen"):
 class Undo(Command[Changed], frozen=True, tag="undo"):
     """Undo a commit by a new one, unless later ones depend on it; the scene follows.
 
-    Without `commit`: the newest that a client asked for, with the settling that followed it.
+    Without `commit`: the newest that a client asked for, with the settling that followed it. While a `move`,
+    `open`, `close` or `drive` has yet to be committed, that is stopped instead, and no commit is undone.
     """
 
     commit: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
@@ -663,7 +664,8 @@ class Move(Command[Moved], frozen=True, tag="move"):
 
     With `carry`, the bodies of what stands on it or is inside it (as the map has it) are moved with it as one
     rigid body, and the map follows all of them in one commit; not those that `leave` names. `frame` is as for
-    `add`.
+    `add`. `wait` delays the reply until the commit exists, or it is clear that there is none; while time is
+    paused, nothing is waited for.
     """
 
     name: Word
@@ -672,13 +674,15 @@ class Move(Command[Moved], frozen=True, tag="move"):
     frame: FrameName | None = None
     carry: bool = False
     leave: tuple[Word, ...] = ()
+    wait: bool = False
 
 
 class Open(Command[Moved], frozen=True, tag="open"):
     """Open a thing as a hand would: its joints move `to` this share of their way; the map follows at rest.
 
     With a `joint`, only that one of several. Refused for what has no joints; NoAnswer without a simulator.
-    `wait` delays the reply until it stands and the map has followed. What is in the way stops it.
+    `wait` delays the reply until it stands and the map has followed, as for `move`. What is in the way stops
+    it.
     """
 
     name: Word
@@ -700,8 +704,8 @@ class Drive(Command[Moved], frozen=True, tag="drive"):
 
     At the end it faces `yaw`. Points and `yaw` are in the map frame, or in `frame` as that is when the
     command begins. It turns to where it goes first, and goes at most at `speed` [m/s]. With `stop` it stops
-    where it is. `wait` delays the reply until it is there; where it gets no further, or falls, that is
-    Refused.
+    where it is. `wait` delays the reply until it is there and the map has followed, as for `move`; where it
+    gets no further, or falls, that is Refused.
     """
 
     name: Word

@@ -28,6 +28,8 @@ class Changed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     follows: tuple[str, ...] = ()
     """Of a dry run: what would follow about the entities that it touches, and does not now."""
     no_longer_follows: tuple[str, ...] = ()
+    undone: tuple[Change, ...] = ()
+    """Of an undo: what the commits that it took back had changed, of the first entities that they touched."""
 
 
 class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -174,10 +176,16 @@ class Sighting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Moved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The body was taken and released."""
+    """The body was moved: the map follows when it comes to rest, by `commit` if that was waited for.
+
+    Without a `commit`, `notes` say why there is none (yet): nobody waited, time is paused, or the map has the
+    body there already.
+    """
 
     name: str
     text: str
+    commit: int | None = None
+    notes: tuple[str, ...] = ()
 
 
 class Done(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -122,6 +122,10 @@ class BodiesMoved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
     bodies: tuple[Body, ...]
     failed: dict[str, str]
+    paused: bool = False
+    """Simulated time stands still: nothing falls or moves before it runs again."""
+    stamp_ns: int = 0
+    """When it was done, by the clock of the poses [ns since 1970]: earlier ones are from before."""
 
 
 class MoveBodies(Call[BodiesMoved], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -152,6 +156,9 @@ class JointsMoving(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
     bodies: tuple[Body, ...]
     failed: dict[str, str]
+    paused: bool = False
+    """As for `BodiesMoved`."""
+    stamp_ns: int = 0
 
 
 class MoveJoints(Call[JointsMoving], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -197,18 +204,22 @@ Point = tuple[Metres, Metres]
 
 
 class Driven(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How a course ended, and where the robot is then; `driving` if nobody waited for its end."""
+    """How a course ended, and where the robot is then; `driving` if nobody waited, or time is paused."""
 
     name: str
     outcome: Literal["driving", "there", "blocked", "fallen", "stopped"]
     pose: Pose
+    paused: bool = False
+    """As for `BodiesMoved`."""
+    stamp_ns: int = 0
 
 
 class DriveBase(Call[Driven], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Drive a robot's base through these points, in a straight line to each, and at the end turn to `yaw`.
 
     No points stop it. It goes at most at `speed` [m/s]; nobody looks whether the way is free, and a course
-    along which it gets no further is given up. With `wait` the reply comes when the course ends.
+    along which it gets no further is given up. With `wait` the reply comes when the course ends, or time
+    is paused.
     """
 
     VERB: ClassVar[str] = "drive"

@@ -131,14 +131,14 @@ def soon(client: Client, trials: int) -> list[Row]:
     try:
         # one way and back, twice, before anything counts: the door begins where the map states it
         for to in swings:
-            client.open("fridge1", to=to, joint="door", wait=True)
+            client.open("fridge1", to=to, joint="door")
         lasts_s = dict(zip(swings, _lasts_s(client.get("fridge1"), swings), strict=True))
         late = []
         for trial in range(trials):
             to = swings[trial % 2]
             watch.followed_ns.pop("fridge1", None)
             started_ns = time.time_ns()
-            client.open("fridge1", to=to, joint="door")
+            client.open("fridge1", to=to, joint="door", wait=False)
             watch.wait(lambda: "fridge1" in watch.followed_ns)
             late.append((watch.followed_ns["fridge1"] - started_ns) * 1e-9 - lasts_s[to])
             time.sleep(0.3)
@@ -200,7 +200,7 @@ def _turn(client: Client, name: str, dice: random.Random) -> None:
     to = dice.choice((0.0, 1.0, round(dice.random(), 2)))
     match dice.randrange(3):
         case 0:
-            client.open(name, to=to)
+            client.open(name, to=to, wait=False)
         case 1:
             client.set(name, "openness", to)
         case _:

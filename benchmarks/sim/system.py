@@ -147,7 +147,7 @@ def _until_followed(client: Client, watch: Watch, name: str, turn: int) -> tuple
     place = (-3.0 - 2.0 * (turn % 10), -3.0 - 2.0 * (turn // 10), 0.0)
     watch.followed_ns.pop(name, None)
     asked_ns, at_rest_ns = time_ns(), 0
-    client.move(name, place)
+    client.move(name, place, wait=False)
 
     def rests() -> bool:
         nonlocal at_rest_ns

@@ -22,10 +22,12 @@ from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
 from nodes.coordinator.live.feed import LiveFeed
 from nodes.coordinator.scene.among_walls import AmongWalls
+from nodes.coordinator.scene.completion import Completion
 from nodes.coordinator.scene.gripping import Gripping
 from nodes.coordinator.scene.opening import Opening
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
+from nodes.coordinator.scene.settled import Settled
 from nodes.coordinator.teaching import Teaching
 from nodes.coordinator.turns import Change, Results, Turns
 from nodes.runtime import heap
@@ -61,7 +63,9 @@ class Coordinator:
         self._bridge = Bridge(node)
         self._door = Door(self._bridge.ask)
         self._turns = Turns(self._change_together)
-        self._keeping = Keeping(config, self._door, self._turns.change, self._ask_sim, node.report)
+        self._keeping = Keeping(config, self._door, self._follow, self._ask_sim, node.report)
+        self._completion = Completion(config.truth, self._door, self._keeping)
+        self._watched = self._completion.watching(self._turns.change)
         self._health = HealthView()
         self._has_map = False
         self._early = EarlyCommands(lambda: node.is_there("kb_node"))
@@ -72,8 +76,11 @@ class Coordinator:
         frames = Frames(node, stale_s, door.map, self._live, scene, self._ask_sim, self._bridge, self._turns)
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge, self._live, frames)
         among_walls = AmongWalls(self._keeping, self._ask_sim, self._bridge.ask_later)
-        running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
-        self._opening = Opening(door, self._keeping, self._ask_sim)
+        completion = self._completion
+        running = Running(
+            config.truth, door, self._keeping, completion, self._ask_sim, self._bridge.ask_later
+        )
+        opening = Opening(door, self._keeping, completion, self._ask_sim)
         scene = self._keeping.scene
         self._gripping = Gripping(
             config.truth, door, scene, self._turns.change, self._ask_sim, self._bridge.ask_later
@@ -91,15 +98,15 @@ class Coordinator:
             c.Remove.answered_by(self._noted),
             c.Clear.answered_by(self._noted),
             c.Load.answered_by(self._load),
-            c.Undo.answered_by(self._turns.change),
+            c.Undo.answered_by(lambda command: running.undo(command, self._turns.change)),
             c.List.answered_by(frames.placed(answers.list)),
             c.Get.answered_by(frames.placed(answers.get)),
             c.ListFrames.answered_by(frames.list),
             c.Move.answered_by(frames.placed(running.move)),
             c.Attach.answered_by(self._gripping.attach),
             c.Detach.answered_by(self._gripping.detach),
-            c.Open.answered_by(self._opening.move),
-            c.Close.answered_by(self._opening.move),
+            c.Open.answered_by(opening.move),
+            c.Close.answered_by(opening.move),
             c.Drive.answered_by(frames.placed(running.drive)),
             c.Pause.answered_by(running.pause),
             c.StepOnce.answered_by(running.step),
@@ -211,6 +218,10 @@ class Coordinator:
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
         return future
 
+    def _follow(self, change: c.Add | Settled) -> Future[Changed]:
+        """The map follows the scene; those who wait for that are told."""
+        return self._watched(change)
+
     def _track(self, command: c.Track) -> Future[Changed]:
         """What is not tracked any more stays where it was last, by a commit of its own."""
         settled = self._live.settle(command.name) if command.off and not command.dry_run else None
@@ -240,7 +251,7 @@ class Coordinator:
         return future
 
     def _answer_waiting(self) -> None:
-        self._opening.answer_waiting()
+        self._completion.answer_waiting()
         if not self._waiting:
             return
         still = []

@@ -234,6 +234,98 @@ def _load(
     )
 
 
+def _move(
+    name: str,
+    at: Sequence[float],
+    yaw: float | None = None,
+    *,
+    frame: str | None = None,
+    carry: bool = False,
+    leave: Sequence[str] = (),
+    wait: bool = True,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Moved]:
+    """Move the body of an entity by hand, and return when the map has followed.
+
+    The reply's `commit` is that by which it did; without one, its `notes` say why: the body rests where the
+    map has it already, still moves after half a minute, or time is paused. With `wait=False` it returns when
+    the body is released.
+
+    `at` is the bottom centre [m] and `yaw` [rad] how it is turned, in the map frame or in `frame`. With
+    `carry`, what stands on it or is inside it is moved with it as one rigid body, except what `leave` names.
+    Raises Refused where the map rejects the new place, an undo stops it, or the entity is removed before it
+    rests; NoAnswer where the simulator ends.
+    """
+    return commands.Move(
+        name=name,
+        at=tuple(at),  # type: ignore[arg-type]
+        yaw=yaw,
+        frame=frame,
+        carry=carry,
+        leave=tuple(leave),
+        wait=wait,
+        id=id,
+        reason=reason,
+    )
+
+
+def _open(
+    name: str,
+    to: float = 1.0,
+    joint: str | None = None,
+    *,
+    wait: bool = True,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Moved]:
+    """Open a thing as a hand would, to this share of its way, and return when the map has followed.
+
+    With a `joint`, only that one of several. What is in the way stops it. `wait`, the reply and what it
+    raises are as for `move`, and Refused is raised for what has no joints.
+    """
+    return commands.Open(name=name, to=to, joint=joint, wait=wait, id=id, reason=reason)
+
+
+def _close(
+    name: str, joint: str | None = None, *, wait: bool = True, id: str = "", reason: str = ""
+) -> Command[replies.Moved]:
+    """Close a thing as a hand would, and return when the map has followed; as for `open`."""
+    return commands.Close(name=name, joint=joint, wait=wait, id=id, reason=reason)
+
+
+def _drive(
+    name: str,
+    to: Sequence[Sequence[float]] = (),
+    yaw: float | None = None,
+    *,
+    frame: str | None = None,
+    speed: float = 0.4,
+    stop: bool = False,
+    wait: bool = True,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Moved]:
+    """Drive a robot of the simulator to a point, or through several, and return when the map has followed.
+
+    It drives in a straight line to each point [m], at most at `speed` [m/s], and at the end faces `yaw`
+    [rad]; both are in the map frame, or in `frame` as that is when the command begins. With `stop` it stops
+    where it is. `wait`, the reply and what it raises are as for `move`, and Refused is raised where the robot
+    gets no further, or falls.
+    """
+    return commands.Drive(
+        name=name,
+        to=tuple(map(tuple, to)),  # type: ignore[arg-type]
+        yaw=yaw,
+        frame=frame,
+        speed=speed,
+        stop=stop,
+        wait=wait,
+        id=id,
+        reason=reason,
+    )
+
+
 def _list(
     class_: str | None = None,
     *,
@@ -363,12 +455,12 @@ class Verbs:
     compact = Verb(commands.Compact)
 
     # To run
-    move = Verb(commands.Move)
-    drive = Verb(commands.Drive)
+    move = Verb(_move)
+    drive = Verb(_drive)
     attach = Verb(commands.Attach)
     detach = Verb(commands.Detach)
-    open = Verb(commands.Open)
-    close = Verb(commands.Close)
+    open = Verb(_open)
+    close = Verb(_close)
     pause = Verb(commands.Pause)
     step = Verb(commands.StepOnce)
     reset = Verb(commands.Reset)

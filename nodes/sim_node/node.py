@@ -8,12 +8,14 @@ from concurrent.futures import Future
 from typing import Any, Literal, TypeVar
 
 import numpy as np
+from msgspec import structs
 
 from nodes import bus
 from nodes.runtime.class_names import ClassNames
 from nodes.runtime.loop import Node, open_node
 from nodes.sim_node.config import SimConfig
 from nodes.sim_node.models.sources import Models
+from nodes.sim_node.robots.courses import Outcome
 from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import FROM_ABOVE, View, camera_view, overview
 from nodes.sim_node.window import Window
@@ -49,6 +51,7 @@ from schemas.scenes import (
 )
 
 Reply = TypeVar("Reply")
+Timed = TypeVar("Timed", BodiesMoved, JointsMoving, Driven)
 
 _ADVANCE_S = 0.01
 _PUBLISH_S = 0.05
@@ -139,10 +142,10 @@ class Simulator:
         return self._told(self._world.delete(message.names))
 
     def _move(self, message: MoveBodies) -> BodiesMoved:
-        return self._told(self._world.move(message.placements))
+        return self._timed(self._world.move(message.placements))
 
     def _move_joints(self, message: MoveJoints) -> JointsMoving:
-        return self._told(self._world.move_joints(message.orders))
+        return self._timed(self._world.move_joints(message.orders))
 
     def _grip(self, message: Grip) -> Gripped:
         return self._told(self._world.grip(message.orders))
@@ -150,9 +153,8 @@ class Simulator:
     def _drive(self, message: DriveBase) -> Driven | Future[Driven]:
         self._world.drive(message)
         self._tell_ended()
-        if not message.wait or not message.to:
-            outcome: Literal["driving", "stopped"] = "driving" if message.to else "stopped"
-            return Driven(name=message.name, outcome=outcome, pose=self._world.pose(message.name))
+        if not message.wait or not message.to or self._paused:
+            return self._timed(self._driven(message.name, "driving" if message.to else "stopped"))
         future: Future[Driven] = Future()
         self._driving[message.name] = future
         return future
@@ -162,7 +164,15 @@ class Simulator:
         for name, outcome in self._world.ended().items():
             future = self._driving.pop(name, None)
             if future is not None:
-                future.set_result(Driven(name=name, outcome=outcome, pose=self._world.pose(name)))
+                future.set_result(self._timed(self._driven(name, outcome)))
+
+    def _driven(self, name: str, outcome: Outcome | Literal["driving"]) -> Driven:
+        return Driven(name=name, outcome=outcome, pose=self._world.pose(name))
+
+    def _timed(self, reply: Timed) -> Timed:
+        """Publish what has changed, and add to the reply when it was done and whether time is paused."""
+        stamp_ns = time.time_ns()  # poses that are published from here on are newer
+        return self._told(structs.replace(reply, paused=self._paused, stamp_ns=stamp_ns))
 
     def _snapshot(self, _: SceneQuery) -> Scene:
         return self._world.scene()
@@ -176,8 +186,16 @@ class Simulator:
             return Done(text=f"time is already {state}")
         self._paused = not message.off
         self._clock_s = time.monotonic()
+        if self._paused:
+            self._release_waiting()
         self._node.describe(self._summary())
         return Done(text=f"time is {state}")
+
+    def _release_waiting(self) -> None:
+        """Answer those who wait for the end of a course, which does not come while time is paused."""
+        waiting, self._driving = self._driving, {}
+        for name, future in waiting.items():
+            future.set_result(self._timed(self._driven(name, "driving")))
 
     def _step(self, message: StepOnce) -> Done:
         if not self._paused:

@@ -290,9 +290,9 @@ def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(door):
     add(door, name="chair1", at=(1.0, 1.0, 0.0))
     follow(door, "chair1", Pose(position_m=(1.5, 1.0, 0.0)))
     add(door, name="chair2")
-    assert door.change(c.Undo()).text == "undid commit 3"
+    assert door.change(c.Undo()).text == "undid commit 3: added chair2 as Chair"
     reply = door.change(c.Undo())
-    assert reply.text == "undid commit 1 and what settled after it (commit 2)"
+    assert reply.text == "undid commit 1 and what settled after it (commit 2): added chair1 as Chair"
     assert reply.names == ("chair1",)
     assert door.map.entities == {}
     with pytest.raises(errors.Refused, match="nothing to undo"):
@@ -322,7 +322,7 @@ def test_a_hand_s_move_is_its_client_s_when_the_knowledge_base_was_away_at_first
             follow(door, "chair1", rests)
     follow(door, "chair1", rests)
     assert door.map.entity("chair1").pose_provenance.agent == "ann"
-    assert door.change(c.Undo()).text == "undid commit 2"
+    assert door.change(c.Undo()).text == "undid commit 2: moved chair1 from (1, 1, 0) to (3, 1, 0)"
 
 
 def raise_(error):

@@ -2,40 +2,32 @@
 
 from __future__ import annotations
 
-import time
 from concurrent.futures import Future
-from typing import NamedTuple
 
 from nodes.coordinator.door import Door
 from nodes.coordinator.door.jointed import endless
+from nodes.coordinator.scene.completion import Completion
 from nodes.coordinator.scene.reconciler import AskSim, Keeping
-from nodes.runtime.futures import OwnFuture, settle
+from nodes.runtime.futures import and_then
 from schemas import commands as c
 from schemas import errors
 from schemas.joints import Joint, in_words
 from schemas.replies import Moved
 from schemas.scenes import Body, JointOrder, JointsMoving, MoveJoints
 
-_WAIT_S = 20.0
 _THERE = 0.02
 """Of its way: so near to where it was sent, a joint has arrived."""
 
 
-class _Waiting(NamedTuple):
-    command: c.Open | c.Close
-    until_s: float
-    reply: Future[Moved]
-
-
 class Opening:
-    """Executes `open` and `close`; the coordinator's thread owns it and calls `answer_waiting`."""
+    """Executes `open` and `close`; the coordinator's thread owns it."""
 
-    def __init__(self, door: Door, keeping: Keeping, ask: AskSim) -> None:
+    def __init__(self, door: Door, keeping: Keeping, completion: Completion, ask: AskSim) -> None:
         """`ask(call)` asks the simulator, without waiting."""
         self._door = door
         self._keeping = keeping
+        self._completion = completion
         self._ask = ask
-        self._waiting: list[_Waiting] = []
 
     def move(self, command: c.Open | c.Close) -> Future[Moved]:
         """Set the joints of a body moving. Raises Refused for what has none; NoAnswer without a simulator."""
@@ -63,34 +55,10 @@ class Opening:
             self._door.hands.let_go(
                 command, reason=f"{switch} of {body.name} was turned by hand" if switch else ""
             )
-            if not command.wait:
-                return Moved(name=command.name, text=_on_its_way(command, switch))
-            later: Future[Moved] = OwnFuture()
-            self._waiting.append(_Waiting(command, time.monotonic() + _WAIT_S, later))
-            return later
+            at_once = Moved(name=command.name, text=_on_its_way(command, switch))
+            return self._completion.begin(command, at_once, lambda rests: _arrived(command, rests), reply)
 
-        future: Future[Moved] = OwnFuture()
-        asked = self._ask(MoveJoints(orders=(order,)))
-        asked.add_done_callback(lambda done: settle(future, lambda: moving(done.result())))
-        return future
-
-    def answer_waiting(self) -> None:
-        """Answer those whose joints stand, and of whose map it is known."""
-        still = []
-        for waiting in self._waiting:
-            command, until_s, reply = waiting
-            body = self._keeping.scene.bodies.get(command.name)
-            if body is not None and time.monotonic() < until_s and not self._is_settled(body):
-                still.append(waiting)
-            elif body is None:
-                reply.set_exception(errors.Refused(f"{command.name} lost its body meanwhile"))
-            else:
-                reply.set_result(Moved(name=command.name, text=_arrived(command, body)))
-        self._waiting = still
-
-    def _is_settled(self, body: Body) -> bool:
-        """Does it stand, and does the map know?"""
-        return body.resting and self._keeping.is_followed(body.name)
+        return and_then(self._ask(MoveJoints(orders=(order,))), moving)
 
 
 def _share(command: c.Open | c.Close) -> float:

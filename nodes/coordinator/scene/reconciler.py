@@ -35,6 +35,7 @@ from nodes.coordinator.scene.rest_waits import RestWaits
 from nodes.coordinator.scene.scene_view import SceneView
 from nodes.coordinator.scene.settled import Settled, statements
 from nodes.coordinator.scene.spawn_batches import batches
+from nodes.runtime.futures import then
 from schemas import errors, wording
 from schemas.calls import Call
 from schemas.commands import Add
@@ -51,6 +52,7 @@ from schemas.scenes import (
     GripOrder,
     Gripped,
     JointOrder,
+    JointsMoving,
     MoveBodies,
     MoveJoints,
     Placement,
@@ -199,12 +201,42 @@ class Keeping:
 
     def is_followed(self, name: str) -> bool:
         """Whether the map says of an entity what its body does, or never will; nothing of it is under way."""
-        if self._config.truth == "perceived" or name in self._unsaid:
-            return True
         wanted = self.wanted((name,))
-        return name not in self._following and not (
-            wanted.follow or wanted.opened or wanted.joints or wanted.grips or wanted.gripped
+        said = () if name in self._unsaid else (*wanted.opened, *wanted.gripped)
+        return name not in self._following and not (wanted.follow or said or wanted.joints or wanted.grips)
+
+    def is_following(self, names: Collection[str]) -> bool:
+        """Return whether a commit about one of these is under way."""
+        return not self._following.isdisjoint(names)
+
+    def return_bodies(self, names: Collection[str]) -> Future[None]:
+        """Put bodies back to where the map has them; it does not follow them before."""
+        there = _only(names, self._door.map.entities).values()
+        placements = tuple(
+            Placement(name=e.name, pose=e.pose, commit=e.pose_provenance.commit)
+            for e in there
+            if e.pose is not None and e.name in self.scene.bodies and not holder_of(e)
         )
+        return self._return(names, MoveBodies(placements=placements))
+
+    def return_joints(self, names: Collection[str]) -> Future[None]:
+        """Move the joints of bodies back to where the map has them; it does not follow them before."""
+        entities, bodies = self._door.map.entities, self.scene.bodies
+        there = [name for name in names if name in entities and name in bodies]
+        return self._return(
+            names, MoveJoints(orders=tuple(joint_order(entities[n], bodies[n]) for n in there))
+        )
+
+    def _return(self, names: Collection[str], call: Call[BodiesMoved] | Call[JointsMoving]) -> Future[None]:
+        self._following.update(names)
+
+        def on_done(_: Future[Any]) -> None:
+            self._following.difference_update(names)
+            self._later.update(names)
+
+        asked: Future[BodiesMoved | JointsMoving] = self._ask(call)  # type: ignore[arg-type]
+        asked.add_done_callback(on_done)
+        return then(asked, lambda reply: self.scene.add(reply.bodies))
 
     def place_all(self) -> Future[Any]:
         """Put every body back where the map says it stands; those that could not be made are tried again.

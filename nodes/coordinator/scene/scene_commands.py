@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from typing import TypeVar
 
 from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
 from nodes.coordinator.plausibility import require_carrying
+from nodes.coordinator.scene.completion import Completion
 from nodes.coordinator.scene.reconciler import AskSim, Keeping, ghostly
-from nodes.runtime.futures import OwnFuture, settle, then
+from nodes.runtime.futures import OwnFuture, and_then, settle, then
 from schemas import commands as c
 from schemas import errors, wording
 from schemas.bridge import LoadOf
 from schemas.calls import Call
 from schemas.entities import Pose, Vector, carried, orientation_from_yaw
-from schemas.replies import Done, Moved
+from schemas.replies import Changed, Done, Moved
 from schemas.scenes import BodiesMoved, Body, DriveBase, Driven, MoveBodies, Picture, PictureQuery, Placement
 
 R = TypeVar("R")
@@ -28,11 +29,20 @@ _LIFTED_M = 0.02
 class Running:
     """Passes them on to the simulator. Raises NoAnswer when none runs."""
 
-    def __init__(self, truth: Truth, door: Door, keeping: Keeping, ask: AskSim, ask_map: AskSim) -> None:
+    def __init__(
+        self,
+        truth: Truth,
+        door: Door,
+        keeping: Keeping,
+        completion: Completion,
+        ask: AskSim,
+        ask_map: AskSim,
+    ) -> None:
         """`ask(call)` asks the simulator, `ask_map(call)` the knowledge base, without waiting."""
         self._truth = truth
         self._door = door
         self._keeping = keeping
+        self._completion = completion
         self._ask = ask
         self._ask_map = ask_map
 
@@ -61,16 +71,19 @@ class Running:
             placements=tuple(Placement(name=n, pose=p) for n, p in {command.name: pose, **along}.items())
         )
 
-        def moved(reply: BodiesMoved) -> Moved:
+        def moved(reply: BodiesMoved) -> Moved | Future[Moved]:
             if command.name in reply.failed:
                 raise errors.Refused(reply.failed[command.name])
-            self._door.hands.let_go(command, [name for name in along if name not in reply.failed])
-            text = _let_go(command, reply.bodies[0])
-            if command.carry:
-                text = f"{text}; {wording.carried(command.name, tuple(along), command.leave)}"
-            return Moved(name=command.name, text=text)
+            self._keeping.scene.add(reply.bodies)
+            carried_along = [name for name in along if name not in reply.failed]
+            self._door.hands.let_go(command, carried_along)
+            load = f"; {wording.carried(command.name, tuple(along), command.leave)}" if command.carry else ""
+            at_once = Moved(name=command.name, text=_let_go(command, reply.bodies[0]) + load)
+            return self._completion.begin(
+                command, at_once, lambda rests: _moved(rests) + load, reply, carried_along
+            )
 
-        return then(self._ask(order), moved)
+        return and_then(self._ask(order), moved)
 
     def drive(self, command: c.Drive) -> Future[Moved]:
         """Drive a robot's base. Raises Refused for what cannot drive, and where it gets no further."""
@@ -82,11 +95,60 @@ class Running:
         order = DriveBase(
             name=command.name, to=command.to, yaw=command.yaw, speed=command.speed, wait=command.wait
         )
-        return then(self._ask_scene(order), lambda driven: Moved(name=command.name, text=_driven(driven)))
+        if command.wait and command.to:
+            return self._drive_there(command, order)
+
+        def driven(reply: Driven) -> Moved | Future[Moved]:
+            self._door.hands.let_go(command)
+            text = _driven(reply)
+            return self._completion.begin(command, Moved(name=command.name, text=text), lambda _: text, reply)
+
+        return and_then(self._ask_scene(order), driven)
+
+    def _drive_there(self, command: c.Drive, order: DriveBase) -> Future[Moved]:
+        """Reply when the course has ended and the map has followed."""
+        asked = self._ask_scene(order)
+        self._door.hands.let_go(command)
+        at_once = Moved(name=command.name, text=f"{command.name} is on its way")
+        future: Future[Moved] = OwnFuture()
+        settle(future, lambda: self._completion.begin(command, at_once, lambda _: at_once.text, None))
+
+        def ended(done: Future[Driven]) -> None:
+            try:
+                driven = done.result()
+            except errors.SemmapError as error:
+                self._completion.fail(command, error)
+                return
+            try:
+                text = _driven(driven)
+            except errors.Refused as error:
+                self._completion.fail(command, error, driven)
+            else:
+                self._completion.arrive(command, text, driven)
+
+        asked.add_done_callback(ended)
+        return future
+
+    def halt(self, name: str) -> Future[Pose]:
+        """End a robot's course; where it is then."""
+        return then(self._ask_scene(DriveBase(name=name)), lambda driven: driven.pose)
+
+    def undo(self, command: c.Undo, change: Callable[[c.Undo], Future[Changed]]) -> Future[Changed]:
+        """Stop what is under way, or undo a commit by `change(command)`."""
+        stopped = self._completion.stop(command, self.halt)
+        return change(command) if stopped is None else stopped
 
     def pause(self, command: c.Pause) -> Future[Done]:
         """Stop or start time."""
-        return self._ask_scene(command)
+
+        def paused(done: Done) -> Done:
+            if command.off:
+                self._completion.resume()
+            else:
+                self._completion.pause()
+            return done
+
+        return then(self._ask_scene(command), paused)
 
     def step(self, command: c.StepOnce) -> Future[Done]:
         """Let a little time pass."""
@@ -141,6 +203,12 @@ def _driven(driven: Driven) -> str:
         raise errors.Refused(f"{driven.name} {wording.fallen(driven.name, driven.pose)}")
     said = {"driving": "is on its way from", "there": "is at", "stopped": "stopped at"}[driven.outcome]
     return f"{driven.name} {said} {where}, facing {math.degrees(driven.pose.yaw_rad):.0f}°"
+
+
+def _moved(body: Body) -> str:
+    """Where a body has come to rest."""
+    where = "({:g}, {:g}, {:g})".format(*(round(c, 3) + 0.0 for c in body.pose.position_m))
+    return f"moved {body.name} to {where}" + (f", where it {ghostly(body)}" if body.ghost else "")
 
 
 def _let_go(command: c.Move, body: Body) -> str:

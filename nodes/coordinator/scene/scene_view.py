@@ -86,6 +86,11 @@ class SceneView:
         return changed
 
     @property
+    def run(self) -> str:
+        """Which simulator the poses are from: a restarted one is another."""
+        return self._run
+
+    @property
     def stamp_ns(self) -> int:
         """When the poses are from."""
         return self._stamp_ns

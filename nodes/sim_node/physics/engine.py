@@ -162,6 +162,7 @@ class Engine:
         """Begin to drive a robot's base through these points [m], at the end to face `yaw_rad`."""
         self.courses.begin(name, points, yaw_rad, speed_m_s)
         sleep.wake(self.data, int(self.index.tree[self.index.row[name]]))
+        self._keep_awake((name,))
 
     def set_joints(self, names: Iterable[str]) -> None:
         """Put the joints of these bodies where their records say, with no speed and not pushed any more."""
@@ -320,6 +321,13 @@ class Engine:
                 still = self._joint_rest.update(self.positions(), self.data.time)
                 still[self._drives.rows(self.index)] = False
                 self.resting[self.index.joint_body[~still]] = False
+            self._keep_awake(self.courses.names)
+
+    def _keep_awake(self, names: Iterable[str]) -> None:
+        """Robots that drive do not rest, also before they move and where something is in their way."""
+        for name in names:
+            if (row := self.index.row.get(name)) is not None:
+                self.resting[row] = False
 
     @property
     def asleep(self) -> bool:

@@ -55,6 +55,11 @@ class Courses:
     def __bool__(self) -> bool:
         return bool(self._under_way)
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The robots that drive."""
+        return tuple(self._under_way)
+
     def begin(
         self, name: str, points: Sequence[tuple[float, float]], yaw_rad: float | None, speed_m_s: float
     ) -> None:

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import pytest
 from msgspec import structs
 
+from nodes.coordinator.scene.completion import Completion
 from nodes.coordinator.scene.scene_commands import Running
 from schemas import commands as c
 from schemas.entities import Pose
@@ -28,6 +29,13 @@ def cup(z: float, *, ghost: bool = False, in_the_way: str = "") -> Body:
     )
 
 
+def running_with(bodies, ask, let_go):
+    scene = SimpleNamespace(bodies=bodies, add=lambda bodies: None, run="", stamp_ns=0)
+    keeping = SimpleNamespace(scene=scene)
+    door = SimpleNamespace(hands=SimpleNamespace(let_go=let_go), map=SimpleNamespace(entities={}))
+    return Running("map", door, keeping, Completion("map", door, keeping), ask, ask)
+
+
 def said_of_a_move(z: float, put: Body) -> str:
     """What is said of a hand's move to (1, 2, z) when the simulator answers that it `put` the cup so."""
 
@@ -36,9 +44,7 @@ def said_of_a_move(z: float, put: Body) -> str:
         future.set_result(BodiesMoved(bodies=(put,), failed={}))
         return future
 
-    keeping = SimpleNamespace(scene=SimpleNamespace(bodies={"cup1": put}))
-    door = SimpleNamespace(hands=SimpleNamespace(let_go=lambda command, load: None))
-    running = Running("map", door, keeping, ask, ask)
+    running = running_with({"cup1": put}, ask, lambda command, load: None)
     return running.move(c.Move(name="cup1", at=(1.0, 2.0, z))).result().text
 
 
@@ -80,9 +86,7 @@ def test_a_hand_that_carries_puts_what_is_borne_with_it():
             future.set_result(BodiesMoved(bodies=moved, failed={}))
         return future
 
-    keeping = SimpleNamespace(scene=SimpleNamespace(bodies={"tray1": tray, "cup1": beside}))
-    door = SimpleNamespace(hands=SimpleNamespace(let_go=lambda command, load: let_go.append(load)))
-    running = Running("map", door, keeping, answer, answer)
+    running = running_with({"tray1": tray, "cup1": beside}, answer, lambda command, load: let_go.append(load))
     move = c.Move(name="tray1", at=(5.0, 5.0, 0.5), yaw=math.pi / 2, carry=True, leave=("milk1",))
     said = running.move(move).result()
     assert said.text == "put tray1 at (5, 5, 0.5) and released it; tray1 carried cup1 along"

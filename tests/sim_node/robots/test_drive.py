@@ -29,8 +29,8 @@ def test_it_drives_live_and_is_committed_where_it_stops(system):
         until(lambda: "robot1_gripper" in names(client), "its gripper among them")
         if (truth := client.status().truth) == "map":
             until(lambda: client.status(names=("robot1",)).in_agreement, "map and scene agree on it")
-        before = [commit.seq for commit in client.history("robot1")]
-        said = client.drive("robot1", to=((7.4, 2.0), (7.0, 1.2)), yaw=0.0).text
+        before = {commit.seq for commit in client.history("robot1")}
+        said = client.drive("robot1", to=((7.4, 2.0), (7.0, 1.2)), yaw=0.0, wait=False).text
         assert "on its way" in said
         until(lambda: client.get("robot1").live.pose.position_m[1] < 1.7, "that it is on its way")
         status = client.status()
@@ -38,11 +38,10 @@ def test_it_drives_live_and_is_committed_where_it_stops(system):
         (said,) = (line for line in status.displaced if line.startswith("robot1"))
         assert re.fullmatch(r"robot1 is moving: [\d.]+ m from its committed pose", said)
         assert not any("moving" in problem for problem in status.problems)
-        assert "is at (7.0" in client.drive("robot1", to=((7.0, 1.0),), yaw=0.0, wait=True).text
-        until(lambda: abs(client.get("robot1").pose.position_m[1] - 1.0) < 0.03, "the commit")
-        made = [commit.reason for commit in client.history("robot1") if commit.seq not in before]
-        assert made
-        assert all("came to rest" in reason for reason in made)
+        driven = client.drive("robot1", to=((7.0, 1.0),), yaw=0.0)
+        assert "is at (7.0" in driven.text
+        assert client.get("robot1").pose.position_m[1] == pytest.approx(1.0, abs=0.03)
+        assert driven.commit in {commit.seq for commit in client.history("robot1")} - before
         until(lambda: not client.status().displaced, "nothing is displaced any more")
 
 
@@ -55,12 +54,12 @@ def test_what_cannot_be_driven_there_is_said(system):
         with pytest.raises(errors.UnknownName):
             client.drive("nobody1", to=((1.0, 1.0),))
         with pytest.raises(errors.Refused, match="gets no further"):
-            client.drive("robot1", to=((7.0, -3.0),), wait=True)
+            client.drive("robot1", to=((7.0, -3.0),))
         assert "stopped at" in client.drive("robot1", stop=True).text
 
 
 def test_the_command_line_drives(system):
-    said = system.cli("drive", "robot1", "--to", "7", "1", "--yaw", "90deg", "--wait")
-    found = re.fullmatch(r"robot1 is at \((.*), (.*)\), facing (.*)°\n", said)
+    said = system.cli("drive", "robot1", "--to", "7", "1", "--yaw", "90deg")
+    found = re.fullmatch(r"robot1 is at \((.*), (.*)\), facing (.*)° \(commit \d+\)\n", said)
     assert [float(number) for number in found.groups()] == pytest.approx([7.0, 1.0, 90.0], abs=2.0)
     system.cli("drive", "robot1", "--to", "7", status=2)

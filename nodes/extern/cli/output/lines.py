@@ -10,7 +10,7 @@ from schemas.explanations import Explanation
 from schemas.happenings import Difference
 from schemas.language import Found
 from schemas.relations import Relation
-from schemas.replies import Changed, Inferred, LoggedCommit
+from schemas.replies import Changed, Inferred, LoggedCommit, Moved
 
 _MOST = 20
 """Lines of what would follow, or would no longer; names of what a thing bears."""
@@ -27,6 +27,12 @@ def changed(reply: Changed) -> Iterable[str]:
     yield from (f"  note: {note}" for note in reply.notes)
     yield from _few("would follow", reply.follows)
     yield from _few("would no longer follow", reply.no_longer_follows)
+
+
+def moved(reply: Moved) -> Iterable[str]:
+    """The move of a body in words, with the commit by which the map followed, or why there is none."""
+    yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")
+    yield from (f"  note: {note}" for note in reply.notes)
 
 
 def difference(found: Difference) -> Iterable[str]:

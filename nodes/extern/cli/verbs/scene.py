@@ -20,19 +20,27 @@ if TYPE_CHECKING:
     from nodes.extern.client import Client
 
 
+_WAIT = click.option(
+    "--wait/--no-wait",
+    default=True,
+    help="Return when the map has followed, or as soon as it moves.  [default: wait]",
+)
+
+
 @click.command()
 @click.argument("name", shell_complete=entity_names)
 @vector_option("--at", metavar="X Y Z", required=True, help="Where to put it: bottom centre [m].")
 @frame_option("The frame of --at and --yaw, instead of the map's")
 @yaw_option
 @carrying
+@_WAIT
 @talks
-def move(client: Client, **fields: Any) -> None:
+def move(client: Client, wait: bool, **fields: Any) -> None:
     """Move the body of an entity by hand.
 
-    The map follows when it comes to rest.
+    The map follows when it comes to rest. While time is paused, nothing is waited for.
     """
-    say(client.move(**given(fields)).text)
+    print_lines(lines.moved(client.move(**given(fields), wait=wait)))
 
 
 @click.command(cls=NegativeNumbers)
@@ -67,7 +75,6 @@ def detach(client: Client, name: str, dry_run: bool) -> None:
     print_lines(lines.changed(client.detach(name, dry_run=dry_run)))
 
 
-_WAIT = click.option("--wait", is_flag=True, help="Wait until it stands and the map has followed.")
 _JOINT = click.option("--joint", metavar="JOINT", help="Only this one of its doors, drawers or switches.")
 
 
@@ -82,7 +89,7 @@ def open_(client: Client, name: str, to: float, joint: str | None, wait: bool) -
 
     The map follows when it comes to rest.
     """
-    say(client.open(name, to=to, joint=joint, wait=wait).text)
+    print_lines(lines.moved(client.open(name, to=to, joint=joint, wait=wait)))
 
 
 @click.command()
@@ -95,7 +102,7 @@ def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
 
     The map follows when it comes to rest.
     """
-    say(client.close(name, joint=joint, wait=wait).text)
+    print_lines(lines.moved(client.close(name, joint=joint, wait=wait)))
 
 
 @click.command(cls=NegativeNumbers)
@@ -112,14 +119,14 @@ def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
 @yaw_option
 @click.option("--speed", type=float, default=0.4, show_default=True, help="At most so fast [m/s].")
 @click.option("--stop", is_flag=True, help="Stop where it is.")
-@click.option("--wait", is_flag=True, help="Wait until it is there.")
+@_WAIT
 @talks
-def drive(client: Client, **fields: Any) -> None:
+def drive(client: Client, wait: bool, **fields: Any) -> None:
     """Drive a simulated robot to a point.
 
     It goes in a straight line, to each point if there are several, and looks for no way around things.
     """
-    say(client.drive(**given(fields)).text)
+    print_lines(lines.moved(client.drive(**given(fields), wait=wait)))
 
 
 @click.command()
