@@ -8,13 +8,12 @@ import math
 import pytest
 
 from schemas import errors
-from tests.conftest import running, until
+from tests.conftest import until
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("frames"), "--no-record", "--no-sim", "--stale", "1.5") as system:
-        yield system
+def system(flat_map):
+    return flat_map
 
 
 def test_positions_in_the_frame_of_a_robot_that_is_tracked(system):
