@@ -1,4 +1,9 @@
-"""Whole systems for tests: spawned processes, real Zenoh peers on loopback, each on a port of its own."""
+"""Whole systems for tests: spawned processes, real Zenoh peers on loopback, each on a port of its own.
+
+A start takes seconds, so tests share two systems per worker, one without a simulator and one with it:
+`flat_map` and `empty_map`, `flat_scene` and `empty_scene` give each module one of them with a clean map.
+Restarts, faults, security and fleets start their own by `running`.
+"""
 
 from __future__ import annotations
 
@@ -28,6 +33,8 @@ from nodes.kb_node.storage.journal import FILENAME
 from nodes.kb_node.storage.seed import seed
 from nodes.runtime.loop import Node
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
+from schemas import errors
+from schemas.replies import SystemStatus
 from tests import tiers
 
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
@@ -80,6 +87,8 @@ class System:
         self.data = data
         self.endpoint = endpoint
         self.process = process
+        self.begun: str | None = None
+        """Which map `begin_anew` gave last."""
         self.said: list[str] = []
         """What it has said so far."""
         self.is_ready = threading.Event()
@@ -125,6 +134,42 @@ class System:
             found = until(lambda: [n for n in client.status().nodes if n.node == node], f"a beat of {node}")
             return int(found[0].pid)
 
+    def open_map(self, folder: Path) -> None:
+        """Continue with a copy of the map in `folder`: its history, its TBox and its commit numbers.
+
+        All nodes are restarted, so nothing of the present map is left in any of them. The supervisor stays.
+        """
+        self.begun = None
+        with self.client() as client:
+            status = until(lambda: _ask_status(client), "the system answers")
+            old = {node.node: node.pid for node in status.nodes}
+            _replace_map(folder, self.data)
+            # The coordinator goes last: it must not meet the old knowledge base again.
+            for node in sorted(old, key="coordinator".__eq__):
+                os.kill(old[node], signal.SIGKILL)
+
+            def is_opened() -> bool:
+                if (status := _ask_status(client)) is None:
+                    return False
+                pids = {node.node: node.pid for node in status.nodes if node.state == "ready"}
+                is_restarted = pids.keys() == old.keys() and not set(pids.values()) & set(old.values())
+                return is_restarted and status.in_agreement in (True, None)
+
+            until(is_opened, "all nodes are ready with the other map")
+
+    def begin_anew(self, abox: str) -> None:
+        """Have the map be as a first `semmap up --abox ABOX` makes it, `ABOX` being flat or none."""
+        if not self._is_as_begun(abox):
+            self.open_map(_begun(abox))
+            self.begun = abox
+
+    def _is_as_begun(self, abox: str) -> bool:
+        if self.begun != abox:
+            return False
+        with self.client() as client:
+            status = _ask_status(client)
+            return status is not None and status.commit == 1 and not status.problems
+
     def stop(self) -> float:
         """Press Ctrl-C; how long the end took [s]."""
         start = time.monotonic()
@@ -155,6 +200,70 @@ def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iter
         if process.poll() is None:
             system.stop()
         reader.join(PATIENCE_S)  # what holds the pipe still open is left to whoever looks for leftovers
+
+
+@pytest.fixture(scope="session")
+def _shared_map(tmp_path_factory: pytest.TempPathFactory) -> Iterator[System]:
+    """One system per worker without a simulator."""
+    with running(tmp_path_factory.mktemp("shared-map"), "--no-sim", "--no-record") as system:
+        system.begun = "flat"
+        yield system
+
+
+@pytest.fixture(scope="session")
+def _shared_scene(tmp_path_factory: pytest.TempPathFactory) -> Iterator[System]:
+    """One system per worker with a simulator; a busy machine publishes live poses less than 3 s apart."""
+    with running(tmp_path_factory.mktemp("shared-scene"), "--no-record", "--stale", "3") as system:
+        system.begun = "flat"
+        yield system
+
+
+@pytest.fixture(scope="module")
+def flat_map(_shared_map: System) -> System:
+    """A system without a simulator whose map is the shipped flat, at commit 1."""
+    _shared_map.begin_anew("flat")
+    return _shared_map
+
+
+@pytest.fixture(scope="module")
+def empty_map(_shared_map: System) -> System:
+    """A system without a simulator whose map is empty, at commit 1."""
+    _shared_map.begin_anew("none")
+    return _shared_map
+
+
+@pytest.fixture(scope="module")
+def flat_scene(_shared_scene: System) -> System:
+    """A system with a simulator whose map is the shipped flat, at commit 1."""
+    _shared_scene.begin_anew("flat")
+    return _shared_scene
+
+
+@pytest.fixture(scope="module")
+def empty_scene(_shared_scene: System) -> System:
+    """A system with a simulator whose map is empty, at commit 1."""
+    _shared_scene.begin_anew("none")
+    return _shared_scene
+
+
+def _ask_status(client: Client) -> SystemStatus | None:
+    """The status; None while the coordinator is away."""
+    try:
+        return client.status()
+    except errors.NoAnswer:
+        return None
+
+
+def _replace_map(folder: Path, data: Path) -> None:
+    """Replace the map in `data` by a copy of that in `folder`; a process that has it open keeps the old."""
+    copies = [(file, data / f"{file.name}.new") for file in folder.iterdir() if file.is_file()]
+    for file, copy in copies:
+        shutil.copyfile(file, copy)
+    for old in data.glob(f"{FILENAME}-*"):
+        old.unlink()
+    shutil.rmtree(data / "sparql", ignore_errors=True)  # the query process's store of the old map
+    for file, copy in copies:
+        copy.replace(data / file.name)
 
 
 def _begins_with(data: Path, words: list[str]) -> str | None:

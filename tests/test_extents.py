@@ -5,15 +5,13 @@ import json
 import pytest
 
 from schemas import errors
-from tests.conftest import running
 
 L_SHAPE = "POLYGON ((20 0, 26 0, 26 2, 22 2, 22 5, 20 5, 20 0))"
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("extents"), "--no-sim", "--no-record") as system:
-        yield system
+def system(flat_map):
+    return flat_map
 
 
 def test_a_polygon_from_adding_to_removing(system, tmp_path):

@@ -215,14 +215,13 @@ def test_ctrl_c_ends_everything_within_five_seconds_and_the_map_survives(tmp_pat
         assert [e.name for e in client.list()] == ["table1"]
 
 
-def test_two_systems_on_one_machine_do_not_meet(flat, client, tmp_path):
-    with running(tmp_path, "--abox", "none", "--no-record", "--no-sim") as other:
-        with other.client() as guest:
-            assert guest.list() == ()
-            guest.add("Table", "table_of_the_other")
-        assert "table_of_the_other" in other.cli("list")
-        assert "table_of_the_other" not in {e.name for e in client.list()}
-        assert "table_of_the_other" not in flat.cli("list")
+def test_two_systems_on_one_machine_do_not_meet(flat, client, empty_map):
+    with empty_map.client() as guest:
+        assert guest.list() == ()
+        guest.add("Table", "table_of_the_other")
+    assert "table_of_the_other" in empty_map.cli("list")
+    assert "table_of_the_other" not in {e.name for e in client.list()}
+    assert "table_of_the_other" not in flat.cli("list")
 
 
 def test_nobody_there_is_no_answer_and_never_an_empty_list():
@@ -272,7 +271,7 @@ def test_a_world_in_json_becomes_the_map_and_so_does_what_is_put_in_later(tmp_pa
         assert client.get("cup_1").class_ == "Cup"
 
 
-def test_a_file_makes_the_same_bodies_as_a_world_and_when_it_is_loaded(tmp_path):
+def test_a_file_makes_the_same_bodies_as_a_world_and_when_it_is_loaded(empty_scene, tmp_path):
     file = tmp_path / "scene.json"
     classes = ("Milk", "Beer", "Water", "Coffee", "Dining_Table", "Door")
     described = [{"class": c, "name": c.lower(), "at": [i, 2, 0]} for i, c in enumerate(classes)]
@@ -280,7 +279,7 @@ def test_a_file_makes_the_same_bodies_as_a_world_and_when_it_is_loaded(tmp_path)
     words = ("--abox", "none", "--no-record", "--world", file)
     with running(tmp_path / "world", *words) as system, system.client() as client:
         as_world = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene).bodies
-    with running(tmp_path / "map", *words[:3]) as system, system.client() as client:
+    with empty_scene.client() as client:
         client.load(file)
         until(lambda: client.status().bodies == len(classes), "the bodies stand")
         loaded = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene).bodies

@@ -8,7 +8,7 @@ import pytest
 
 from nodes.runtime.class_names import ClassNames
 from schemas import errors
-from tests.conftest import running, until
+from tests.conftest import until
 from tests.data import data_folder
 
 EVERY = 12
@@ -16,10 +16,9 @@ EVERY = 12
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory):
+def client(empty_scene):
     data_folder()
-    words = ("--abox", "none", "--no-record")
-    with running(tmp_path_factory.mktemp("huric"), *words) as system, system.client() as client:
+    with empty_scene.client() as client:
         yield client
 
 

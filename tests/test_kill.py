@@ -7,7 +7,7 @@ import signal
 
 import pytest
 
-from tests.conftest import running, until
+from tests.conftest import until
 from tests.killing import Busy, kill_again_and_again
 
 
@@ -31,14 +31,14 @@ class Committer(Busy):
 
 
 @pytest.mark.parametrize("kills", [3, pytest.param(50, marks=pytest.mark.long)])
-def test_every_acknowledged_commit_is_there_and_no_other_one_half(tmp_path, kills):
-    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system:
-        committer = Committer(system)
-        kill_again_and_again(system, "kb_node", committer, kills)
-        with system.client() as client:
-            there = {e.name: e for e in client.list()}
-            commits = client.history(limit=10_000)
-            assert client.check().consistent
+def test_every_acknowledged_commit_is_there_and_no_other_one_half(empty_map, kills):
+    empty_map.begin_anew("none")
+    committer = Committer(empty_map)
+    kill_again_and_again(empty_map, "kb_node", committer, kills)
+    with empty_map.client() as client:
+        there = {e.name: e for e in client.list()}
+        commits = client.history(limit=10_000)
+        assert client.check().consistent
     assert committer.acknowledged.keys() <= there.keys()
     assert there.keys() - committer.acknowledged.keys() <= committer.lost
     for entity in there.values():
@@ -51,8 +51,9 @@ def test_every_acknowledged_commit_is_there_and_no_other_one_half(tmp_path, kill
     assert seqs[-1] == len(there) + 1
 
 
-def test_whoever_asks_right_after_a_kill_waits_for_the_restart(tmp_path):
-    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system, system.client() as client:
+def test_whoever_asks_right_after_a_kill_waits_for_the_restart(empty_map):
+    empty_map.begin_anew("none")
+    with empty_map.client() as client:
         for i, ask in enumerate(
             (
                 lambda: client.add("Chair", "chair1", at=(1.0, 2.0, 0.0)).commit,
@@ -61,5 +62,5 @@ def test_whoever_asks_right_after_a_kill_waits_for_the_restart(tmp_path):
             )
         ):
             until(lambda: client.history(), "the knowledge base answers")
-            os.kill(system.pid("kb_node"), signal.SIGKILL)
+            os.kill(empty_map.pid("kb_node"), signal.SIGKILL)
             assert ask() == min(i + 2, 3)

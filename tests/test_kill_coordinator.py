@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from tests.conftest import running
 from tests.killing import Busy, kill_again_and_again
 
 
@@ -25,10 +24,11 @@ class Adder(Busy):
 
 
 @pytest.mark.parametrize("kills", [3, pytest.param(30, marks=pytest.mark.long)])
-def test_what_is_asked_once_is_done_once_however_often_the_coordinator_is_killed(tmp_path, kills):
-    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system, system.client() as client:
-        adder = Adder(system)
-        kill_again_and_again(system, "coordinator", adder, kills)
+def test_what_is_asked_once_is_done_once_however_often_the_coordinator_is_killed(empty_map, kills):
+    empty_map.begin_anew("none")
+    with empty_map.client() as client:
+        adder = Adder(empty_map)
+        kill_again_and_again(empty_map, "coordinator", adder, kills)
         there = [entity.name for entity in client.list()]
     assert len(adder.added) == len(set(adder.added))
     assert set(adder.added) <= set(there)

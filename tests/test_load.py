@@ -13,7 +13,7 @@ import zenoh
 from nodes import bus
 from schemas import codec, keys
 from semmap import aio
-from tests.conftest import running, until
+from tests.conftest import until
 
 PUTS = 4000
 LOOK_S = 0.05
@@ -24,9 +24,8 @@ PATIENT_S = 3.0
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("load") / "data", "--no-sim", "--no-record") as system:
-        yield system
+def system(flat_map):
+    return flat_map
 
 
 def test_puts_without_end_are_done_or_refused_and_the_status_is_told_meanwhile(system):

@@ -8,13 +8,11 @@ from PIL import Image
 from scipy import ndimage
 
 from schemas import errors
-from tests.conftest import running
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("navigation"), "--no-record") as system:
-        yield system
+def system(flat_scene):
+    return flat_scene
 
 
 def test_a_plan_to_files_and_back_as_rooms(system, tmp_path):

@@ -5,7 +5,6 @@ from collections import Counter
 
 from benchmarks.agents.__main__ import all_done, rows
 from benchmarks.agents.tasks import TASKS, prepare
-from tests.conftest import running
 
 
 def test_there_are_sixty_tasks_of_eight_kinds():
@@ -15,10 +14,10 @@ def test_there_are_sixty_tasks_of_eight_kinds():
     }  # fmt: skip
 
 
-def test_every_task_is_done_right_and_reads_little(tmp_path):
-    with running(tmp_path, "--no-sim", "--no-record") as system, system.client() as client:
+def test_every_task_is_done_right_and_reads_little(flat_map):
+    with flat_map.client() as client:
         prepare(client)
-        found = asyncio.run(asyncio.wait_for(all_done(client, system.endpoint), 200))
+        found = asyncio.run(asyncio.wait_for(all_done(client, flat_map.endpoint), 200))
     assert [one for one in found if one.fault] == []
     assert sum(one.characters for one in found) / len(found) < 1500
     assert max(one.calls for one in found) <= 3

@@ -17,7 +17,7 @@ import pytest
 from nodes.extern.cli.all_verbs import app
 from nodes.extern.cli.app import execute
 from ontology import FLAT_TTL
-from tests.conftest import running, until
+from tests.conftest import until
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -100,10 +100,9 @@ PROGRAMS = [
 
 
 @pytest.fixture(scope="module")
-def flat(tmp_path_factory):
+def flat(flat_scene):
     """The shipped flat, and a folder as the repository's is to whoever reads."""
-    with running(tmp_path_factory.mktemp("flat"), "--no-record") as system:
-        yield system
+    return flat_scene
 
 
 @pytest.fixture(autouse=True)

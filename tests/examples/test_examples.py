@@ -27,9 +27,8 @@ def said(process, status=0):
 
 
 @pytest.fixture(scope="module")
-def flat(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("flat"), "--no-sim", "--no-record") as system:
-        yield system
+def flat(flat_map):
+    return flat_map
 
 
 def test_a_shopping_list(flat):

@@ -9,13 +9,12 @@ import pytest
 
 from schemas import errors, keys
 from schemas.entities import orientation_from_yaw
-from tests.conftest import running, until
+from tests.conftest import until
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("live"), "--no-record", "--stale", "3") as system:
-        yield system
+def system(flat_scene):
+    return flat_scene
 
 
 def test_a_robot_is_tracked_while_it_drives_and_committed_where_it_stops(system):

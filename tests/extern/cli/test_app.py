@@ -12,16 +12,14 @@ import threading
 import numpy as np
 import pytest
 
-from tests.conftest import running, until
+from tests.conftest import until
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    data = tmp_path_factory.mktemp("cli")
-    with running(data, "--abox", "none", "--no-record") as system:
-        with system.client() as client:
-            client.add("Chair", "chair1", at=(1.0, 1.0, 0.0), ref="chair", wait=True)
-        yield system
+def system(empty_scene):
+    with empty_scene.client() as client:
+        client.add("Chair", "chair1", at=(1.0, 1.0, 0.0), ref="chair", wait=True)
+    return empty_scene
 
 
 @pytest.fixture

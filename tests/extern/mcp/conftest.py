@@ -9,16 +9,13 @@ import pytest
 from mcp import Client
 from mcp.client.stdio import StdioServerParameters
 
-from tests.conftest import running
-
 SEMMAP = str(Path(sys.executable).parent / "semmap")
 
 
-@pytest.fixture(scope="session")
-def flat(tmp_path_factory):
+@pytest.fixture(scope="module")
+def flat(flat_map):
     """The flat, without a simulator: what is asked of it does not move."""
-    with running(tmp_path_factory.mktemp("mcp"), "--no-sim", "--no-record") as system:
-        yield system
+    return flat_map
 
 
 class Agent:

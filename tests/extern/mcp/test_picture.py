@@ -7,14 +7,12 @@ import pytest
 from PIL import Image
 
 from schemas import errors
-from tests.conftest import running
 from tests.extern.mcp.conftest import by_stdio, run
 
 
 @pytest.fixture(scope="module")
-def simulated(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("picture"), "--no-record") as system:
-        yield system
+def simulated(flat_scene):
+    return flat_scene
 
 
 def pixels(png):

@@ -5,15 +5,11 @@ import re
 import pytest
 
 from schemas import errors
-from tests.conftest import running
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with running(
-        tmp_path_factory.mktemp("differences"), "--abox", "none", "--no-sim", "--no-record"
-    ) as system:
-        yield system
+def system(empty_map):
+    return empty_map
 
 
 @pytest.fixture(scope="module")

@@ -8,16 +8,14 @@ import pytest
 
 from nodes.extern.cli.app import execute
 from schemas import errors, keys
-from tests.conftest import running
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("ask"), "--abox", "none", "--no-sim", "--no-record") as system:
-        with system.client() as client:
-            client.add("Kitchen", "kitchen1", at=(0, 0, 0), size=(4, 4, 3))
-            client.add("Chair", "chair1", at=(1, 1, 0), ref="chair")
-        yield system
+def system(empty_map):
+    with empty_map.client() as client:
+        client.add("Kitchen", "kitchen1", at=(0, 0, 0), size=(4, 4, 3))
+        client.add("Chair", "chair1", at=(1, 1, 0), ref="chair")
+    return empty_map
 
 
 def said(system, monkeypatch, *words):

@@ -9,7 +9,6 @@ import pytest
 from nodes.extern.cli.verbs.batch import written
 from schemas import commands as c
 from schemas import errors
-from tests.conftest import running
 
 
 def test_each_line_is_the_command_that_it_would_be_alone():
@@ -45,27 +44,26 @@ def test_a_line_that_is_none_is_named(capsys, line, said):
         list(written(f"set door1 isOpen true\n{line}\n"))
 
 
-def test_a_batch_over_a_real_system(tmp_path):
+def test_a_batch_over_a_real_system(flat_map, tmp_path):
     file = tmp_path / "morning.txt"
-    with running(tmp_path / "d", "--no-sim", "--no-record") as system:
-        file.write_text("set door1 isOpen true\nset door2 isOpen true\nupdate chair1 --at 1 1 0\n")
-        assert "changed 3: door1, door2 and chair1 (commit 2)" in system.cli("batch", str(file))
-        (row,) = json.loads(system.cli("history", "--limit", "1", "--format", "json"))
-        assert (row["seq"], row["verb"]) == (2, "batch")
-        system.cli("undo")
-        file.write_text("set door1 isOpen true\nset door99 isOpen true\n")
-        assert "door99" in system.cli("batch", str(file), status=1)
-        file.write_bytes(b"set door1 \xff")
-        assert "is no text in UTF-8" in system.cli("batch", str(file), status=2)
-        assert "there is no file" in system.cli("batch", str(tmp_path / "none.txt"), status=2)
-        file.write_text("# nothing\n")
-        assert "there is no change" in system.cli("batch", str(file), status=2)
-        with system.client() as client:
-            assert client.get("door1").properties["isOpen"] is False
-            made = client.batch(
-                c.Set(name="door1", property="isOpen", values=(True,)),
-                c.Unset(name="door2", property="isOpen"),
-                reason="airing",
-            )
-            assert made.commit == 4
-            assert client.history(limit=1)[0].reason == "airing"
+    file.write_text("set door1 isOpen true\nset door2 isOpen true\nupdate chair1 --at 1 1 0\n")
+    assert "changed 3: door1, door2 and chair1 (commit 2)" in flat_map.cli("batch", str(file))
+    (row,) = json.loads(flat_map.cli("history", "--limit", "1", "--format", "json"))
+    assert (row["seq"], row["verb"]) == (2, "batch")
+    flat_map.cli("undo")
+    file.write_text("set door1 isOpen true\nset door99 isOpen true\n")
+    assert "door99" in flat_map.cli("batch", str(file), status=1)
+    file.write_bytes(b"set door1 \xff")
+    assert "is no text in UTF-8" in flat_map.cli("batch", str(file), status=2)
+    assert "there is no file" in flat_map.cli("batch", str(tmp_path / "none.txt"), status=2)
+    file.write_text("# nothing\n")
+    assert "there is no change" in flat_map.cli("batch", str(file), status=2)
+    with flat_map.client() as client:
+        assert client.get("door1").properties["isOpen"] is False
+        made = client.batch(
+            c.Set(name="door1", property="isOpen", values=(True,)),
+            c.Unset(name="door2", property="isOpen"),
+            reason="airing",
+        )
+        assert made.commit == 4
+        assert client.history(limit=1)[0].reason == "airing"

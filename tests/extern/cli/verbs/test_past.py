@@ -11,7 +11,7 @@ from nodes.extern.client import connect
 from ontology import HOUSEHOLD_TTL
 from ontology import vocabulary as v
 from schemas import errors
-from tests.conftest import running, until
+from tests.conftest import until
 
 DM = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#"
 MORE = f"""
@@ -22,16 +22,15 @@ dm:Throne a owl:Class ; rdfs:subClassOf dm:Chair ; rdfs:label "throne"@en .
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
+def system(empty_map):
     """Commits: 1 the seed, 2 chair1, 3 chair1 moved by perception, 4 chair2, 5 chair2 removed."""
-    with running(tmp_path_factory.mktemp("past"), "--abox", "none", "--no-record", "--no-sim") as system:
-        with connect(system.endpoint, agent="ann") as client:
-            client.add("Chair", "chair1", at=(1.0, 1.0, 0.0), ref="chair")
-            with connect(system.endpoint, source="perception", agent="camera") as camera:
-                camera.update("chair1", at=(2.0, 1.0, 0.0), confidence=0.5)
-            client.add("Chair", "chair2", at=(3.0, 1.0, 0.0))
-            client.remove("chair2")
-        yield system
+    with connect(empty_map.endpoint, agent="ann") as client:
+        client.add("Chair", "chair1", at=(1.0, 1.0, 0.0), ref="chair")
+        with connect(empty_map.endpoint, source="perception", agent="camera") as camera:
+            camera.update("chair1", at=(2.0, 1.0, 0.0), confidence=0.5)
+        client.add("Chair", "chair2", at=(3.0, 1.0, 0.0))
+        client.remove("chair2")
+    return empty_map
 
 
 def test_what_changed_and_when_a_relation_held(system):

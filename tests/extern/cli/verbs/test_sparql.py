@@ -8,18 +8,17 @@ import signal
 import pytest
 
 from schemas import errors, keys
-from tests.conftest import running, until
+from tests.conftest import until
 
 CHAIRS = "SELECT ?c { ?c a dm:Chair } ORDER BY ?c"
 SEATS = "SELECT ?c { ?c a dm:Seat } ORDER BY ?c"
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("sparql"), "--abox", "none", "--no-sim", "--no-record") as system:
-        with system.client() as client:
-            client.add("Chair", "chair1", at=(1.0, 2.0, 0.0), ref="chair")
-        yield system
+def system(empty_map):
+    with empty_map.client() as client:
+        client.add("Chair", "chair1", at=(1.0, 2.0, 0.0), ref="chair")
+    return empty_map
 
 
 def test_every_form_has_its_format(system):

@@ -7,14 +7,12 @@ import json
 import pytest
 
 from schemas import codec, commands, errors, replies
-from tests.conftest import running
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
+def system(flat_map):
     """The shipped flat without a simulator; `door1` is closed."""
-    with running(tmp_path_factory.mktemp("states"), "--no-sim", "--no-record") as started:
-        yield started
+    return flat_map
 
 
 def test_a_state_is_set_read_conditioned_and_taken_back(system):

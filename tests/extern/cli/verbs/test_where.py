@@ -3,7 +3,6 @@
 import pytest
 
 from ontology import HOUSEHOLD_TTL
-from tests.conftest import running
 
 ON_SHELVES = """
 dm:Milk rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:isOn ; owl:allValuesFrom dm:Shelf ] .
@@ -12,15 +11,14 @@ dm:Shelf owl:disjointWith dm:Counter .
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("where")
-    tbox = folder / "choosy.ttl"
+def system(empty_map, tmp_path_factory):
+    tbox = tmp_path_factory.mktemp("where") / "choosy.ttl"
     tbox.write_text(HOUSEHOLD_TTL.read_text() + ON_SHELVES)
-    with running(folder, "--abox", "none", "--tbox", str(tbox), "--no-sim", "--no-record") as system:
-        with system.client() as client:
-            client.add("Counter", "counter1", at=(0.0, 0.0, 0.0))
-            client.add("Milk", "milk1", at=(0.0, 0.0, 0.9))
-        yield system
+    empty_map.cli("load", "--tbox", tbox)
+    with empty_map.client() as client:
+        client.add("Counter", "counter1", at=(0.0, 0.0, 0.0))
+        client.add("Milk", "milk1", at=(0.0, 0.0, 0.9))
+    return empty_map
 
 
 def test_a_list_that_lacks_something_withheld_says_so(system):

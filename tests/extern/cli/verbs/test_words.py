@@ -5,17 +5,15 @@ import json
 import pytest
 
 from schemas import errors
-from tests.conftest import running
 from tests.extern.cli.verbs.test_ask import said
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("words"), "--abox", "none", "--no-sim", "--no-record") as system:
-        with system.client() as client:
-            client.add("Kitchen", "kitchen1", at=(0, 0, 0), size=(4, 4, 3))
-            client.add("Bottle", "bottle1", at=(1, 1, 0), ref="lemonade")
-        yield system
+def system(empty_map):
+    with empty_map.client() as client:
+        client.add("Kitchen", "kitchen1", at=(0, 0, 0), size=(4, 4, 3))
+        client.add("Bottle", "bottle1", at=(1, 1, 0), ref="lemonade")
+    return empty_map
 
 
 def test_a_command_is_understood_in_the_light_of_the_map(system, monkeypatch):
