@@ -35,7 +35,7 @@ from nodes.coordinator.scene.rest_waits import RestWaits
 from nodes.coordinator.scene.scene_view import SceneView
 from nodes.coordinator.scene.settled import Settled, statements
 from nodes.coordinator.scene.spawn_batches import batches
-from nodes.runtime.futures import then
+from nodes.runtime.futures import OwnFuture, settle, then
 from schemas import errors, wording
 from schemas.calls import Call
 from schemas.commands import Add
@@ -119,6 +119,7 @@ class Keeping:
         self._ungripped: dict[str, tuple[int, str]] = {}  # what the scene could not have held, and why
         self._waits = RestWaits()
         self._unsaid: set[str] = set()  # bodies of whose joints the map has no way to speak
+        self._held: list[tuple[str, Callable[[], None]]] = []  # orders to bodies that are yet to be placed
 
     def on_poses(self, poses: Poses) -> None:
         """New poses from the simulator."""
@@ -128,11 +129,13 @@ class Keeping:
             self._keep_rest()
         elif not self._busy:
             self._start([])
+        self._release()
 
     def lose_scene(self) -> None:
         """The simulator is silent: forget the scene, unless it is silent over orders of ours."""
         if self.scene.known and not self._busy:
             self.scene.forget()
+            self._release()
 
     def keep(self, names: Collection[str] | None = None) -> None:
         """Do what must be done (about these entities and bodies), later if orders are under way already."""
@@ -237,6 +240,29 @@ class Keeping:
         asked: Future[BodiesMoved | JointsMoving] = self._ask(call)  # type: ignore[arg-type]
         asked.add_done_callback(on_done)
         return then(asked, lambda reply: self.scene.add(reply.bodies))
+
+    def when_placed(self, name: str, execute: Callable[[], Future[T]]) -> Future[T]:
+        """Return what `execute()` returns, which is called once the scene has carried out the map's order.
+
+        An order by hand that came before would be lost: the body is put where an earlier commit has it.
+        """
+        if not self._is_to_be_placed(name):
+            return execute()
+        future: Future[T] = OwnFuture()
+        self._held.append((name, lambda: settle(future, execute)))
+        return future
+
+    def _is_to_be_placed(self, name: str) -> bool:
+        return self.scene.known and bool(self.wanted((name,)).place)
+
+    def _release(self) -> None:
+        """Let the orders go whose bodies have been placed; those of one body keep their order."""
+        held, self._held = self._held, []
+        for name, execute in held:
+            if self._is_to_be_placed(name):
+                self._held.append((name, execute))
+            else:
+                execute()
 
     def place_all(self) -> Future[Any]:
         """Put every body back where the map says it stands; those that could not be made are tried again.
@@ -377,6 +403,7 @@ class Keeping:
         if not self._steps:
             self._busy = False
             self._keep_rest()
+            self._release()
             return
         call, handle = self._steps.popleft()
 

@@ -55,6 +55,12 @@ class Running:
         if body is None:
             state = self._keeping.body_state(self._door.map.entity(command.name))
             raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
+        return self._keeping.when_placed(command.name, lambda: self._take(command))
+
+    def _take(self, command: c.Move) -> Future[Moved]:
+        body = self._keeping.scene.bodies.get(command.name)
+        if body is None:
+            raise errors.Refused(f"{command.name} lost its body before it could be moved")
         if not command.carry:
             return self._put(command, body, ())
         future: Future[Moved] = OwnFuture()
@@ -95,8 +101,13 @@ class Running:
         order = DriveBase(
             name=command.name, to=command.to, yaw=command.yaw, speed=command.speed, wait=command.wait
         )
-        if command.wait and command.to:
-            return self._drive_there(command, order)
+        if not command.to:
+            return self._drive(command, order)
+        begin = self._drive_there if command.wait else self._drive
+        return self._keeping.when_placed(command.name, lambda: begin(command, order))
+
+    def _drive(self, command: c.Drive, order: DriveBase) -> Future[Moved]:
+        """Reply when the course has begun, or when the robot has stopped."""
 
         def driven(reply: Driven) -> Moved | Future[Moved]:
             self._door.hands.let_go(command)

@@ -6,6 +6,7 @@ import pytest
 from msgspec import structs
 
 from nodes.coordinator.config import CoordinatorConfig
+from nodes.coordinator.scene.completion import Completion
 from nodes.coordinator.scene.opening import Opening, _arrived, _on_its_way, _require_joints, _share
 from nodes.coordinator.scene.reconciler import Keeping
 from schemas import commands as c
@@ -83,7 +84,7 @@ def keeping(door, simulator):
 
 @pytest.fixture
 def opening(door, keeping, simulator):
-    return Opening(door, keeping, simulator.ask)
+    return Opening(door, keeping, Completion("map", door, keeping), simulator.ask)
 
 
 @pytest.mark.parametrize(

@@ -92,6 +92,54 @@ def test_a_body_that_cannot_be_made_is_a_problem_only_as_long_as_its_entity_is_t
     assert (keeping.problems(), said) == ([], [])  # and no heartbeat says it for an hour
 
 
+def test_an_order_by_hand_waits_until_the_map_s_own_is_carried_out(door):
+    """It would be lost: an undo, for one, puts the body back to where it was before."""
+    asked = []
+    keeping = Keeping(
+        CoordinatorConfig("map"), door, at_once(door), lambda call: asked.append(Future()) or asked[-1], print
+    )
+    keeping.scene.known = True
+    for name in ("chair1", "chair2"):
+        door.change(c.Add(class_="Chair", name=name, at=(1.0, 1.0, 0.0)))
+        keeping.scene.bodies[name] = standing(order(door.map.entity(name), door.map.entity(name).pose))
+    door.change(c.Update(name="chair1", at=(3.0, 1.0, 0.0)))
+    keeping.keep()
+    done = []
+
+    def execute(name):
+        done.append(name)
+        future = Future()
+        future.set_result(name)
+        return future
+
+    first = keeping.when_placed("chair1", lambda: execute("chair1"))
+    assert keeping.when_placed("chair2", lambda: execute("chair2")).result() == "chair2"
+    assert (done, first.done()) == (["chair2"], False)
+    placed = standing(order(door.map.entity("chair1"), door.map.entity("chair1").pose))
+    asked[0].set_result(BodiesMoved(bodies=(placed,), failed={}))
+    there = (placed, keeping.scene.bodies["chair2"])
+    asked[1].set_result(Scene(run="r", version=1, stamp_ns=1, sim_time_s=0.0, world="w", bodies=there))
+    assert (done, first.result()) == (["chair2", "chair1"], "chair1")
+
+
+def test_an_order_by_hand_that_waits_is_tried_when_the_simulator_is_gone(door):
+    keeping = Keeping(CoordinatorConfig("map"), door, at_once(door), lambda call: Future(), print)
+    keeping.scene.known = True
+    door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    keeping.scene.bodies["chair1"] = standing(
+        order(door.map.entity("chair1"), door.map.entity("chair1").pose)
+    )
+    door.change(c.Update(name="chair1", at=(3.0, 1.0, 0.0)))
+
+    def execute():
+        raise errors.NoAnswer("no simulator is running")
+
+    waiting = keeping.when_placed("chair1", execute)
+    assert not waiting.done()
+    keeping.lose_scene()
+    assert waiting.exception().text == "no simulator is running"
+
+
 def test_a_foreign_body_is_a_problem_only_as_long_as_it_is_there(door):
     keeping = Keeping(CoordinatorConfig("scene"), door, at_once(door), lambda *_: Future(), print)
     gizmo = standing(BodyOrder(name="gizmo", class_="Gizmo", pose=Pose(position_m=(0.0, 0.0, 0.0)), commit=0))

@@ -31,7 +31,7 @@ def cup(z: float, *, ghost: bool = False, in_the_way: str = "") -> Body:
 
 def running_with(bodies, ask, let_go):
     scene = SimpleNamespace(bodies=bodies, add=lambda bodies: None, run="", stamp_ns=0)
-    keeping = SimpleNamespace(scene=scene)
+    keeping = SimpleNamespace(scene=scene, when_placed=lambda name, execute: execute())
     door = SimpleNamespace(hands=SimpleNamespace(let_go=let_go), map=SimpleNamespace(entities={}))
     return Running("map", door, keeping, Completion("map", door, keeping), ask, ask)
 
