@@ -23,6 +23,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import psutil
 import pytest
 from hypothesis import HealthCheck, settings
 
@@ -141,21 +142,36 @@ class System:
         """
         self.begun = None
         with self.client() as client:
-            status = until(lambda: _ask_status(client), "the system answers")
-            old = {node.node: node.pid for node in status.nodes}
+            old = until(lambda: self._find_ready(client), "all nodes are ready")
             _replace_map(folder, self.data)
             # The coordinator goes last: it must not meet the old knowledge base again.
             for node in sorted(old, key="coordinator".__eq__):
                 os.kill(old[node], signal.SIGKILL)
 
             def is_opened() -> bool:
-                if (status := _ask_status(client)) is None:
-                    return False
-                pids = {node.node: node.pid for node in status.nodes if node.state == "ready"}
-                is_restarted = pids.keys() == old.keys() and not set(pids.values()) & set(old.values())
-                return is_restarted and status.in_agreement in (True, None)
+                new = self._find_ready(client)
+                is_restarted = new.keys() == old.keys() and not set(new.values()) & set(old.values())
+                status = _ask_status(client) if is_restarted else None
+                return status is not None and status.in_agreement in (True, None)
 
             until(is_opened, "all nodes are ready with the other map")
+
+    def _find_ready(self, client: Client) -> dict[str, int]:
+        """Return the processes of all nodes by name; none unless all are ready and work on the present map.
+
+        What a heartbeat says may be of a process that was killed since, so the one that has the journal open
+        is looked at.
+        """
+        status = _ask_status(client)
+        if status is None or any(node.state != "ready" for node in status.nodes):
+            return {}
+        pids = {node.node: int(node.pid) for node in status.nodes}
+        try:
+            files = {file.path for file in psutil.Process(pids["kb_node"]).open_files()}
+            is_alive = all(psutil.pid_exists(pid) for pid in pids.values())
+        except (KeyError, psutil.Error):
+            return {}
+        return pids if is_alive and str((self.data / FILENAME).resolve()) in files else {}
 
     def begin_anew(self, abox: str) -> None:
         """Have the map be as a first `semmap up --abox ABOX` makes it, `ABOX` being flat or none."""

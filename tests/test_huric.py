@@ -8,7 +8,7 @@ import pytest
 
 from nodes.runtime.class_names import ClassNames
 from schemas import errors
-from tests.conftest import until
+from tests.conftest import running, until
 from tests.data import data_folder
 
 EVERY = 12
@@ -16,9 +16,12 @@ EVERY = 12
 
 
 @pytest.fixture(scope="module")
-def client(empty_scene):
+def client(tmp_path_factory):
     data_folder()
-    with empty_scene.client() as client:
+    with (
+        running(tmp_path_factory.mktemp("huric"), "--abox", "none", "--no-record") as system,  # without walls
+        system.client() as client,
+    ):
         yield client
 
 

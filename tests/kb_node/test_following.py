@@ -19,7 +19,7 @@ from schemas.entities import Pose
 
 
 @pytest.fixture
-def restarted(flat, tmp_path, monkeypatch):
+def restarted(flat, monkeypatch):
     """The flat with a heap of things more, just started; it takes many steps to work out where they are."""
     for module in (beliefs, map_state, place_facts):
         monkeypatch.setattr(module, "_STEP", 3)
@@ -30,7 +30,7 @@ def restarted(flat, tmp_path, monkeypatch):
     flat.commit(Transaction(id="more", source="file", add=(*more, *crowd)))
     flat.checkpoint()
     flat._journal.close()
-    made = SemanticMap(Journal(tmp_path / "journal.sqlite"))
+    made = SemanticMap(Journal(flat._journal.path))
     yield made
     made._journal.close()
 
