@@ -66,14 +66,14 @@ diagrams: setup  ## Draw the manual's Mermaid diagrams that have changed; needs 
 	$(BIN)/python docs/_ext/diagrams.py
 
 schema: setup  ## Write the JSON Schema of scene files anew
-	$(BIN)/python -m schemas.scene_files > schemas/scene.schema.json
+	$(BIN)/python -m semmap.schemas.scene_files > schemas/scene.schema.json
 
 shapes: setup  ## Write the models' sizes, support surfaces and hollows anew, for the other nodes
-	$(BIN)/python -m nodes.sim_node.models.write_shapes
-	$(BIN)/python -m nodes.training.model_surfaces
+	$(BIN)/python -m semmap.nodes.sim_node.models.write_shapes
+	$(BIN)/python -m semmap.nodes.training.model_surfaces
 
 models: setup  ## Draw the contact sheet of all models
-	$(BIN)/python -m nodes.sim_node.models.sheet docs/models.png
+	$(BIN)/python -m semmap.nodes.sim_node.models.sheet docs/models.png
 
 pictures: setup  ## Draw the manual's pictures of the page, the plan and the movie; needs Debian's chromium
 	$(BIN)/python docs/_ext/pictures.py
@@ -88,12 +88,12 @@ foreign-picture: setup  ## Draw what foreign things are taken for by what learnt
 	$(BIN)/python -m benchmarks.perception.foreign_picture docs/foreign.png --things $${SEMMAP_DATA:-../shared/data}/foreign --samples dist/parts
 
 train-perception: setup  ## Learn anew what perception knows, from recorded scenes and foreign things too: an hour or two
-	$(BIN)/python -m nodes.training.segmentation --recorded $${SEMMAP_DATA:-../shared/data}/mosd
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m nodes.training.recognition --foreign $${SEMMAP_DATA:-../shared/data}/foreign --parts dist/parts
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m nodes.training.recognition.learn_likeness --parts dist/parts
+	$(BIN)/python -m semmap.nodes.training.segmentation --recorded $${SEMMAP_DATA:-../shared/data}/mosd
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m semmap.nodes.training.recognition --foreign $${SEMMAP_DATA:-../shared/data}/foreign --parts dist/parts
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m semmap.nodes.training.recognition.learn_likeness --parts dist/parts
 
 train-language: setup  ## Learn anew what commands mean, from the HuRIC corpus: a minute
-	$(BIN)/python -m nodes.training.language $${SEMMAP_DATA:-../shared/data}/huric
+	$(BIN)/python -m semmap.nodes.training.language $${SEMMAP_DATA:-../shared/data}/huric
 
 wheel: setup  ## Build the wheel into dist/
 	$(BIN)/python -m hatchling build -t wheel

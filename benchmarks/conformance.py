@@ -2,7 +2,7 @@
 
 DIR holds `manifest.json`, a list of `{id, type, premise, conclusion?}` with N-Triples files relative to DIR.
 Types are entailment, non-entailment, consistency and inconsistency. What no rule derives is decided by
-`nodes.kb_node.reasoner.entailment`: by refutation, for generic individuals, with names for what must exist.
+`semmap.nodes.kb_node.reasoner.entailment`: by refutation, for generic individuals, with names for what must exist.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ import pyoxigraph
 from msgspec import Struct
 from msgspec.json import decode
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner, entails
-from nodes.kb_node.reasoner.entailment import contradictory
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner, entails
+from semmap.nodes.kb_node.reasoner.entailment import contradictory
+from semmap.schemas.explanations import Triple
 
 
 class Case(Struct, frozen=True):

@@ -26,19 +26,19 @@ from typing import Any, Final
 import psutil  # type: ignore[import-untyped]
 
 from benchmarks.kb.made import entities
-from nodes import bus
-from nodes.extern.fleet import asking
-from nodes.extern.fleet import facts as f
-from nodes.extern.fleet.server import SparqlServer
-from nodes.extern.testing import free_endpoint
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.seed import seed
-from ontology import HOUSEHOLD_TTL
-from schemas import keys
-from schemas.bridge import CopyQuery, MapCopy, Recall
-from schemas.commits import Edit, Transaction
+from semmap.nodes import bus
+from semmap.nodes.extern.fleet import asking
+from semmap.nodes.extern.fleet import facts as f
+from semmap.nodes.extern.fleet.server import SparqlServer
+from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.storage.seed import seed
+from semmap.ontology import HOUSEHOLD_TTL
+from semmap.schemas import keys
+from semmap.schemas.bridge import CopyQuery, MapCopy, Recall
+from semmap.schemas.commits import Edit, Transaction
 
 SIZES: Final = (5, 10, 25, 50)
 _STEADY_S: Final = 8.0
@@ -84,7 +84,7 @@ class Robot:
 
     def commit(self, number: int) -> int:
         """Put one of its things elsewhere; how many bytes are published for it."""
-        from schemas import codec
+        from semmap.schemas import codec
 
         name = f"e{self._dice.randrange(self._size)}"
         at = (self._dice.uniform(-500, 500), self._dice.uniform(-500, 500), 0.0)
@@ -274,7 +274,7 @@ def _query_ms(query: str, query_url: str, server: psutil.Process, times: int = 2
 
 
 def _await_server(url: str) -> None:
-    from schemas import errors
+    from semmap.schemas import errors
 
     deadline_s = time.monotonic() + 30.0
     while time.monotonic() < deadline_s:

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable
 from typing import NamedTuple
 
-from nodes.extern.client import Client, connect
+from semmap.nodes.extern.client import Client, connect
 from tests.faults.cut_hosts import spread_out
 from tests.faults.ground import free_place
 from tests.faults.hosts import Host, Link, Network

@@ -25,11 +25,11 @@ from typing import Any
 import psutil  # type: ignore[import-untyped]
 import zenoh
 
-from nodes import bus
-from nodes.extern.client import Client, connect
-from nodes.extern.testing import free_endpoint, own_system
-from schemas import codec, errors, keys
-from schemas.replies import Ack
+from semmap.nodes import bus
+from semmap.nodes.extern.client import Client, connect
+from semmap.nodes.extern.testing import free_endpoint, own_system
+from semmap.schemas import codec, errors, keys
+from semmap.schemas.replies import Ack
 
 _UP = ("--abox", "none", "--no-sim", "--no-record", "--world", "empty")
 _CLIENTS_A_PROCESS = 5

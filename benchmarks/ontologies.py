@@ -22,9 +22,9 @@ from typing import Any
 
 import psutil  # type: ignore[import-untyped]
 
-from nodes.kb_node.documents import catalogue, ontology_files
-from nodes.kb_node.documents.tbox import tbox_check
-from schemas import errors
+from semmap.nodes.kb_node.documents import catalogue, ontology_files
+from semmap.nodes.kb_node.documents.tbox import tbox_check
+from semmap.schemas import errors
 
 OTHERS = ("owlrl", "reasonable")
 _PATIENCE_S = 60.0
@@ -67,8 +67,8 @@ def closure_s(engine: str, file: Path, imports: Mapping[str, Path]) -> dict[str,
     """How long another engine takes for the closure of an ontology, measured in this process."""
     from rdflib import Graph
 
-    from nodes.kb_node.documents import rdf
-    from nodes.kb_node.owlrl.closure_process import QuickGraph, close
+    from semmap.nodes.kb_node.documents import rdf
+    from semmap.nodes.kb_node.owlrl.closure_process import QuickGraph, close
 
     triples = ontology_files.gather([file], imports).triples
     graph = (QuickGraph if engine == "owlrl" else Graph)()

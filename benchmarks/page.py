@@ -31,12 +31,12 @@ import psutil  # type: ignore[import-untyped]
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from benchmarks.table import Row, as_json, lines
-from nodes import bus
-from nodes.extern.client import Client
-from nodes.extern.testing import free_endpoint, own_system
-from schemas import keys
-from schemas.commits import Commit
-from schemas.scenes import Poses
+from semmap.nodes import bus
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.testing import free_endpoint, own_system
+from semmap.schemas import keys
+from semmap.schemas.commits import Commit
+from semmap.schemas.scenes import Poses
 
 _SEMMAP = str(Path(sys.executable).with_name("semmap"))
 FLAGS = ("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking")

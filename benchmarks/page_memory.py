@@ -26,9 +26,9 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 from benchmarks.page import FLAGS, opened, page_of
-from nodes.extern.client import Client
-from nodes.extern.testing import free_endpoint, own_system
-from schemas import errors
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.testing import free_endpoint, own_system
+from semmap.schemas import errors
 
 _COLUMNS = ("minute", "commits", "process_mb", "heap_mb", "elements", "listeners")
 _PERIOD_S = 1.0

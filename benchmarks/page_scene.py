@@ -27,22 +27,22 @@ from playwright.sync_api import Browser, Frame, Page, ViewportSize, WebSocket, s
 
 from benchmarks.page import page_of
 from benchmarks.table import Row, as_json, lines
-from nodes import bus
-from nodes.extern.testing import free_endpoint
-from nodes.extern.web.scene.bodies import Bodies
-from nodes.extern.web.scene.camera import first_view
-from nodes.extern.web.scene.meshes import glb
-from nodes.extern.web.scene.shown import Shown
-from nodes.runtime.loop import Node
-from nodes.sim_node.models.facets import surface_of
-from nodes.sim_node.models.library import Model, build
-from schemas import codec, keys
-from schemas.bridge import SnapshotQuery
-from schemas.commands import Classes
-from schemas.commits import Snapshot
-from schemas.entities import Entity, Pose, Provenance
-from schemas.health import Health
-from schemas.scenes import Body, Poses, Scene, SceneQuery, Surface, SurfaceQuery, Surfaces, WorldQuery
+from semmap.nodes import bus
+from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.extern.web.scene.bodies import Bodies
+from semmap.nodes.extern.web.scene.camera import first_view
+from semmap.nodes.extern.web.scene.meshes import glb
+from semmap.nodes.extern.web.scene.shown import Shown
+from semmap.nodes.runtime.loop import Node
+from semmap.nodes.sim_node.models.facets import surface_of
+from semmap.nodes.sim_node.models.library import Model, build
+from semmap.schemas import codec, keys
+from semmap.schemas.bridge import SnapshotQuery
+from semmap.schemas.commands import Classes
+from semmap.schemas.commits import Snapshot
+from semmap.schemas.entities import Entity, Pose, Provenance
+from semmap.schemas.health import Health
+from semmap.schemas.scenes import Body, Poses, Scene, SceneQuery, Surface, SurfaceQuery, Surfaces, WorldQuery
 
 _HZ = 20.0
 _BYTES_OF_A_POSE = 28

@@ -11,9 +11,9 @@ import re
 from collections.abc import Set
 from functools import cache, lru_cache
 
-from ontology.model_shapes import own_size_m, shapes, varieties_of
-from schemas import errors
-from schemas.entities import Size
+from semmap.ontology.model_shapes import own_size_m, shapes, varieties_of
+from semmap.schemas import errors
+from semmap.schemas.entities import Size
 
 _WORD = re.compile(r"[A-Z]?[^\W\d_A-Z]+|[A-Z]+(?![^\W\d_A-Z])")
 _DIGITS = "0123456789"

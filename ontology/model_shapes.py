@@ -12,8 +12,8 @@ from typing import Literal
 import msgspec
 from msgspec import Struct, structs
 
-from ontology import MODEL_SHAPES_JSON
-from schemas.entities import Size
+from semmap.ontology import MODEL_SHAPES_JSON
+from semmap.schemas.entities import Size
 
 Flat = tuple[float, float]
 Corner = tuple[float, float, float]

@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from ontology.vocabulary import local_name
-from schemas.entities import composed
-from schemas.errors import enumerated, nearest
+from semmap.ontology.vocabulary import local_name
+from semmap.schemas.entities import composed
+from semmap.schemas.errors import enumerated, nearest
 
 _SEPARATORS = re.compile(r"[\s_-]+")
 

@@ -14,8 +14,8 @@ from types import MappingProxyType
 from typing import Final
 from urllib.parse import unquote, urlsplit
 
-from ontology import vocabulary as v
-from schemas.explanations import Term, Triple
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term, Triple
 
 Prefixes = Mapping[str, str]
 """Prefix to namespace, both without any punctuation of a syntax: `{"dm": "http://...#"}`."""

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from ontology import vocabulary as v
-from schemas.entities import IDENTITY, Pose, Size
-from schemas.explanations import Term, Triple
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import IDENTITY, Pose, Size
+from semmap.schemas.explanations import Term, Triple
 
 STAR_PROPERTIES = (v.HAS_POSITION, v.HAS_SIZE, v.HAS_PREFERRED_REFERENCE, v.HAS_ALTERNATIVE_REFERENCE)
 """The edges from an entity to the individuals of its star."""

@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from typing import Final
 from urllib.parse import unquote
 
-from schemas.entities import composed
-from schemas.explanations import Term, Triple
+from semmap.schemas.entities import composed
+from semmap.schemas.explanations import Term, Triple
 
 TBOX: Final = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#"
 ABOX: Final = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_1#"

@@ -17,8 +17,8 @@ from typing import BinaryIO, Final, Literal
 import msgspec
 from msgspec import Struct
 
-from schemas import codec, wording
-from schemas.errors import BadFile
+from semmap.schemas import codec, wording
+from semmap.schemas.errors import BadFile
 
 MAGIC: Final = b"semmap backup 1\n"
 _LENGTH: Final = 4

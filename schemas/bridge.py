@@ -6,8 +6,8 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta, Struct, field
 
-from schemas.calls import DOCUMENT, MANY, Call
-from schemas.commands import (
+from semmap.schemas.calls import DOCUMENT, MANY, Call
+from semmap.schemas.commands import (
     Backup,
     Check,
     Classes,
@@ -30,13 +30,13 @@ from schemas.commands import (
     WasWhen,
     Watch,
 )
-from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
-from schemas.entities import CommandId, Entity, Source, Word
-from schemas.errors import ErrorMessage
-from schemas.explanations import Triple
-from schemas.moments import When
-from schemas.plans import Clearance, HeightRange, Outline, Plan, Way
-from schemas.relations import Where
+from semmap.schemas.commits import Commit, Effects, Snapshot, Star, Transaction
+from semmap.schemas.entities import CommandId, Entity, Source, Word
+from semmap.schemas.errors import ErrorMessage
+from semmap.schemas.explanations import Triple
+from semmap.schemas.moments import When
+from semmap.schemas.plans import Clearance, HeightRange, Outline, Plan, Way
+from semmap.schemas.relations import Where
 
 
 class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -235,7 +235,7 @@ class PlanOf(Call[Plan], frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class WayOf(Call[Way], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A way through the map; see `schemas.commands.FindWay`, and `PlanOf` for the walls."""
+    """A way through the map; see `semmap.schemas.commands.FindWay`, and `PlanOf` for the walls."""
 
     LARGEST: ClassVar[int] = MANY
 
@@ -249,7 +249,7 @@ class WayOf(Call[Way], frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Take back a commit by another one; see `schemas.commands.Undo`."""
+    """Take back a commit by another one; see `semmap.schemas.commands.Undo`."""
 
     VERB: ClassVar[str] = "undo"
     id: CommandId

@@ -7,7 +7,7 @@ from typing import Literal
 
 from msgspec import Struct, field
 
-from schemas.entities import Entity, Pose, Stated, Value, angle_rad, distance_m
+from semmap.schemas.entities import Entity, Pose, Stated, Value, angle_rad, distance_m
 
 _STILL_M = 5e-4
 _SLIGHT_RAD = 0.0175

@@ -11,8 +11,8 @@ from typing import Any, Final, TypeVar, Union, get_args, get_origin
 
 import msgspec
 
-from schemas.errors import BadRequest, shortened
-from schemas.wording import sentence
+from semmap.schemas.errors import BadRequest, shortened
+from semmap.schemas.wording import sentence
 
 T = TypeVar("T")
 

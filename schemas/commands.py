@@ -11,10 +11,10 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from msgspec import Meta, field, structs
 
-from schemas.approvals import Request, Told
-from schemas.backups import BackupPart
-from schemas.calls import DOCUMENT, MANY, Call, R
-from schemas.entities import (
+from semmap.schemas.approvals import Request, Told
+from semmap.schemas.backups import BackupPart
+from semmap.schemas.calls import DOCUMENT, MANY, Call, R
+from semmap.schemas.entities import (
     Angle,
     ClassInfo,
     Entity,
@@ -32,15 +32,15 @@ from schemas.entities import (
     Word,
     composed,
 )
-from schemas.explanations import Explanation
-from schemas.frames import Frame, FrameName
-from schemas.happenings import Difference, KeptRelation, Spells
-from schemas.language import Account, Found, Language, Understood
-from schemas.lessons import LessonTold, ShownView
-from schemas.moments import When
-from schemas.plans import HEIGHTS_M, RADIUS_M, Clearance, HeightRange, Plan, Way
-from schemas.relations import Described, Relation, ViewPoint, Where
-from schemas.replies import (
+from semmap.schemas.explanations import Explanation
+from semmap.schemas.frames import Frame, FrameName
+from semmap.schemas.happenings import Difference, KeptRelation, Spells
+from semmap.schemas.language import Account, Found, Language, Understood
+from semmap.schemas.lessons import LessonTold, ShownView
+from semmap.schemas.moments import When
+from semmap.schemas.plans import HEIGHTS_M, RADIUS_M, Clearance, HeightRange, Plan, Way
+from semmap.schemas.relations import Described, Relation, ViewPoint, Where
+from semmap.schemas.replies import (
     Changed,
     Checked,
     Compacted,
@@ -53,14 +53,14 @@ from schemas.replies import (
     Sighting,
     SystemStatus,
 )
-from schemas.scenes import Picture, Point
-from schemas.sparql import SparqlResult, Watching
+from semmap.schemas.scenes import Picture, Point
+from semmap.schemas.sparql import SparqlResult, Watching
 
 RDF_FORMATS = ("rdfxml", "turtle", "ntriples", "jsonld")
 RdfFormat = Literal["rdfxml", "turtle", "ntriples", "jsonld"]
 ListFormat = Literal["json", "lu4r", "legacy"]
 ExtentText = Annotated[str, Meta(min_length=1, max_length=50_000)]
-"""What a place covers, seen from above: `POLYGON ((x y, ...))` in WKT; see `schemas.polygons`."""
+"""What a place covers, seen from above: `POLYGON ((x y, ...))` in WKT; see `semmap.schemas.polygons`."""
 ClassName = Annotated[str, Meta(min_length=1, max_length=200)]
 Since = Annotated[int, Meta(ge=0, le=1 << 53)]
 """A commit: if one after it has changed what is to be `unchanged`, a command is refused."""
@@ -584,7 +584,7 @@ class Approve(Command[tuple[Request, ...]], frozen=True, tag="approve"):
 class Backup(Command[BackupPart], frozen=True, tag="backup"):
     """A part of a backup of the map with its history: the first, or the one `at` what a part names as `next`.
 
-    All parts one after another, while the map goes on, are the file as of the first (see `schemas.backups`).
+    All parts one after another, while the map goes on, are the file as of the first (see `semmap.schemas.backups`).
     """
 
     at: str = ""

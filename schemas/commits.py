@@ -7,9 +7,9 @@ from typing import ClassVar, Final
 
 from msgspec import Struct, structs
 
-from schemas import errors
-from schemas.calls import DOCUMENT, Call
-from schemas.entities import (
+from semmap.schemas import errors
+from semmap.schemas.calls import DOCUMENT, Call
+from semmap.schemas.entities import (
     Angle,
     CommandId,
     Entity,
@@ -25,8 +25,8 @@ from schemas.entities import (
     Tracked,
     Vector,
 )
-from schemas.explanations import Term, Triple
-from schemas.scene_files import pose_of
+from semmap.schemas.explanations import Term, Triple
+from semmap.schemas.scene_files import pose_of
 
 _NAME: Final = attrgetter("name")
 

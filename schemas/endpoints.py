@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from schemas.errors import BadRequest
+from semmap.schemas.errors import BadRequest
 
 DEFAULT_ENDPOINT: Final = "tcp/127.0.0.1:7447"
 CONNECT_VARIABLE: Final = "SEMMAP_CONNECT"

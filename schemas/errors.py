@@ -17,7 +17,7 @@ from typing import ClassVar
 
 from msgspec import Struct
 
-from schemas.explanations import Explanation
+from semmap.schemas.explanations import Explanation
 
 LONGEST_TEXT = 10_000
 """Characters of an error that are sent: what a sentence quotes may be of any length."""

@@ -6,9 +6,9 @@ from typing import Annotated, Final, Literal
 
 from msgspec import Meta, Struct
 
-from schemas.entities import Angle, Pose, Quaternion, Vector
-from schemas.live import StampNs
-from schemas.scene_files import pose_of
+from semmap.schemas.entities import Angle, Pose, Quaternion, Vector
+from semmap.schemas.live import StampNs
+from semmap.schemas.scene_files import pose_of
 
 MAP: Final = "map"
 """The root: z up, metres."""

@@ -7,7 +7,7 @@ from typing import Final
 
 from msgspec import ValidationError, convert
 
-from schemas.entities import Entity, Pose, rounded
+from semmap.schemas.entities import Entity, Pose, rounded
 
 IS_GRASPED_BY: Final = "isGraspedBy"
 GRASP_POSE: Final = "graspPose"

@@ -6,7 +6,7 @@ from typing import Literal
 
 from msgspec import Struct
 
-from schemas.changes import Change
+from semmap.schemas.changes import Change
 
 KeptRelation = Literal["isOn", "isInside", "isLocatedIn", "isAttachedTo"]
 """Spatial relations that are known of every commit."""

@@ -7,7 +7,7 @@ from typing import Final, Literal
 
 from msgspec import Struct
 
-from schemas import errors
+from semmap.schemas import errors
 
 OPEN_FROM: Final = 0.05
 """A thing counts as open from this share of the way on; less is a door that stands ajar by its play."""

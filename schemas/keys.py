@@ -10,15 +10,15 @@ from functools import cache, lru_cache
 from typing import Any, Literal, NamedTuple
 from urllib.parse import quote, unquote
 
-from schemas.commits import Commit, Effects
-from schemas.frames import FramePose
-from schemas.health import Health
-from schemas.live import LivePose, LivePoses
-from schemas.perception import DetectedMasks, Observations, SegmentedCloud
-from schemas.relations import Described
-from schemas.replies import Ack
-from schemas.scenes import Poses
-from schemas.sparql import RowsChanged
+from semmap.schemas.commits import Commit, Effects
+from semmap.schemas.frames import FramePose
+from semmap.schemas.health import Health
+from semmap.schemas.live import LivePose, LivePoses
+from semmap.schemas.perception import DetectedMasks, Observations, SegmentedCloud
+from semmap.schemas.relations import Described
+from semmap.schemas.replies import Ack
+from semmap.schemas.scenes import Poses
+from semmap.schemas.sparql import RowsChanged
 
 ROOT = "semmap"
 _RESERVED = re.compile(r"[/*$?#%@\s]")

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from msgspec import Meta, Struct, field
 
-from schemas.entities import Size
+from semmap.schemas.entities import Size
 
 
 class ShownView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from msgspec import Meta, Struct
 
-from schemas.entities import Angle, Live, Pose, Quaternion, Vector
-from schemas.scene_files import pose_of
+from semmap.schemas.entities import Angle, Live, Pose, Quaternion, Vector
+from semmap.schemas.scene_files import pose_of
 
 StampNs = Annotated[int, Meta(ge=0, le=(1 << 63) - 1)]
 

@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 
 from msgspec import Meta
 
-from schemas.errors import BadRequest
+from semmap.schemas.errors import BadRequest
 
 _S = 1_000_000_000
 _FIRST_SECOND = 1_000_000_000

@@ -8,7 +8,7 @@ from __future__ import annotations
 import zlib
 from typing import Final
 
-from schemas.errors import BadFile
+from semmap.schemas.errors import BadFile
 
 PACKED_FROM: Final = 32 << 20
 """Bytes; smaller files travel as they are."""

@@ -6,7 +6,7 @@ from typing import Final
 
 from msgspec import Struct, field
 
-from schemas.entities import Pose, Probability, Size
+from semmap.schemas.entities import Pose, Probability, Size
 
 MISSING: Final = "not seen where it should stand"
 DISPLACED: Final = "something else is in its place"

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta, Struct, field
 
-from schemas.calls import Call
+from semmap.schemas.calls import Call
 
 Point = tuple[float, float]
 Corners = tuple[Point, ...]

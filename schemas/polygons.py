@@ -12,8 +12,8 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from typing import Final, NamedTuple
 
-from schemas.entities import REACH_M, Entity, Size
-from schemas.errors import BadRequest
+from semmap.schemas.entities import REACH_M, Entity, Size
+from semmap.schemas.errors import BadRequest
 
 Point = tuple[float, float]
 Ring = tuple[Point, ...]

@@ -7,8 +7,8 @@ from typing import Annotated, Final, Literal
 
 from msgspec import Meta, Struct
 
-from schemas.entities import REACH_M, Entity, Metres, Text, Vector
-from schemas.errors import BadRequest
+from semmap.schemas.entities import REACH_M, Entity, Metres, Text, Vector
+from semmap.schemas.errors import BadRequest
 
 RelationName = Literal[
     "isOn", "isInside", "isLocatedIn", "isAttachedTo", "touches", "isUnder", "isAbove", "isNear", "isNextTo",
@@ -87,7 +87,7 @@ class Described(Entity, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Where(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Which entities by where they are; all that is given must hold. See `schemas.commands.List`.
+    """Which entities by where they are; all that is given must hold. See `semmap.schemas.commands.List`.
 
     `near` and `to` may also be positions in the map frame (`position_in`).
     """

@@ -1,4 +1,4 @@
-"""Replies to commands; each command names its reply type (`schemas.commands`)."""
+"""Replies to commands; each command names its reply type (`semmap.schemas.commands`)."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from typing import Any, Literal
 
 from msgspec import Struct
 
-from schemas.changes import Change
-from schemas.entities import Pose, Probability, Provenance, Source
-from schemas.errors import ErrorMessage
-from schemas.explanations import Explanation, Triple
-from schemas.relations import Relation
+from semmap.schemas.changes import Change
+from semmap.schemas.entities import Pose, Probability, Provenance, Source
+from semmap.schemas.errors import ErrorMessage
+from semmap.schemas.explanations import Explanation, Triple
+from semmap.schemas.relations import Relation
 
 
 class Changed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -152,7 +152,7 @@ class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     changes: tuple[Change, ...] = ()
     """What was and what is, of the first entities that it touched."""
     notes: tuple[str, ...] = ()
-    """What else there is to know of it: see `schemas.commits.Commit`."""
+    """What else there is to know of it: see `semmap.schemas.commits.Commit`."""
     authenticated: bool = False
     """A certificate has proved the agent's name; else it is as somebody said."""
 

@@ -6,7 +6,7 @@ from typing import Generic, TypeVar
 
 from msgspec import Struct
 
-from schemas import errors
+from semmap.schemas import errors
 
 R = TypeVar("R")
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import Final, Literal, NamedTuple, get_args
 
-from schemas import keys
-from schemas.commands import Command, Load
-from schemas.entities import Source
-from schemas.errors import enumerated
+from semmap.schemas import keys
+from semmap.schemas.commands import Command, Load
+from semmap.schemas.entities import Source
+from semmap.schemas.errors import enumerated
 
 Role = Literal["viewer", "operator", "perception", "robot", "admin", "node"]
 ROLES: Final[tuple[Role, ...]] = get_args(Role)

@@ -1,6 +1,6 @@
 """Scenes in JSON: `{"entities": [{"class": "Chair", "at": [1, 2, 0]}, ...]}`; a world has `"cameras"`, too.
 
-Their JSON Schema is `schemas/scene.schema.json`; `python -m schemas.scene_files` prints it.
+Their JSON Schema is `schemas/scene.schema.json`; `python -m semmap.schemas.scene_files` prints it.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta, Struct, field
 
-from schemas import codec
-from schemas.entities import (
+from semmap.schemas import codec
+from semmap.schemas.entities import (
     NAME_PATTERN,
     Angle,
     Name,
@@ -27,7 +27,7 @@ from schemas.entities import (
     orientation_from_yaw,
     require_unit,
 )
-from schemas.errors import BadFile, BadRequest
+from semmap.schemas.errors import BadFile, BadRequest
 
 
 class Described(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):

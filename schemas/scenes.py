@@ -6,9 +6,9 @@ from typing import Annotated, ClassVar, Final, Literal
 
 from msgspec import Meta, Struct, field
 
-from schemas.calls import MANY, Call
-from schemas.entities import Angle, Metres, Name, Pose, Probability, Size, Vector
-from schemas.joints import Joint
+from semmap.schemas.calls import MANY, Call
+from semmap.schemas.entities import Angle, Metres, Name, Pose, Probability, Size, Vector
+from semmap.schemas.joints import Joint
 
 PixelCount = Annotated[int, Meta(ge=1, le=1 << 14)]
 """How wide or high a picture may be."""
@@ -24,7 +24,7 @@ class BodyOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     With commit 0 it is for no entity, but of the world's own furniture.
     `model` is a name of the model library or of a file; empty or unknown means a box of `size_m`.
     `size_m` None means the model's own size. `properties` are those by which the map states how its joints
-    stand (`schemas.joints.OPENING`); without them they stand as the model has them.
+    stand (`semmap.schemas.joints.OPENING`); without them they stand as the model has them.
     """
 
     name: Name

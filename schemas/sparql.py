@@ -6,7 +6,7 @@ from typing import Literal
 
 from msgspec import Struct
 
-from schemas.explanations import Term
+from semmap.schemas.explanations import Term
 
 Row = tuple[Term | None, ...]
 """One solution: a term for each variable, None where it is unbound."""

@@ -8,8 +8,8 @@ from typing import Any
 
 from msgspec import DecodeError, ValidationError, inspect
 
-from schemas.entities import NAME_PATTERN, Pose
-from schemas.errors import did_you_mean
+from semmap.schemas.entities import NAME_PATTERN, Pose
+from semmap.schemas.errors import did_you_mean
 
 _AT = re.compile(r"(.*) - at `(?:key` in `)?\$(.*)`", re.DOTALL)
 _UNKNOWN = re.compile(r"Object contains unknown field `(.*)`")

@@ -20,14 +20,14 @@ import importlib
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from nodes.extern.client import Client, connect
-from nodes.extern.restoring import restore
-from nodes.extern.sparql_client import StandingQuery
-from ontology.vocabulary import local_name
-from schemas.backups import Restored
-from schemas.commits import Commit, Departed
-from schemas.entities import BodyState, ClassInfo, Entity, Pose, Provenance
-from schemas.errors import (
+from semmap.nodes.extern.client import Client, connect
+from semmap.nodes.extern.restoring import restore
+from semmap.nodes.extern.sparql_client import StandingQuery
+from semmap.ontology.vocabulary import local_name
+from semmap.schemas.backups import Restored
+from semmap.schemas.commits import Commit, Departed
+from semmap.schemas.entities import BodyState, ClassInfo, Entity, Pose, Provenance
+from semmap.schemas.errors import (
     BadFile,
     BadRequest,
     Inconsistent,
@@ -41,8 +41,8 @@ from schemas.errors import (
     UnknownName,
     UnknownVerb,
 )
-from schemas.explanations import Explanation
-from schemas.replies import (
+from semmap.schemas.explanations import Explanation
+from semmap.schemas.replies import (
     Changed,
     Checked,
     Document,
@@ -54,7 +54,7 @@ from schemas.replies import (
     Sighting,
     SystemStatus,
 )
-from schemas.sparql import RowsChanged, SparqlResult
+from semmap.schemas.sparql import RowsChanged, SparqlResult
 
 if TYPE_CHECKING:
     from semmap import aio, commands, fleet, reasoner, recordings, testing, wire

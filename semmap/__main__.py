@@ -1,5 +1,5 @@
 """`python -m semmap`: the command line."""
 
-from nodes.extern.cli.app import main
+from semmap.nodes.extern.cli.app import main
 
 main()

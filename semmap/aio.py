@@ -9,6 +9,6 @@ async for commit in commits:
 print(commit.seq, commit.reason)
 """
 
-from nodes.extern.async_client import AsyncClient, AsyncStandingQuery, connect
+from semmap.nodes.extern.async_client import AsyncClient, AsyncStandingQuery, connect
 
 __all__ = ["AsyncClient", "AsyncStandingQuery", "connect"]

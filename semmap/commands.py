@@ -1,6 +1,6 @@
 """What can be sent to a system: `client.send(Add("Cup"))` does what `client.add("Cup")` does."""
 
-from schemas.commands import (
+from semmap.schemas.commands import (
     Add,
     Batch,
     Check,

@@ -5,11 +5,11 @@ with semmap.fleet.robots("arm*") as robots:
         print(answer.robot, answer.commit, answer.value)
 """
 
-from nodes.extern.fleet.asking import CopiedRobot, FleetAnswer, sparql
-from nodes.extern.fleet.frames import Frame
-from nodes.extern.fleet.mirror import Mirror
-from nodes.extern.fleet.mirroring import mirror
-from nodes.extern.fleet.robots import Robots, robots
-from schemas.robots import Answer
+from semmap.nodes.extern.fleet.asking import CopiedRobot, FleetAnswer, sparql
+from semmap.nodes.extern.fleet.frames import Frame
+from semmap.nodes.extern.fleet.mirror import Mirror
+from semmap.nodes.extern.fleet.mirroring import mirror
+from semmap.nodes.extern.fleet.robots import Robots, robots
+from semmap.schemas.robots import Answer
 
 __all__ = ["Answer", "CopiedRobot", "FleetAnswer", "Frame", "Mirror", "Robots", "mirror", "robots", "sparql"]

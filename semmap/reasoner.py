@@ -11,7 +11,7 @@ Terms are N-Triples text (`<iri>`, `"1.0"^^<datatype>`, `_:label`), and a triple
     print(reasoner.explain(("<urn:cup1>", a, "<urn:Dish>")).text)
 """
 
-from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
-from nodes.kb_node.reasoner.explanations import Explanation, Step, Term, Triple
+from semmap.nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.explanations import Explanation, Step, Term, Triple
 
 __all__ = ["Change", "Explanation", "Inconsistent", "Reasoner", "Step", "Term", "Triple"]

@@ -7,7 +7,7 @@
 Each reads the journal of a data folder, or of a running system, and changes nothing.
 """
 
-from nodes.extern.movie import Film, movie
-from nodes.extern.replaying import check, replay
+from semmap.nodes.extern.movie import Film, movie
+from semmap.nodes.extern.replaying import check, replay
 
 __all__ = ["Film", "check", "movie", "replay"]

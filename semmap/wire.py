@@ -7,9 +7,9 @@ its attachment:
     publisher.put(depth_m.tobytes(), attachment=encode(CameraFrame(camera="front", encoding="depth32f", ...)))
 """
 
-from schemas.codec import decode, encode
-from schemas.health import Health
-from schemas.keys import (
+from semmap.schemas.codec import decode, encode
+from semmap.schemas.health import Health
+from semmap.schemas.keys import (
     ACK,
     COMMIT,
     ENTITY,
@@ -21,9 +21,9 @@ from schemas.keys import (
     camera_key,
     entity_key,
 )
-from schemas.perception import CameraView, DetectedMasks, MaskImage, MaskRun, Observation, Observations
-from schemas.replies import Ack
-from schemas.scenes import CameraFrame, Poses
+from semmap.schemas.perception import CameraView, DetectedMasks, MaskImage, MaskRun, Observation, Observations
+from semmap.schemas.replies import Ack
+from semmap.schemas.scenes import CameraFrame, Poses
 
 __all__ = [
     "ACK",

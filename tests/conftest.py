@@ -27,15 +27,15 @@ import psutil
 import pytest
 from hypothesis import HealthCheck, settings
 
-from nodes.extern.cli.app import execute
-from nodes.extern.client import Client, connect
-from nodes.extern.testing import free_endpoint
-from nodes.kb_node.storage.journal import FILENAME
-from nodes.kb_node.storage.seed import seed
-from nodes.runtime.loop import Node
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
-from schemas import errors
-from schemas.replies import SystemStatus
+from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.extern.client import Client, connect
+from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.kb_node.storage.journal import FILENAME
+from semmap.nodes.kb_node.storage.seed import seed
+from semmap.nodes.runtime.loop import Node
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.schemas import errors
+from semmap.schemas.replies import SystemStatus
 from tests import tiers
 
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.

@@ -8,7 +8,7 @@ import signal
 import threading
 import time
 
-from schemas import errors
+from semmap.schemas import errors
 from tests.conftest import until
 
 

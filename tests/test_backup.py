@@ -10,11 +10,11 @@ import time
 import pytest
 
 import semmap
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.seed import seed
-from ontology import HOUSEHOLD_TTL
-from schemas import backups, errors
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.seed import seed
+from semmap.ontology import HOUSEHOLD_TTL
+from semmap.schemas import backups, errors
 from tests.conftest import running, until
 from tests.kb_node.home import chair, transaction
 

@@ -8,9 +8,9 @@ import subprocess
 import psutil
 import pytest
 
-from ontology import stars
-from ontology import vocabulary as v
-from schemas.entities import Pose
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import Pose
 from tests.conftest import running
 
 TRIPLES = 1_000_000

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from schemas import errors
+from semmap.schemas import errors
 
 L_SHAPE = "POLYGON ((20 0, 26 0, 26 2, 22 2, 22 5, 20 5, 20 0))"
 

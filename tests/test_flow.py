@@ -13,14 +13,14 @@ from pathlib import Path
 
 import pytest
 
-from nodes import bus
-from nodes.extern.client import connect
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
-from schemas import errors, keys
-from schemas.bridge import SnapshotQuery
-from schemas.commits import Snapshot
-from schemas.entities import Pose
-from schemas.scenes import BodyOrder, Scene, SceneQuery, Spawn, Spawned
+from semmap.nodes import bus
+from semmap.nodes.extern.client import connect
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.schemas import errors, keys
+from semmap.schemas.bridge import SnapshotQuery
+from semmap.schemas.commits import Snapshot
+from semmap.schemas.entities import Pose
+from semmap.schemas.scenes import BodyOrder, Scene, SceneQuery, Spawn, Spawned
 from tests.conftest import free_endpoint, running, until
 
 NODES = ("coordinator", "kb_node", "sim_node", "recorder")

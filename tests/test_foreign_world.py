@@ -11,14 +11,14 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from nodes import bus
-from nodes.extern.client import Client
-from nodes.training.scenes.foreign_things import ForeignThing, foreign_things
-from schemas import keys
-from schemas.changes import Change
-from schemas.entities import Pose
-from schemas.perception import Observations
-from schemas.scenes import Scene, SceneQuery
+from semmap.nodes import bus
+from semmap.nodes.extern.client import Client
+from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
+from semmap.schemas import keys
+from semmap.schemas.changes import Change
+from semmap.schemas.entities import Pose
+from semmap.schemas.perception import Observations
+from semmap.schemas.scenes import Scene, SceneQuery
 from tests.conftest import running
 from tests.data import data_folder
 

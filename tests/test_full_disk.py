@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from schemas import errors
+from semmap.schemas import errors
 from tests.conftest import running, until
 
 

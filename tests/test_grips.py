@@ -7,11 +7,11 @@ import signal
 
 import pytest
 
-from nodes import bus
-from schemas import errors, keys
-from schemas.entities import compose, distance_m
-from schemas.grips import grip_of, holder_of
-from schemas.scenes import Grip, GripOrder, Gripped, Scene, SceneQuery
+from semmap.nodes import bus
+from semmap.schemas import errors, keys
+from semmap.schemas.entities import compose, distance_m
+from semmap.schemas.grips import grip_of, holder_of
+from semmap.schemas.scenes import Grip, GripOrder, Gripped, Scene, SceneQuery
 from tests.conftest import running, until
 
 OPTIONS = (

@@ -6,8 +6,8 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from nodes.runtime.class_names import ClassNames
-from schemas import errors
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.schemas import errors
 from tests.conftest import running, until
 from tests.data import data_folder
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from nodes import bus
-from schemas import errors, keys
-from schemas.scenes import JointOrder, JointsMoving, MoveJoints
+from semmap.nodes import bus
+from semmap.schemas import errors, keys
+from semmap.schemas.scenes import JointOrder, JointsMoving, MoveJoints
 from tests.conftest import running, until
 
 

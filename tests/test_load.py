@@ -10,9 +10,9 @@ from collections import Counter
 import pytest
 import zenoh
 
-from nodes import bus
-from schemas import codec, keys
 from semmap import aio
+from semmap.nodes import bus
+from semmap.schemas import codec, keys
 from tests.conftest import until
 
 PUTS = 4000

@@ -4,10 +4,10 @@ import asyncio
 
 import pytest
 
-from nodes import bus
-from schemas import errors, keys
-from schemas.scenes import Scene, SceneQuery
 from semmap import aio
+from semmap.nodes import bus
+from semmap.schemas import errors, keys
+from semmap.schemas.scenes import Scene, SceneQuery
 from tests.conftest import running
 
 TIMES = 20

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 from scipy import ndimage
 
-from schemas import errors
+from semmap.schemas import errors
 
 
 @pytest.fixture(scope="module")

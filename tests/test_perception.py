@@ -9,11 +9,11 @@ import signal
 
 import pytest
 
-from nodes import bus
-from schemas import keys
-from schemas.entities import Pose, orientation_from_yaw
-from schemas.perception import Observations
-from schemas.scenes import (
+from semmap.nodes import bus
+from semmap.schemas import keys
+from semmap.schemas.entities import Pose, orientation_from_yaw
+from semmap.schemas.perception import Observations
+from semmap.schemas.scenes import (
     BodiesMoved,
     BodyOrder,
     Delete,

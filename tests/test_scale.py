@@ -13,8 +13,8 @@ from contextlib import closing
 import pytest
 
 from benchmarks.kb import big_files
-from ontology import vocabulary as v
-from schemas.commits import MANY_ENTITIES
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import MANY_ENTITIES
 from tests.conftest import running, until
 
 COUNT = MANY_ENTITIES + 500

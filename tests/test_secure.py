@@ -12,14 +12,14 @@ import time
 import psutil
 import pytest
 
-from nodes import bus
-from nodes.extern.client import connect
-from nodes.extern.testing import free_endpoint
-from nodes.identity import Identity, authority
-from schemas import codec, commands, errors, keys
-from schemas.commits import Commit
-from schemas.health import Health
-from schemas.replies import Changed
+from semmap.nodes import bus
+from semmap.nodes.extern.client import connect
+from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.identity import Identity, authority
+from semmap.schemas import codec, commands, errors, keys
+from semmap.schemas.commits import Commit
+from semmap.schemas.health import Health
+from semmap.schemas.replies import Changed
 from tests.conftest import running, until
 
 NAMES = {"vera": "viewer", "bob": "operator", "eye": "perception", "spot": "robot", "root": "admin"}

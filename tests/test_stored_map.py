@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.undo import undo
-from schemas import errors
-from schemas.bridge import TakeBack
-from schemas.commands import History
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.undo import undo
+from semmap.schemas import errors
+from semmap.schemas.bridge import TakeBack
+from semmap.schemas.commands import History
 from tests.conftest import running
 
 STORED = sorted((Path(__file__).parent / "data").glob("written_by_*.tar.xz"))

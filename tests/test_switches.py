@@ -2,7 +2,7 @@
 
 import pytest
 
-from schemas import errors
+from semmap.schemas import errors
 from tests.conftest import running, until
 from tests.sim_node.physics.test_ends import STOVE
 

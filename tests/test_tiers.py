@@ -9,8 +9,8 @@ import sys
 
 import pytest
 
-from nodes import bus
-from nodes.extern.client import connect
+from semmap.nodes import bus
+from semmap.nodes.extern.client import connect
 from tests import conftest, tiers
 
 

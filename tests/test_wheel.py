@@ -72,15 +72,15 @@ def test_it_has_every_module_but_the_trainers(files):
 def test_nothing_in_it_needs_what_is_not_in_it(files):
     for name, content in files.items():
         if name.endswith(".py"):
-            for missing in (b"nodes.training", b"from benchmarks", b"from tests", b"from demo"):
+            for missing in (b"semmap.nodes.training", b"from benchmarks", b"from tests", b"from demo"):
                 assert missing not in content, name
 
 
 def test_it_names_its_commands_and_codecs(files):
     (name,) = (name for name in files if name.endswith("entry_points.txt"))
     said = files[name].decode()
-    assert "semmap = nodes.extern.cli.app:main" in said
-    assert said.count("msgpack = nodes.extern.zenoh_codec:") == 2
+    assert "semmap = semmap.nodes.extern.cli.app:main" in said
+    assert said.count("msgpack = semmap.nodes.extern.zenoh_codec:") == 2
 
 
 def test_a_client_and_a_kb_need_only_their_extras(files):

@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from schemas.entities import distance_m
+from semmap.schemas.entities import distance_m
 from tests.conftest import running, until
 
 START = (5.0, 4.0, 0.0)

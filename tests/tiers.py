@@ -20,12 +20,15 @@ STARTERS = frozenset(
     {
         *("subprocess.Popen", "subprocess.run", "subprocess.check_output", "posix.fork", "zenoh.zenoh.open"),
         "multiprocessing.context.DefaultContext.get_context",
-        *("nodes.bus.session.open_session", "nodes.extern.connection.open_session"),
-        *("nodes.extern.client.connect", "nodes.extern.async_client.connect"),
-        *("nodes.extern.testing.own_system", "nodes.supervisor.control.Supervisor"),
-        *("nodes.kb_node.sparql.service.SparqlService", "nodes.kb_node.sparql.worker.Worker"),
-        *("nodes.kb_node.answers.map_then.ask_then", "nodes.kb_node.answers.answers.check"),
-        *("nodes.kb_node.owlrl.second_opinion.owlrl_faults", "nodes.kb_node.relations.facts.ahead.Ahead"),
+        *("semmap.nodes.bus.session.open_session", "semmap.nodes.extern.connection.open_session"),
+        *("semmap.nodes.extern.client.connect", "semmap.nodes.extern.async_client.connect"),
+        *("semmap.nodes.extern.testing.own_system", "semmap.nodes.supervisor.control.Supervisor"),
+        *("semmap.nodes.kb_node.sparql.service.SparqlService", "semmap.nodes.kb_node.sparql.worker.Worker"),
+        *("semmap.nodes.kb_node.answers.map_then.ask_then", "semmap.nodes.kb_node.answers.answers.check"),
+        *(
+            "semmap.nodes.kb_node.owlrl.second_opinion.owlrl_faults",
+            "semmap.nodes.kb_node.relations.facts.ahead.Ahead",
+        ),
     }
 )
 """Functions and classes that start a process or open a session, where they are defined."""

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from nodes import bus
-from schemas import keys
+from semmap.nodes import bus
+from semmap.schemas import keys
 from tests.conftest import until
 
 

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 from benchmarks.agents.agent import Agent, talking
 from benchmarks.agents.tasks import TASKS, Kind, Task, prepare
 from benchmarks.table import Row, as_json, lines
-from nodes.extern.testing import free_endpoint
-from schemas import codec
 from semmap import Client
+from semmap.nodes.extern.testing import free_endpoint
+from semmap.schemas import codec
 from semmap.testing import own_system
 
 _WORDS = ("--allow", "change", "--classes", "Cup,Book,Door", "--rate", "600", "--agent", "benchmark")

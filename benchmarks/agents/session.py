@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from benchmarks.agents.agent import Agent, talking
-from nodes.extern.testing import free_endpoint
 from semmap import Client
+from semmap.nodes.extern.testing import free_endpoint
 from semmap.testing import own_system
 
 _HEAD: Final = """# A session of an agent

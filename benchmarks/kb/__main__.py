@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 from benchmarks.kb import disk, engine, in_turn, scale, table, university, wire
 from benchmarks.relations import kept
 from benchmarks.table import Row, lines
-from nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents import rdf
 
 PARTS = ("core", "owlrl", "disk", "wire", "sim")
 UNIVERSITY = "university"

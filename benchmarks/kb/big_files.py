@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from ontology import stars
-from ontology import vocabulary as v
-from schemas.entities import Pose, Size
-from schemas.explanations import Term
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import Pose, Size
+from semmap.schemas.explanations import Term
 
 CLASSES = ("Chair", "Bottle", "Book", "Lamp", "Cup")
 """About a fifth of the things is of each."""

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from benchmarks.kb.made import Cost, Figures, cost, each, entities
-from nodes.kb_node.answers import answers
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.seed import seed
-from ontology import HOUSEHOLD_TTL
-from schemas import codec
-from schemas.commits import Transaction
+from semmap.nodes.kb_node.answers import answers
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.seed import seed
+from semmap.ontology import HOUSEHOLD_TTL
+from semmap.schemas import codec
+from semmap.schemas.commits import Transaction
 
 
 class Disk(NamedTuple):

@@ -15,11 +15,11 @@ import psutil  # type: ignore[import-untyped]
 import rdflib
 
 from benchmarks.kb.made import Figures, each, entities, pose, tbox, timed
-from nodes.kb_node.documents import ontology_files
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from ontology import stars
-from ontology import vocabulary as v
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.documents import ontology_files
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term, Triple
 
 _CHUNK = 1000
 _PARTS = 10_000

@@ -20,8 +20,8 @@ from typing import NamedTuple
 import psutil  # type: ignore[import-untyped]
 import zenoh
 
-from nodes import bus
-from nodes.extern.testing import free_endpoint
+from semmap.nodes import bus
+from semmap.nodes.extern.testing import free_endpoint
 
 _PAGE_BYTES = 4096 + 24
 """A page in SQLite's log, with its head."""

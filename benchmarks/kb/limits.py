@@ -17,13 +17,13 @@ import pyoxigraph
 
 from benchmarks.kb import big_files
 from benchmarks.kb.made import timed
-from nodes.kb_node.storage.encoding import dense
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import codec, scene_files
-from schemas.commits import NewEntity, Snapshot, Transaction
-from schemas.entities import Entity, Provenance
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import codec, scene_files
+from semmap.schemas.commits import NewEntity, Snapshot, Transaction
+from semmap.schemas.entities import Entity, Provenance
+from semmap.schemas.explanations import Triple
 
 _AT_ONCE = 5000
 """Entities, and triples, in one message."""

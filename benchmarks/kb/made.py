@@ -9,11 +9,11 @@ from statistics import median, quantiles
 from time import perf_counter, process_time, thread_time
 from typing import Any, NamedTuple
 
-from nodes.kb_node.documents import rdf
-from ontology import HOUSEHOLD_TTL, stars
-from ontology import vocabulary as v
-from schemas.entities import Pose
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.documents import rdf
+from semmap.ontology import HOUSEHOLD_TTL, stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import Pose
+from semmap.schemas.explanations import Triple
 
 CLASSES = ("Chair", "Table", "Bottle", "Book", "Lamp", "Cup", "Fridge", "Window")
 Figures = dict[str, float]

@@ -21,9 +21,9 @@ from typing import Any
 import psutil  # type: ignore[import-untyped]
 
 from benchmarks.kb import disk, engine, made, wire
-from nodes.extern.client import Client
-from nodes.extern.testing import own_system
-from nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.testing import own_system
+from semmap.nodes.kb_node.reasoner import Reasoner
 
 _UP = ("--no-record", "--world", "empty", "--no-sim")
 

@@ -18,11 +18,11 @@ import psutil  # type: ignore[import-untyped]
 
 from benchmarks.kb import big_files, limits
 from benchmarks.kb.made import timed
-from nodes.extern.client import Client
-from nodes.extern.testing import free_endpoint, own_system
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.replies import NodeStatus
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.testing import free_endpoint, own_system
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.replies import NodeStatus
 
 _UP = ("--abox", "none", "--no-sim", "--no-record", "--world", "empty")
 _COUNTED = "Cup"

@@ -16,9 +16,9 @@ from pathlib import Path
 
 from benchmarks.kb.made import pose
 from benchmarks.table import Row, lines
-from nodes.extern.client import Client
-from nodes.extern.testing import own_system
-from nodes.identity import authority
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.testing import own_system
+from semmap.nodes.identity import authority
 
 _QUIET = ("--no-sim", "--no-record", "--world", "empty")
 _TURN = 20

@@ -16,9 +16,9 @@ import psutil  # type: ignore[import-untyped]
 import pyoxigraph
 
 from benchmarks.kb.made import cost
-from nodes.kb_node.reasoner import Reasoner
-from ontology import vocabulary as v
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term, Triple
 
 _UNIVERSITY = "http://example.org/university#"
 _TBOX = """

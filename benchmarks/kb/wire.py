@@ -14,10 +14,10 @@ import psutil  # type: ignore[import-untyped]
 
 from benchmarks.kb.awake import awake_cores
 from benchmarks.kb.made import CLASSES, Figures, each, pose
-from nodes import bus
-from nodes.extern.client import Client
-from nodes.extern.testing import own_system
-from schemas import commands, keys, replies
+from semmap.nodes import bus
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.testing import own_system
+from semmap.schemas import commands, keys, replies
 
 IN_FLIGHT = 32
 

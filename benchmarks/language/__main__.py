@@ -11,9 +11,9 @@ from typing import Any
 from benchmarks.language import ablations, baseline, errors, finding, trials
 from benchmarks.language.scoring import Scores, scores
 from benchmarks.table import Row, as_json, lines
-from nodes.language.understanding.interpretation import shipped
-from nodes.training.language import corpus
-from nodes.training.language.corpus import Example
+from semmap.nodes.language.understanding.interpretation import shipped
+from semmap.nodes.training.language import corpus
+from semmap.nodes.training.language.corpus import Example
 
 _REACH = {  # by ten folds, and with one of the folders left out
     "folds": (0.97, 0.93, 0.94, 0.91, 0.91, 0.96, 0.76),

@@ -10,9 +10,9 @@ from typing import Any, Final
 from benchmarks.language import trials
 from benchmarks.language.scoring import scores
 from benchmarks.table import Row
-from nodes.language.understanding.interpretation import Seen
-from nodes.training.language.corpus import Example
-from nodes.training.language.household import household
+from semmap.nodes.language.understanding.interpretation import Seen
+from semmap.nodes.training.language.corpus import Example
+from semmap.nodes.training.language.household import household
 
 GROUPS: Final = {  # a feature is of a group if it mentions it, also together with others
     "the word itself": r"\bw=",

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from rapidfuzz.distance import Levenshtein
 
 from benchmarks.language.trials import Pairs, Split, scene_of
-from nodes.language import lexicon
-from nodes.language.understanding.grounding import Thing
-from nodes.language.understanding.sentence import Sentence, sentence
-from nodes.training.language.corpus import Example
-from schemas.language import Argument, Frame, Grounded, Understood
+from semmap.nodes.language import lexicon
+from semmap.nodes.language.understanding.grounding import Thing
+from semmap.nodes.language.understanding.sentence import Sentence, sentence
+from semmap.nodes.training.language.corpus import Example
+from semmap.schemas.language import Argument, Frame, Grounded, Understood
 
 _ENOUGH = 0.7  # similarity of a word to a label
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from benchmarks.language.scoring import is_whole, matched
 from benchmarks.language.trials import Pairs
-from nodes.training.language.corpus import Example, Filled
-from schemas.language import Frame, Understood
+from semmap.nodes.training.language.corpus import Example, Filled
+from semmap.schemas.language import Frame, Understood
 
 
 class Group(NamedTuple):

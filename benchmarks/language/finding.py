@@ -14,18 +14,18 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final, NamedTuple
 
 from benchmarks.table import Row
-from nodes.kb_node.answers.finding import Finding
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from ontology import FLAT_TTL, HOUSEHOLD_TTL, stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Find
-from schemas.commits import Transaction
-from schemas.entities import Pose, Size, orientation_from_yaw
-from schemas.explanations import Triple
-from schemas.language import Found
+from semmap.nodes.kb_node.answers.finding import Finding
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Find
+from semmap.schemas.commits import Transaction
+from semmap.schemas.entities import Pose, Size, orientation_from_yaw
+from semmap.schemas.explanations import Triple
+from semmap.schemas.language import Found
 
 DESCRIPTIONS: Final = Path(__file__).parent / "descriptions.json"
 _ENTITIES: Final = 1000

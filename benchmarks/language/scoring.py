@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from nodes.training.language.corpus import Example, Filled
-from schemas.language import Frame, Understood
+from semmap.nodes.training.language.corpus import Example, Filled
+from semmap.schemas.language import Frame, Understood
 
 
 def f1(right: int, one: int, other: int) -> float:

@@ -13,16 +13,16 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from nodes.language import lexicon
-from nodes.language.understanding.grounding import Scene, Thing, scene
-from nodes.language.understanding.interpretation import Interpreter, Seen, shipped
-from nodes.language.vocabulary import Vocabulary
-from nodes.training.language import made
-from nodes.training.language.__main__ import TIMES_MADE
-from nodes.training.language.corpus import Example, Filled, Role
-from nodes.training.language.household import household
-from nodes.training.language.learning import learn
-from schemas.language import Understood
+from semmap.nodes.language import lexicon
+from semmap.nodes.language.understanding.grounding import Scene, Thing, scene
+from semmap.nodes.language.understanding.interpretation import Interpreter, Seen, shipped
+from semmap.nodes.language.vocabulary import Vocabulary
+from semmap.nodes.training.language import made
+from semmap.nodes.training.language.__main__ import TIMES_MADE
+from semmap.nodes.training.language.corpus import Example, Filled, Role
+from semmap.nodes.training.language.household import household
+from semmap.nodes.training.language.learning import learn
+from semmap.schemas.language import Understood
 
 Pairs = list[tuple[Example, Understood]]
 Split = tuple[list[Example], list[Example]]  # to learn from, to be read

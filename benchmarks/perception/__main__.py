@@ -10,7 +10,7 @@ from pathlib import Path
 
 from benchmarks.perception import fitted, foreign, learnt, live, recorded, simulated, tracking, unknown
 from benchmarks.perception.table import Row, lines
-from nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.recognition.shipped_votes import shipped
 
 PARTS = ("recorded", "simulated", "painted", "unknown", "foreign", "fitted", "learnt", "tracking", "live")
 
@@ -24,7 +24,7 @@ def arguments() -> argparse.Namespace:
         "--recorded", type=Path, default=recorded.data_folder(), help="real scenes with labels"
     )
     parser.add_argument("--piles", type=int, default=300, help="rendered scenes to learn segmentation from")
-    parser.add_argument("--samples", type=Path, help="of nodes.training.recognition --parts")
+    parser.add_argument("--samples", type=Path, help="of semmap.nodes.training.recognition --parts")
     parser.add_argument("--things", type=Path, default=recorded.data_folder().with_name("foreign"))
     parser.add_argument("--training-scenes", type=int, default=400, help="where there are no samples")
     parser.add_argument("--moves", type=int, default=100, help="of things that keep their names")

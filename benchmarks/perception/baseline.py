@@ -8,10 +8,10 @@ import numpy as np
 from msgspec import structs
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.pipeline import Look, look_at
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
-from nodes.perception_node.views.segmented_view import Sight, labelled, see
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.pipeline import Look, look_at
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
+from semmap.nodes.perception_node.views.segmented_view import Sight, labelled, see
 
 _EVERY = 3
 _NEAR_M = 0.02

@@ -15,20 +15,20 @@ from scipy.optimize import linear_sum_assignment
 from benchmarks.perception.rooms import Room, rooms
 from benchmarks.perception.simulated import LEAST_PIXELS, SAME_IOU, Judge, looked, overlap, shots
 from benchmarks.perception.table import Row
-from nodes.perception_node.fitting.fit import Fit, angle_between
-from nodes.perception_node.fitting.model_surfaces import ClassSurfaces
-from nodes.perception_node.fitting.model_surfaces import shipped as shipped_surfaces
-from nodes.perception_node.fitting.things import fit_of, points_of, posed, with_fit
-from nodes.perception_node.pipeline import Look, look
-from nodes.perception_node.recognition.shipped_votes import Learnt
-from nodes.sim_node.models.library import build
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.parts import rotation_matrix
-from nodes.training.model_surfaces import surface_of
-from nodes.training.scenes.simulated_scenes import Item, Shot
-from nodes.training.taxonomy import class_of_models
-from schemas.entities import Pose
-from schemas.perception import Observation
+from semmap.nodes.perception_node.fitting.fit import Fit, angle_between
+from semmap.nodes.perception_node.fitting.model_surfaces import ClassSurfaces
+from semmap.nodes.perception_node.fitting.model_surfaces import shipped as shipped_surfaces
+from semmap.nodes.perception_node.fitting.things import fit_of, points_of, posed, with_fit
+from semmap.nodes.perception_node.pipeline import Look, look
+from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+from semmap.nodes.sim_node.models.library import build
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.models.parts import rotation_matrix
+from semmap.nodes.training.model_surfaces import surface_of
+from semmap.nodes.training.scenes.simulated_scenes import Item, Shot
+from semmap.nodes.training.taxonomy import class_of_models
+from semmap.schemas.entities import Pose
+from semmap.schemas.perception import Observation
 
 _SEEDS = {False: 20273, True: 20274}
 """Rooms in which nothing was tuned."""

@@ -17,13 +17,13 @@ from scipy.optimize import linear_sum_assignment
 from benchmarks.perception.foreign_frames import Studio, distance_m, scenes
 from benchmarks.perception.simulated import LEAST_PIXELS, SAME_IOU
 from benchmarks.perception.table import Row
-from nodes.perception_node.input.projection import cloud_of
-from nodes.perception_node.pipeline import Learnt, look_at
-from nodes.perception_node.recognition.shipped_votes import UNKNOWN
-from nodes.perception_node.views.segmented_view import see
-from nodes.training.recognition.__main__ import learn
-from nodes.training.recognition.gathering import Gathered, gather, read
-from nodes.training.scenes.foreign_things import ForeignThing, foreign_things
+from semmap.nodes.perception_node.input.projection import cloud_of
+from semmap.nodes.perception_node.pipeline import Learnt, look_at
+from semmap.nodes.perception_node.recognition.shipped_votes import UNKNOWN
+from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.training.recognition.__main__ import learn
+from semmap.nodes.training.recognition.gathering import Gathered, gather, read
+from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
 
 FOLDS = 4
 _ALONE, _MIXED = 4, 60

@@ -21,11 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from nodes.sim_node.vision.camera import Eye
-from nodes.sim_node.vision.noise import kinect_noise
-from nodes.sim_node.vision.view import View, look_at
-from nodes.training.scenes.foreign_things import ForeignThing, foreign_things
-from nodes.training.scenes.placements import spread
+from semmap.nodes.sim_node.vision.camera import Eye
+from semmap.nodes.sim_node.vision.noise import kinect_noise
+from semmap.nodes.sim_node.vision.view import View, look_at
+from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
+from semmap.nodes.training.scenes.placements import spread
 
 WIDTH, HEIGHT = 640, 480
 TOGETHER = 8

@@ -3,7 +3,7 @@
     python -m benchmarks.perception.foreign_picture OUT.png [--things DIR] [--samples DIR] [--seed 1]
 
 Every thing whose scan may be shown stands on one of the tables, once: nothing is picked out. With the samples
-that `nodes.training.recognition --parts` leaves, all is learnt anew without these things.
+that `semmap.nodes.training.recognition --parts` leaves, all is learnt anew without these things.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from scipy import ndimage
 
 from benchmarks.perception.foreign import matched, outcome
 from benchmarks.perception.foreign_frames import Stood, Studio
-from nodes.perception_node.input.projection import cloud_of
-from nodes.perception_node.pipeline import Learnt, look_at
-from nodes.perception_node.recognition.shipped_votes import UNKNOWN, shipped
-from nodes.perception_node.views.segmented_view import see
-from nodes.training.recognition.__main__ import learn
-from nodes.training.recognition.gathering import read
-from nodes.training.scenes.foreign_things import ForeignThing, foreign_things
-from nodes.training.scenes.placements import spread
+from semmap.nodes.perception_node.input.projection import cloud_of
+from semmap.nodes.perception_node.pipeline import Learnt, look_at
+from semmap.nodes.perception_node.recognition.shipped_votes import UNKNOWN, shipped
+from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.training.recognition.__main__ import learn
+from semmap.nodes.training.recognition.gathering import read
+from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
+from semmap.nodes.training.scenes.placements import spread
 
 Picture = NDArray[np.uint8]
 Box = tuple[float, float, float, float]

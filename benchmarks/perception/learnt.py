@@ -19,15 +19,15 @@ from benchmarks.perception.foreign import matched
 from benchmarks.perception.foreign_frames import Stood, Studio
 from benchmarks.perception.simulated import LEAST_PIXELS
 from benchmarks.perception.table import Row
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.projection import cloud_of
-from nodes.perception_node.pipeline import Learnt, look_at
-from nodes.perception_node.recognition import likeness
-from nodes.perception_node.recognition.lessons import Lesson, taught
-from nodes.perception_node.showing import shown_in, view_of
-from nodes.perception_node.views.segmented_view import see
-from nodes.training.scenes.foreign_things import ForeignThing, foreign_things
-from nodes.training.scenes.placements import spread
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.projection import cloud_of
+from semmap.nodes.perception_node.pipeline import Learnt, look_at
+from semmap.nodes.perception_node.recognition import likeness
+from semmap.nodes.perception_node.recognition.lessons import Lesson, taught
+from semmap.nodes.perception_node.showing import shown_in, view_of
+from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
+from semmap.nodes.training.scenes.placements import spread
 
 TOGETHER = 20
 _DRAWN = 26

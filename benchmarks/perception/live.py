@@ -18,12 +18,12 @@ from statistics import median
 from typing import NamedTuple
 
 from benchmarks.perception.table import Row
-from nodes import bus
-from nodes.extern.client import Client, connect
-from schemas import keys
-from schemas.commits import Commit
-from schemas.entities import Entity, Pose
-from schemas.scenes import BodyOrder, Delete, Deleted, Spawn, Spawned
+from semmap.nodes import bus
+from semmap.nodes.extern.client import Client, connect
+from semmap.schemas import keys
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Entity, Pose
+from semmap.schemas.scenes import BodyOrder, Delete, Deleted, Spawn, Spawned
 
 _TABLE_Z = 0.74
 _PATIENCE_S = 30.0

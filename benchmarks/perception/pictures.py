@@ -15,13 +15,13 @@ from PIL import Image, ImageDraw, ImageFont
 from benchmarks.perception.recorded import data_folder
 from benchmarks.perception.rooms import rooms
 from benchmarks.perception.simulated import shots
-from nodes.perception_node.pipeline import Look, look
-from nodes.perception_node.recognition.shipped_votes import shipped
-from nodes.perception_node.segmentation import segment
-from nodes.perception_node.segmentation.merging import Judge
-from nodes.perception_node.segmentation.shipped_trees import MergeModel
-from nodes.training.segmentation.recorded_scenes import Scene, read_scenes
-from nodes.training.segmentation.teach import learn, lessons, made_up
+from semmap.nodes.perception_node.pipeline import Look, look
+from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.segmentation import segment
+from semmap.nodes.perception_node.segmentation.merging import Judge
+from semmap.nodes.perception_node.segmentation.shipped_trees import MergeModel
+from semmap.nodes.training.segmentation.recorded_scenes import Scene, read_scenes
+from semmap.nodes.training.segmentation.teach import learn, lessons, made_up
 
 Picture = NDArray[np.uint8]
 

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from benchmarks.perception.table import Row
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.segmentation import segment
-from nodes.perception_node.segmentation.merging import Judge
-from nodes.perception_node.segmentation.shipped_trees import MergeModel, shipped
-from nodes.training.segmentation.recorded_scenes import Scene, read_scenes
-from nodes.training.segmentation.teach import Lessons, learn, lessons, made_up
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.segmentation import segment
+from semmap.nodes.perception_node.segmentation.merging import Judge
+from semmap.nodes.perception_node.segmentation.shipped_trees import MergeModel, shipped
+from semmap.nodes.training.segmentation.recorded_scenes import Scene, read_scenes
+from semmap.nodes.training.segmentation.teach import Lessons, learn, lessons, made_up
 
 IOU, LEAST_POINTS = 0.5, 400
 """An object is found by a segment that overlaps it by more; smaller ones are not asked for, nor counted."""

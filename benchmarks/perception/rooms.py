@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.parts import Colour, Vec3
-from nodes.sim_node.vision.view import View, look_at
-from nodes.training.scenes.simulated_scenes import Item
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.models.parts import Colour, Vec3
+from semmap.nodes.sim_node.vision.view import View, look_at
+from semmap.nodes.training.scenes.simulated_scenes import Item
 
 THIN_M = 0.025
 """What is lower than this drowns in the sensor's noise, and is told apart."""

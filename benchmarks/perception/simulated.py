@@ -15,15 +15,15 @@ from scipy.optimize import linear_sum_assignment
 from benchmarks.perception.baseline import clustered, guessed
 from benchmarks.perception.rooms import Room, rooms
 from benchmarks.perception.table import Row
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.pipeline import Look, look
-from nodes.perception_node.recognition.shipped_votes import Learnt
-from nodes.sim_node.models.model_table import MODELS
-from nodes.training.scenes.paint import Paint, black, one_colour
-from nodes.training.scenes.simulated_scenes import Item, Shot, Stage
-from nodes.training.taxonomy import class_of_models
-from schemas.entities import Pose, Size
-from schemas.perception import Observation
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.pipeline import Look, look
+from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.training.scenes.paint import Paint, black, one_colour
+from semmap.nodes.training.scenes.simulated_scenes import Item, Shot, Stage
+from semmap.nodes.training.taxonomy import class_of_models
+from semmap.schemas.entities import Pose, Size
+from semmap.schemas.perception import Observation
 
 LEAST_PIXELS = 150
 """A thing of which all cameras together see fewer is not asked for."""

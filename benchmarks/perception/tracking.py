@@ -18,18 +18,18 @@ from msgspec import structs
 
 from benchmarks.perception.rooms import THIN_M, THINGS
 from benchmarks.perception.table import Row
-from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.pipeline import Learnt, Look, look
-from nodes.perception_node.tracking.association import associate
-from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
-from nodes.perception_node.tracking.occupancy import occupancy_in
-from nodes.perception_node.tracking.tracks import Tracks
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.vision.view import look_at
-from nodes.training.scenes.simulated_scenes import Item, Stage
-from schemas.commands import Add, Command, Remove, Update
-from schemas.entities import Entity, Pose, Provenance
+from semmap.nodes.perception_node.config import TrackingConfig
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.pipeline import Learnt, Look, look
+from semmap.nodes.perception_node.tracking.association import associate
+from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from semmap.nodes.perception_node.tracking.occupancy import occupancy_in
+from semmap.nodes.perception_node.tracking.tracks import Tracks
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.vision.view import look_at
+from semmap.nodes.training.scenes.simulated_scenes import Item, Stage
+from semmap.schemas.commands import Add, Command, Remove, Update
+from semmap.schemas.entities import Entity, Pose, Provenance
 
 _CELL_M, _COLUMNS, _ROWS = 0.24, 6, 4
 TABLE_M = (_COLUMNS * _CELL_M + 0.1, _ROWS * _CELL_M + 0.1, 0.75)

@@ -10,12 +10,12 @@ import numpy as np
 from benchmarks.perception.rooms import THINGS, rooms
 from benchmarks.perception.simulated import Judge, looked, score, shots
 from benchmarks.perception.table import Row
-from nodes.perception_node.pipeline import look
-from nodes.perception_node.recognition.shipped_votes import UNKNOWN
-from nodes.sim_node.models.model_table import MODELS
-from nodes.training.recognition.__main__ import learn
-from nodes.training.recognition.gathering import gather, read
-from nodes.training.taxonomy import class_of_models
+from semmap.nodes.perception_node.pipeline import look
+from semmap.nodes.perception_node.recognition.shipped_votes import UNKNOWN
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.training.recognition.__main__ import learn
+from semmap.nodes.training.recognition.gathering import gather, read
+from semmap.nodes.training.taxonomy import class_of_models
 
 LEFT_OUT = 10
 _SEED = 20263

@@ -16,16 +16,16 @@ from typing import NamedTuple
 from benchmarks.kb.made import Cost, cost
 from benchmarks.kb.wire import running
 from benchmarks.relations.speed import rooms
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.relations.facts.rules import COMPUTED
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.runtime import gc_pause
-from ontology import HOUSEHOLD_TTL, stars
-from ontology import vocabulary as v
-from schemas.commits import Transaction
-from schemas.entities import Vector
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.runtime import gc_pause
+from semmap.ontology import HOUSEHOLD_TTL, stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Transaction
+from semmap.schemas.entities import Vector
+from semmap.schemas.explanations import Triple
 
 _CLASSES = {"": "Kitchen", "table": "Table", "cup": "Cup"}
 

@@ -10,14 +10,14 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from benchmarks.relations.situations import SITUATIONS, Said, Situation
-from nodes.kb_node.relations.geometry.solids import Solid, solid_of
-from nodes.sim_node.models.library import build
-from nodes.sim_node.models.parts import Colour, Part, Role, ball, box
-from nodes.sim_node.physics.build import add_part
-from nodes.sim_node.vision.raycast import raycast
-from nodes.sim_node.vision.view import FROM_THE_FRONT, View, overview
-from ontology.model_shapes import shapes
-from schemas.entities import Entity
+from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
+from semmap.nodes.sim_node.models.library import build
+from semmap.nodes.sim_node.models.parts import Colour, Part, Role, ball, box
+from semmap.nodes.sim_node.physics.build import add_part
+from semmap.nodes.sim_node.vision.raycast import raycast
+from semmap.nodes.sim_node.vision.view import FROM_THE_FRONT, View, overview
+from semmap.ontology.model_shapes import shapes
+from semmap.schemas.entities import Entity
 
 _WIDTH, _HEIGHT, _LINE, _COLUMNS, _FINE = 320, 232, 18, 6, 2
 _PAPER, _INK, _QUIET, _RULE = (250, 250, 248), (24, 24, 28), (70, 70, 78), (205, 205, 200)

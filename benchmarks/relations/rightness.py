@@ -11,19 +11,19 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.relations.settled import settled_scene
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.entities import entity_reading
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
-from nodes.kb_node.relations.geometry.solids import Solid, solid_of
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
-from ontology import vocabulary as v
-from ontology.model_shapes import shapes
-from schemas.entities import Entity, Pose, Provenance
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.entities import entity_reading
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
+from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
+from semmap.ontology.model_shapes import shapes
+from semmap.schemas.entities import Entity, Pose, Provenance
 
 _NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
 _SAMPLES = 4000

@@ -10,10 +10,10 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from nodes.sim_node.models.library import build
-from nodes.sim_node.world import World
-from schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
-from schemas.scenes import BodyOrder
+from semmap.nodes.sim_node.models.library import build
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
+from semmap.schemas.scenes import BodyOrder
 
 SUPPORTS = (
     "table", "desk", "counter", "bench", "bed", "couch", "stool", "chair", "bedstand",

@@ -9,8 +9,8 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-from ontology.model_shapes import own_size_m, shapes
-from schemas.entities import Entity, Pose, Provenance, Quaternion, Size, Vector, orientation_from_yaw
+from semmap.ontology.model_shapes import own_size_m, shapes
+from semmap.schemas.entities import Entity, Pose, Provenance, Quaternion, Size, Vector, orientation_from_yaw
 
 _NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
 

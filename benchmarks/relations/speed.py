@@ -8,9 +8,9 @@ import time
 
 from msgspec import structs
 
-from nodes.kb_node.relations.facts.place_facts import Facts
-from ontology.model_shapes import own_size_m
-from schemas.entities import Entity, Pose, Provenance, Size, Vector
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.ontology.model_shapes import own_size_m
+from semmap.schemas.entities import Entity, Pose, Provenance, Size, Vector
 
 _NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
 _ROOM = 50

@@ -12,17 +12,17 @@ import numpy as np
 from msgspec import structs
 
 from benchmarks.perception.tracking import CAMERAS, TABLE_M, ObedientMap, things_on_a_table
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.pipeline import look, shipped
-from nodes.perception_node.tracking.association import associate
-from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
-from nodes.perception_node.tracking.occupancy import occupancy_in
-from nodes.perception_node.tracking.tracks import Tracks
-from nodes.sim_node.models.model_table import MODELS
-from nodes.training.scenes.simulated_scenes import Item, Stage
-from nodes.training.taxonomy import class_of_models
-from schemas.entities import Entity, Pose, Provenance
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.perception_node.config import TrackingConfig
+from semmap.nodes.perception_node.pipeline import look, shipped
+from semmap.nodes.perception_node.tracking.association import associate
+from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from semmap.nodes.perception_node.tracking.occupancy import occupancy_in
+from semmap.nodes.perception_node.tracking.tracks import Tracks
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.training.scenes.simulated_scenes import Item, Stage
+from semmap.nodes.training.taxonomy import class_of_models
+from semmap.schemas.entities import Entity, Pose, Provenance
 
 LOOKS_A_SECOND = 2
 """Five where the machine has nothing else to do."""

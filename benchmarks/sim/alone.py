@@ -12,9 +12,9 @@ import numpy as np
 
 from benchmarks.sim.made import free_dofs, furnished, order, p50_p95_ms, timed
 from benchmarks.table import Row
-from nodes.sim_node.bodies import Ints
-from nodes.sim_node.vision.camera import Eye
-from nodes.sim_node.world import World
+from semmap.nodes.sim_node.bodies import Ints
+from semmap.nodes.sim_node.vision.camera import Eye
+from semmap.nodes.sim_node.world import World
 
 _STEP_S = 0.05
 _REACH_MS = {10: 2.0, 100: 5.0, 500: 35.0}

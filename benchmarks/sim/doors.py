@@ -14,19 +14,19 @@ from time import thread_time
 from benchmarks.sim.made import p50_p95_ms
 from benchmarks.sim.system import Watch
 from benchmarks.table import Row
-from nodes import bus
-from nodes.coordinator.config import Thresholds
-from nodes.extern.client import Client
-from nodes.extern.testing import own_system
-from nodes.sim_node.models.library import Model, assemble, build
-from nodes.sim_node.models.parts import Vec3
-from nodes.sim_node.orders import ModelSource
-from nodes.sim_node.physics import sleep
-from nodes.sim_node.world import World
-from schemas import keys
-from schemas.entities import Entity
-from schemas.joints import IS_OPEN, OPEN_FROM, OPENING, in_words, openness, stated
-from schemas.scenes import BodyOrder, JointOrder, Scene, SceneQuery
+from semmap.nodes import bus
+from semmap.nodes.coordinator.config import Thresholds
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.testing import own_system
+from semmap.nodes.sim_node.models.library import Model, assemble, build
+from semmap.nodes.sim_node.models.parts import Vec3
+from semmap.nodes.sim_node.orders import ModelSource
+from semmap.nodes.sim_node.physics import sleep
+from semmap.nodes.sim_node.world import World
+from semmap.schemas import keys
+from semmap.schemas.entities import Entity
+from semmap.schemas.joints import IS_OPEN, OPEN_FROM, OPENING, in_words, openness, stated
+from semmap.schemas.scenes import BodyOrder, JointOrder, Scene, SceneQuery
 
 CLASSES = ("Fridge", "Oven", "Microwave", "Dishwasher", "WashingMachine", "Cabinet", "Wardrobe", "Desk")
 _BARE = ("--no-record", "--world", "empty", "--abox", "none")

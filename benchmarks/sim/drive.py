@@ -17,25 +17,25 @@ from typing import NamedTuple
 
 from benchmarks.perception.tracking import ObedientMap
 from benchmarks.table import Row
-from nodes.extern.testing import own_system
-from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.projection import cloud_of
-from nodes.perception_node.pipeline import shipped
-from nodes.perception_node.tracking.association import associate
-from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy, hierarchy_of
-from nodes.perception_node.tracking.occupancy import occupancy_in
-from nodes.perception_node.tracking.tracks import Tracks
-from nodes.perception_node.watching import Watching
-from nodes.runtime.class_names import ClassNames
-from nodes.sim_node.config import RobotConfig
-from nodes.sim_node.models.sources import Models
-from nodes.sim_node.robots.robot import SHIPPED
-from nodes.sim_node.vision.camera import Eye
-from nodes.sim_node.world import World
-from nodes.sim_node.world_file import open_world
-from schemas.entities import ClassInfo, Entity
-from schemas.scenes import DriveBase
+from semmap.nodes.extern.testing import own_system
+from semmap.nodes.perception_node.config import TrackingConfig
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.projection import cloud_of
+from semmap.nodes.perception_node.pipeline import shipped
+from semmap.nodes.perception_node.tracking.association import associate
+from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy, hierarchy_of
+from semmap.nodes.perception_node.tracking.occupancy import occupancy_in
+from semmap.nodes.perception_node.tracking.tracks import Tracks
+from semmap.nodes.perception_node.watching import Watching
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.nodes.sim_node.config import RobotConfig
+from semmap.nodes.sim_node.models.sources import Models
+from semmap.nodes.sim_node.robots.robot import SHIPPED
+from semmap.nodes.sim_node.vision.camera import Eye
+from semmap.nodes.sim_node.world import World
+from semmap.nodes.sim_node.world_file import open_world
+from semmap.schemas.entities import ClassInfo, Entity
+from semmap.schemas.scenes import DriveBase
 
 ROOMS = ("kitchen1", "livingroom1")
 _AT = (6.6, 1.6)

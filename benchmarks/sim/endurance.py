@@ -10,9 +10,9 @@ import psutil  # type: ignore[import-untyped]
 
 from benchmarks.sim.made import MODELS, order
 from benchmarks.table import Row
-from nodes.sim_node.world import World
-from schemas.entities import Pose
-from schemas.scenes import Placement
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.entities import Pose
+from semmap.schemas.scenes import Placement
 
 _SETTLED = 12
 """Memory after this part of the time is the measure: 5 minutes of 60."""

@@ -13,7 +13,7 @@ import psutil  # type: ignore[import-untyped]
 
 from benchmarks.kb.wire import running
 from benchmarks.table import Row
-from nodes.extern.client import Client, connect
+from semmap.nodes.extern.client import Client, connect
 
 _RADIUS_M = 3.0
 _TURN_RAD_S = 0.3

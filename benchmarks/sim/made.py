@@ -9,10 +9,10 @@ from time import perf_counter
 
 import numpy as np
 
-from nodes.sim_node.bodies import Ints
-from nodes.sim_node.world import World
-from schemas.entities import Pose
-from schemas.scenes import BodyOrder
+from semmap.nodes.sim_node.bodies import Ints
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.entities import Pose
+from semmap.schemas.scenes import BodyOrder
 
 MODELS = ("chair", "table", "can", "book", "cup", "bottle", "box", "lamp", "apple", "plate")
 

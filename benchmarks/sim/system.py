@@ -13,12 +13,12 @@ from typing import Any
 from benchmarks.kb.wire import running
 from benchmarks.sim.made import grid, p50_p95_ms
 from benchmarks.table import Row
-from nodes import bus
-from nodes.extern.client import Client
-from schemas import keys
-from schemas.commits import Commit
-from schemas.entities import Pose, distance_m
-from schemas.scenes import Poses
+from semmap.nodes import bus
+from semmap.nodes.extern.client import Client
+from semmap.schemas import keys
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Pose, distance_m
+from semmap.schemas.scenes import Poses
 
 CLASSES = ("Chair", "Table", "Can", "Book", "Cup", "Bottle", "Box", "Lamp", "Apple", "Plate")
 _PITCH_M = 1.5

@@ -12,12 +12,12 @@ from typing import NamedTuple
 import mujoco
 
 from benchmarks.table import Row
-from nodes import bus
-from nodes.extern.client import Client
-from nodes.extern.testing import own_system
-from nodes.sim_node.physics.base_scene import read_mjcf
-from schemas import errors, keys
-from schemas.scenes import Scene, SceneQuery
+from semmap.nodes import bus
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.testing import own_system
+from semmap.nodes.sim_node.physics.base_scene import read_mjcf
+from semmap.schemas import errors, keys
+from semmap.schemas.scenes import Scene, SceneQuery
 
 _PATIENCE_S = 60.0
 _CALM_S = 2.0

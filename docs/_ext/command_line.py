@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from nodes.extern.cli.all_verbs import app
+from semmap.nodes.extern.cli.all_verbs import app
 
 PAGE = Path(__file__).parents[1] / "command-line.md"
 HEAD = """# Command line

@@ -22,13 +22,13 @@ from typing import Any
 from PIL import Image, ImageStat
 from playwright.sync_api import Page, sync_playwright
 
-from nodes.extern.client import Client, connect
-from nodes.extern.plan.floor import floor_of
-from nodes.extern.plan.svg import drawing
-from nodes.extern.testing import free_endpoint
-from schemas import commands
-from schemas.commands import Command
-from schemas.entities import orientation_from_yaw
+from semmap.nodes.extern.client import Client, connect
+from semmap.nodes.extern.plan.floor import floor_of
+from semmap.nodes.extern.plan.svg import drawing
+from semmap.nodes.extern.testing import free_endpoint
+from semmap.schemas import commands
+from semmap.schemas.commands import Command
+from semmap.schemas.entities import orientation_from_yaw
 
 DOCS = Path(__file__).parents[1]
 SEMMAP = Path(sys.executable).parent / "semmap"

@@ -1,7 +1,7 @@
 """The only code that knows Zenoh: open a session, ask, serve, publish, follow."""
 
-from nodes.bus import own_config
-from nodes.bus.asking import (
+from semmap.nodes.bus import own_config
+from semmap.nodes.bus.asking import (
     TIMEOUT_S,
     Encoded,
     ForeignReply,
@@ -12,11 +12,20 @@ from nodes.bus.asking import (
     first_round_s,
     read_reply,
 )
-from nodes.bus.lifelines import Lifelines, appear, follow_presence, follow_robots, robots
-from nodes.bus.pieces import MESSAGE, PIECE, PUBLISHED
-from nodes.bus.pubsub import Newest, follow, follow_cameras, includes, listen, meets, publisher, watched
-from nodes.bus.serving import Request, serve, serve_puts
-from nodes.bus.session import (
+from semmap.nodes.bus.lifelines import Lifelines, appear, follow_presence, follow_robots, robots
+from semmap.nodes.bus.pieces import MESSAGE, PIECE, PUBLISHED
+from semmap.nodes.bus.pubsub import (
+    Newest,
+    follow,
+    follow_cameras,
+    includes,
+    listen,
+    meets,
+    publisher,
+    watched,
+)
+from semmap.nodes.bus.serving import Request, serve, serve_puts
+from semmap.nodes.bus.session import (
     DEFAULT_ENDPOINT,
     FOREVER_S,
     PATIENCE_S,

@@ -19,11 +19,11 @@ from typing import Any, Final, NoReturn
 import zenoh
 from msgspec import Struct
 
-from nodes.bus import pieces
-from nodes.bus.lifelines import Lifelines
-from nodes.bus.session import PATIENCE_S
-from schemas import codec, errors, keys
-from schemas.replies import Done
+from semmap.nodes.bus import pieces
+from semmap.nodes.bus.lifelines import Lifelines
+from semmap.nodes.bus.session import PATIENCE_S
+from semmap.schemas import codec, errors, keys
+from semmap.schemas.replies import Done
 
 log = logging.getLogger(__name__)
 

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import zenoh
 
-from schemas import keys
+from semmap.schemas import keys
 
 _ROBOTS_S: Final = 3.0
 _LOOK_S: Final = 1.0

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import zenoh
 
-from schemas import errors
+from semmap.schemas import errors
 
 _DECIDED: Final = {
     "mode": "it differs from process to process",

@@ -15,8 +15,8 @@ from typing import Annotated, Final
 import zenoh
 from msgspec import Meta, Struct
 
-from schemas import codec, errors
-from schemas.calls import DOCUMENT
+from semmap.schemas import codec, errors
+from semmap.schemas.calls import DOCUMENT
 
 PIECE: Final = 8 << 20
 """Bytes; what is larger is cut."""

@@ -9,9 +9,9 @@ from typing import Any, Literal
 import zenoh
 from zenoh import ext
 
-from nodes.bus import pieces
-from schemas import codec, errors, keys
-from schemas.scenes import CameraFrame
+from semmap.nodes.bus import pieces
+from semmap.schemas import codec, errors, keys
+from semmap.schemas.scenes import CameraFrame
 
 
 def publisher(session: zenoh.Session, topic: keys.Topic, key: str | None = None) -> Any:

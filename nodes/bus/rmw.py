@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple
 import zenoh
 from zenoh import ext
 
-from nodes.bus import pieces
+from semmap.nodes.bus import pieces
 
 _SPACE: Final = "@ros2_lv"
 _DEPTH: Final = 10

@@ -12,12 +12,12 @@ from typing import Any
 import zenoh
 from msgspec import Struct, field
 
-from nodes.bus import pieces
-from nodes.bus.asking import Encoded
-from nodes.bus.pubsub import publisher
-from schemas import codec, errors, keys
-from schemas.calls import largest
-from schemas.replies import Ack, Document, Done
+from semmap.nodes.bus import pieces
+from semmap.nodes.bus.asking import Encoded
+from semmap.nodes.bus.pubsub import publisher
+from semmap.schemas import codec, errors, keys
+from semmap.schemas.calls import largest
+from semmap.schemas.replies import Ack, Document, Done
 
 _JSON = "application/json"
 _ACKS = 20_000

@@ -18,10 +18,10 @@ import zenoh
 from msgspec import Struct
 from zenoh import Session as Session
 
-from nodes.bus import own_config, pieces
-from nodes.identity import Identity
-from schemas import errors, keys
-from schemas.endpoints import DEFAULT_ENDPOINT as DEFAULT_ENDPOINT
+from semmap.nodes.bus import own_config, pieces
+from semmap.nodes.identity import Identity
+from semmap.schemas import errors, keys
+from semmap.schemas.endpoints import DEFAULT_ENDPOINT as DEFAULT_ENDPOINT
 
 TLS = "tls/"
 PATIENCE_S = 3.0

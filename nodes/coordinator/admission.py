@@ -12,9 +12,9 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.identity.register import LiveRegister
-from schemas import agents, errors, roles
-from schemas.commands import Command
+from semmap.nodes.identity.register import LiveRegister
+from semmap.schemas import agents, errors, roles
+from semmap.schemas.commands import Command
 
 C = TypeVar("C", bound=Command)
 

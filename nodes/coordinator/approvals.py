@@ -8,10 +8,10 @@ from typing import Final
 
 from msgspec import structs
 
-from schemas import agents, errors, wording
-from schemas.approvals import Request
-from schemas.commands import Approve, Submit
-from schemas.entities import LESSER
+from semmap.schemas import agents, errors, wording
+from semmap.schemas.approvals import Request
+from semmap.schemas.commands import Approve, Submit
+from semmap.schemas.entities import LESSER
 
 _LASTS_NS: Final = 3_600_000_000_000
 _MOST: Final = 100

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from nodes.coordinator.config import Truth
-from schemas import errors
-from schemas.commands import Add, Batch, Clear, Command, Remove, Update
-from schemas.entities import LESSER, Entity
+from semmap.nodes.coordinator.config import Truth
+from semmap.schemas import errors
+from semmap.schemas.commands import Add, Batch, Clear, Command, Remove, Update
+from semmap.schemas.entities import LESSER, Entity
 
 _COMES_BACK = {
     "scene": "the scene decides what exists (--truth scene): a body that still stands there is added again",

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from nodes.bus import Network
+from semmap.nodes.bus import Network
 
 Truth = Literal["map", "scene", "perceived", "replayed"]
 

@@ -8,25 +8,25 @@ from typing import Any, TypeVar
 
 from msgspec import structs
 
-from nodes import bus
-from nodes.coordinator import formats
-from nodes.coordinator.config import Truth
-from nodes.coordinator.door import Door
-from nodes.coordinator.frames.feed import Frames
-from nodes.coordinator.health_view import HealthView
-from nodes.coordinator.kb_client import Bridge
-from nodes.coordinator.live.feed import LiveFeed
-from nodes.coordinator.scene.reconciler import Keeping
-from nodes.runtime.futures import then
-from nodes.runtime.version import version
-from ontology.model_shapes import own_size_m
-from schemas import bridge, errors
-from schemas import commands as c
-from schemas.entities import Entity, Size
-from schemas.grips import holder_of
-from schemas.moments import When
-from schemas.relations import Described
-from schemas.replies import SystemStatus
+from semmap.nodes import bus
+from semmap.nodes.coordinator import formats
+from semmap.nodes.coordinator.config import Truth
+from semmap.nodes.coordinator.door import Door
+from semmap.nodes.coordinator.frames.feed import Frames
+from semmap.nodes.coordinator.health_view import HealthView
+from semmap.nodes.coordinator.kb_client import Bridge
+from semmap.nodes.coordinator.live.feed import LiveFeed
+from semmap.nodes.coordinator.scene.reconciler import Keeping
+from semmap.nodes.runtime.futures import then
+from semmap.nodes.runtime.version import version
+from semmap.ontology.model_shapes import own_size_m
+from semmap.schemas import bridge, errors
+from semmap.schemas import commands as c
+from semmap.schemas.entities import Entity, Size
+from semmap.schemas.grips import holder_of
+from semmap.schemas.moments import When
+from semmap.schemas.relations import Described
+from semmap.schemas.replies import SystemStatus
 
 _DIGITS = 4
 _MOST = 5

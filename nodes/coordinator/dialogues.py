@@ -11,11 +11,11 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import Future
 from typing import Any, TypeVar
 
-from nodes.runtime.futures import OwnFuture
-from schemas import errors
-from schemas.bridge import MadeBy, Outcome, Transactions
-from schemas.calls import Call
-from schemas.commits import Transaction
+from semmap.nodes.runtime.futures import OwnFuture
+from semmap.schemas import errors
+from semmap.schemas.bridge import MadeBy, Outcome, Transactions
+from semmap.schemas.calls import Call
+from semmap.schemas.commits import Transaction
 
 T = TypeVar("T")
 

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
-from nodes import bus
-from nodes.runtime.futures import OwnFuture, settle
-from schemas import errors
+from semmap.nodes import bus
+from semmap.nodes.runtime.futures import OwnFuture, settle
+from semmap.schemas import errors
 
 
 class EarlyCommands:

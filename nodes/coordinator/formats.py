@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from schemas import errors
-from schemas.entities import Entity
+from semmap.schemas import errors
+from semmap.schemas.entities import Entity
 
 
 def lu4r(entities: Iterable[Entity]) -> dict[str, Any]:

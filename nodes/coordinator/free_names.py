@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable
 
-from schemas.entities import name_stem
+from semmap.schemas.entities import name_stem
 
 
 class FreeNames:
-    """The first free number of each class, as `schemas.entities.free_name` has it."""
+    """The first free number of each class, as `semmap.schemas.entities.free_name` has it."""
 
     def __init__(self) -> None:
         self._first: dict[str, int] = {}

@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from schemas.entities import Entity, Size, Vector
+from semmap.schemas.entities import Entity, Size, Vector
 
 DEFAULT_POSITION: Vector = (2.0, 2.0, 0.0)
 _STEP_M = 0.5

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import time
 
-from schemas import keys
-from schemas.health import Health
-from schemas.replies import NodeStatus
-from schemas.wording import counted
+from semmap.schemas import keys
+from semmap.schemas.health import Health
+from semmap.schemas.replies import NodeStatus
+from semmap.schemas.wording import counted
 
 SILENT_AFTER_S = 3.0
 _HEARD_WITHIN_S = 2.0

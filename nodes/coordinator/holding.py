@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 
-from schemas import errors, wording
-from schemas.entities import Entity, Pose, compose, orientation_from_yaw, relative
-from schemas.grips import bearers, grip_of, holder_of
-from schemas.scenes import Body
+from semmap.schemas import errors, wording
+from semmap.schemas.entities import Entity, Pose, compose, orientation_from_yaw, relative
+from semmap.schemas.grips import bearers, grip_of, holder_of
+from semmap.schemas.scenes import Body
 
 Where = Callable[[str], Pose | None]
 """Where an entity is just now, if that is known."""

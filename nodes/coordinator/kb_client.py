@@ -5,12 +5,12 @@ from __future__ import annotations
 from concurrent.futures import Future
 from typing import TypeVar
 
-from nodes import bus
-from nodes.runtime.futures import OwnFuture
-from nodes.runtime.loop import Node
-from schemas import errors, keys
-from schemas.calls import Call, Relay
-from schemas.commands import Command
+from semmap.nodes import bus
+from semmap.nodes.runtime.futures import OwnFuture
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import errors, keys
+from semmap.schemas.calls import Call, Relay
+from semmap.schemas.commands import Command
 
 R = TypeVar("R")
 

@@ -10,37 +10,37 @@ from typing import Any, TypeVar
 
 from msgspec import structs
 
-from nodes.coordinator import admission, authority
-from nodes.coordinator.approvals import Approvals
-from nodes.coordinator.config import CoordinatorConfig
-from nodes.coordinator.current_answers import Answers
-from nodes.coordinator.dialogues import hold_later
-from nodes.coordinator.door import Door
-from nodes.coordinator.early_commands import EarlyCommands
-from nodes.coordinator.frames.feed import Frames
-from nodes.coordinator.health_view import HealthView
-from nodes.coordinator.kb_client import Bridge
-from nodes.coordinator.live.feed import LiveFeed
-from nodes.coordinator.scene.among_walls import AmongWalls
-from nodes.coordinator.scene.completion import Completion
-from nodes.coordinator.scene.gripping import Gripping
-from nodes.coordinator.scene.opening import Opening
-from nodes.coordinator.scene.reconciler import Keeping
-from nodes.coordinator.scene.scene_commands import Running
-from nodes.coordinator.scene.settled import Settled
-from nodes.coordinator.teaching import Teaching
-from nodes.coordinator.turns import Change, Results, Turns
-from nodes.runtime import heap
-from nodes.runtime.class_names import ClassNames
-from nodes.runtime.following import Begun, Follower
-from nodes.runtime.futures import OwnFuture, settle, then
-from nodes.runtime.loop import Node, open_node
-from schemas import calls, keys, wording
-from schemas import commands as c
-from schemas.entities import BodyState
-from schemas.health import Health
-from schemas.replies import Changed
-from schemas.scenes import DriveBase, Poses
+from semmap.nodes.coordinator import admission, authority
+from semmap.nodes.coordinator.approvals import Approvals
+from semmap.nodes.coordinator.config import CoordinatorConfig
+from semmap.nodes.coordinator.current_answers import Answers
+from semmap.nodes.coordinator.dialogues import hold_later
+from semmap.nodes.coordinator.door import Door
+from semmap.nodes.coordinator.early_commands import EarlyCommands
+from semmap.nodes.coordinator.frames.feed import Frames
+from semmap.nodes.coordinator.health_view import HealthView
+from semmap.nodes.coordinator.kb_client import Bridge
+from semmap.nodes.coordinator.live.feed import LiveFeed
+from semmap.nodes.coordinator.scene.among_walls import AmongWalls
+from semmap.nodes.coordinator.scene.completion import Completion
+from semmap.nodes.coordinator.scene.gripping import Gripping
+from semmap.nodes.coordinator.scene.opening import Opening
+from semmap.nodes.coordinator.scene.reconciler import Keeping
+from semmap.nodes.coordinator.scene.scene_commands import Running
+from semmap.nodes.coordinator.scene.settled import Settled
+from semmap.nodes.coordinator.teaching import Teaching
+from semmap.nodes.coordinator.turns import Change, Results, Turns
+from semmap.nodes.runtime import heap
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.nodes.runtime.following import Begun, Follower
+from semmap.nodes.runtime.futures import OwnFuture, settle, then
+from semmap.nodes.runtime.loop import Node, open_node
+from semmap.schemas import calls, keys, wording
+from semmap.schemas import commands as c
+from semmap.schemas.entities import BodyState
+from semmap.schemas.health import Health
+from semmap.schemas.replies import Changed
+from semmap.schemas.scenes import DriveBase, Poses
 
 R = TypeVar("R")
 

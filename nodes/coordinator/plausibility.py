@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 
-from ontology.model_choice import chosen
-from ontology.model_shapes import own_size_m
-from schemas import errors
-from schemas.commands import Attach, Move, Update
-from schemas.entities import ClassInfo, Entity, Pose, Size
-from schemas.polygons import extent_of
+from semmap.ontology.model_choice import chosen
+from semmap.ontology.model_shapes import own_size_m
+from semmap.schemas import errors
+from semmap.schemas.commands import Attach, Move, Update
+from semmap.schemas.entities import ClassInfo, Entity, Pose, Size
+from semmap.schemas.polygons import extent_of
 
 FAR_OFF = 10.0
 """A size is doubtful whose longest side is so many times its class's usual one, or its fraction."""

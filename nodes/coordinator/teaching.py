@@ -7,11 +7,11 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.coordinator.door import Door
-from schemas import commands as c
-from schemas import errors, keys
-from schemas.calls import Relay
-from schemas.lessons import LessonTold
+from semmap.nodes.coordinator.door import Door
+from semmap.schemas import commands as c
+from semmap.schemas import errors, keys
+from semmap.schemas.calls import Relay
+from semmap.schemas.lessons import LessonTold
 
 R = TypeVar("R")
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, NamedTuple
 
-from schemas import errors, polygons
-from schemas.commands import Add, Attach, Batch, Command, Detach, Set, Track, Unset, Update
-from schemas.commits import Edit, NewEntity, Statement, Transaction
-from schemas.entities import IDENTITY, ClassInfo, Entity, Pose, Size, Value, Vector
-from schemas.grips import GRASP_POSE, IS_GRASPED_BY, pose_text
-from schemas.scene_files import Described, pose_of
+from semmap.schemas import errors, polygons
+from semmap.schemas.commands import Add, Attach, Batch, Command, Detach, Set, Track, Unset, Update
+from semmap.schemas.commits import Edit, NewEntity, Statement, Transaction
+from semmap.schemas.entities import IDENTITY, ClassInfo, Entity, Pose, Size, Value, Vector
+from semmap.schemas.grips import GRASP_POSE, IS_GRASPED_BY, pose_text
+from semmap.schemas.scene_files import Described, pose_of
 
 _FEW: Final = 4
 """Of so many changes that are made together the reason names each."""

@@ -14,10 +14,23 @@ from concurrent.futures import Future
 from itertools import islice
 from typing import Any, NamedTuple
 
-from nodes.coordinator.scene.settled import Settled
-from nodes.runtime.futures import OwnFuture, settle
-from schemas.commands import Add, Attach, Batch, Clear, Detach, Load, Remove, Set, Track, Undo, Unset, Update
-from schemas.replies import Changed
+from semmap.nodes.coordinator.scene.settled import Settled
+from semmap.nodes.runtime.futures import OwnFuture, settle
+from semmap.schemas.commands import (
+    Add,
+    Attach,
+    Batch,
+    Clear,
+    Detach,
+    Load,
+    Remove,
+    Set,
+    Track,
+    Undo,
+    Unset,
+    Update,
+)
+from semmap.schemas.replies import Changed
 
 GROUP = 16
 """How many changes go together at most: two groups are as many as a busy client has in flight."""

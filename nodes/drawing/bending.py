@@ -9,8 +9,8 @@ import numpy as np
 from msgspec import structs
 from numpy.typing import NDArray
 
-from schemas.joints import Joint
-from schemas.scenes import Surface
+from semmap.schemas.joints import Joint
+from semmap.schemas.scenes import Surface
 
 Bends = tuple[tuple[str, float], ...]
 """Joints that are not where a model is drawn with them, at 0: names and positions [rad, m]."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from schemas import errors
-from schemas.entities import Entity, Pose, Size, angle_rad, distance_m
-from schemas.polygons import Polygon, extent_of
-from schemas.scenes import Body, Surface
+from semmap.schemas import errors
+from semmap.schemas.entities import Entity, Pose, Size, angle_rad, distance_m
+from semmap.schemas.polygons import Polygon, extent_of
+from semmap.schemas.scenes import Body, Surface
 
 Look = Literal["solid", "ghost", "believed", "furniture", "place"]
 """`believed`: in the map, but the running simulator has no body for it. `furniture`: the world's own."""

@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, Literal, NamedTuple
 
-from schemas.entities import Entity
+from semmap.schemas.entities import Entity
 
 Relations = Mapping[str, Iterable[tuple[str, str]]]
 """By the name of an entity: a property and the name of the entity that it leads to."""

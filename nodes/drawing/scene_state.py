@@ -8,8 +8,8 @@ import numpy as np
 from msgspec import structs
 from numpy.typing import NDArray
 
-from schemas.entities import Pose
-from schemas.scenes import Body, Poses, Scene
+from semmap.schemas.entities import Pose
+from semmap.schemas.scenes import Body, Poses, Scene
 
 _STIR = 2e-4
 """A coordinate [m] or a quaternion's component that changed by less has not changed."""

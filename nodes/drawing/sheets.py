@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.geometry.regions import Region
-from schemas.polygons import Polygon
+from semmap.nodes.geometry.regions import Region
+from semmap.schemas.polygons import Polygon
 
 
 def triangles_of(polygon: Polygon) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:

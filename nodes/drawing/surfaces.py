@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final
 
-from nodes.drawing.bending import bends_of, bent
-from schemas.entities import Size
-from schemas.scenes import Body, Surface
+from semmap.nodes.drawing.bending import bends_of, bent
+from semmap.schemas.entities import Size
+from semmap.schemas.scenes import Body, Surface
 
 Kind = tuple[str, Size]
 _OWN: Final = "body:"

@@ -21,16 +21,16 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, Final, Literal, TypeVar
 
-from nodes.extern.client import LONG_S, Client
-from nodes.extern.client import connect as connect_blocking
-from nodes.extern.client_verbs import Verbs
-from nodes.extern.sparql_client import StandingQuery
-from schemas import errors
-from schemas.backups import Opening
-from schemas.commands import Command
-from schemas.commits import Commit
-from schemas.entities import Source
-from schemas.sparql import RowsChanged
+from semmap.nodes.extern.client import LONG_S, Client
+from semmap.nodes.extern.client import connect as connect_blocking
+from semmap.nodes.extern.client_verbs import Verbs
+from semmap.nodes.extern.sparql_client import StandingQuery
+from semmap.schemas import errors
+from semmap.schemas.backups import Opening
+from semmap.schemas.commands import Command
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Source
+from semmap.schemas.sparql import RowsChanged
 
 R = TypeVar("R")
 T = TypeVar("T")

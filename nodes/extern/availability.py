@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple
 
-from nodes import bus
-from nodes.extern.client import Client
-from schemas import errors, wording
+from semmap.nodes import bus
+from semmap.nodes.extern.client import Client
+from semmap.schemas import errors, wording
 
 WENT_DOWN = "the knowledge base is down; waiting for it to come back"
 CAME_BACK = "the knowledge base is back, with the same map"

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from schemas import backups, errors
-from schemas.backups import BackupPart, Opening
-from schemas.commands import Backup
+from semmap.schemas import backups, errors
+from semmap.schemas.backups import BackupPart, Opening
+from semmap.schemas.commands import Backup
 
 _NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL
 

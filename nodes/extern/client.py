@@ -23,25 +23,25 @@ from typing import Any, Literal, TypeVar
 
 import msgspec
 
-from nodes import bus
-from nodes.extern import backup
-from nodes.extern.client_verbs import Verbs
-from nodes.extern.connection import endpoint, open_session
-from nodes.extern.connection import identity as identify
-from nodes.extern.connection import namespace as robot
-from nodes.extern.sparql_client import StandingQuery
-from nodes.identity import Identity
-from nodes.runtime import version
-from schemas import codec, errors, keys, roles
-from schemas.backups import Opening
-from schemas.calls import reply_type
-from schemas.commands import Clear, Command, Load, Status, Undo, Watch
-from schemas.commits import Commit
-from schemas.entities import Source
-from schemas.frames import FramePose
-from schemas.live import LivePose
-from schemas.moments import When, with_offset
-from schemas.replies import Changed
+from semmap.nodes import bus
+from semmap.nodes.extern import backup
+from semmap.nodes.extern.client_verbs import Verbs
+from semmap.nodes.extern.connection import endpoint, open_session
+from semmap.nodes.extern.connection import identity as identify
+from semmap.nodes.extern.connection import namespace as robot
+from semmap.nodes.extern.sparql_client import StandingQuery
+from semmap.nodes.identity import Identity
+from semmap.nodes.runtime import version
+from semmap.schemas import codec, errors, keys, roles
+from semmap.schemas.backups import Opening
+from semmap.schemas.calls import reply_type
+from semmap.schemas.commands import Clear, Command, Load, Status, Undo, Watch
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Source
+from semmap.schemas.frames import FramePose
+from semmap.schemas.live import LivePose
+from semmap.schemas.moments import When, with_offset
+from semmap.schemas.replies import Changed
 
 R = TypeVar("R")
 C = TypeVar("C", bound=Command)

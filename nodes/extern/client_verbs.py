@@ -23,21 +23,21 @@ from typing import (
     overload,
 )
 
-from nodes.extern.files import read_file
-from nodes.extern.ontology_upload import ontology
-from nodes.extern.plan_files import is_plan, read_plan
-from schemas import commands, errors, replies
-from schemas.calls import reply_type
-from schemas.commands import Command
-from schemas.entities import Entity, Value
-from schemas.moments import When
-from schemas.packing import packed
-from schemas.plans import HEIGHTS_M, RADIUS_M, HeightRange, Way
-from schemas.scenes import Picture
+from semmap.nodes.extern.files import read_file
+from semmap.nodes.extern.ontology_upload import ontology
+from semmap.nodes.extern.plan_files import is_plan, read_plan
+from semmap.schemas import commands, errors, replies
+from semmap.schemas.calls import reply_type
+from semmap.schemas.commands import Command
+from semmap.schemas.entities import Entity, Value
+from semmap.schemas.moments import When
+from semmap.schemas.packing import packed
+from semmap.schemas.plans import HEIGHTS_M, RADIUS_M, HeightRange, Way
+from semmap.schemas.scenes import Picture
 
 if TYPE_CHECKING:
-    from nodes.extern.async_client import AsyncClient
-    from nodes.extern.client import Client
+    from semmap.nodes.extern.async_client import AsyncClient
+    from semmap.nodes.extern.client import Client
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -346,7 +346,7 @@ def _list(
     answer.
 
     `as_of`: the map as it was after a commit, given by its number, or at a time: seconds since 1970, ISO 8601
-    or a reply's `stamp_ns`. A time denotes its written precision (see `schemas.moments.When`).
+    or a reply's `stamp_ns`. A time denotes its written precision (see `semmap.schemas.moments.When`).
     """
     return commands.List(
         class_=class_,
@@ -407,7 +407,7 @@ class Verbs:
     """What one may ask of a system and do to its map and scene: every command, and its reply.
 
     Positions are metres in the map frame, angles radians, quaternions `wxyz`. Each verb takes an `id`, too:
-    the same one twice is executed once. Raises the errors of `schemas.errors`: Refused, BadRequest, NoAnswer.
+    the same one twice is executed once. Raises the errors of `semmap.schemas.errors`: Refused, BadRequest, NoAnswer.
     """
 
     # To change

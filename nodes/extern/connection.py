@@ -8,11 +8,11 @@ import time
 from collections.abc import Iterator
 from typing import Literal
 
-from nodes import bus
-from nodes.identity import Identity
-from nodes.supervisor import presence, registry
-from schemas import errors
-from schemas.endpoints import (
+from semmap.nodes import bus
+from semmap.nodes.identity import Identity
+from semmap.nodes.supervisor import presence, registry
+from semmap.schemas import errors
+from semmap.schemas.endpoints import (
     CONFIG_VARIABLE,
     CONNECT_VARIABLE,
     IDENTITY_VARIABLE,

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import msgspec
 
-from schemas import errors
-from schemas.packing import LARGEST
+from semmap.schemas import errors
+from semmap.schemas.packing import LARGEST
 
 
 def read_file(path: Path) -> bytes:

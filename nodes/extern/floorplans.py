@@ -6,14 +6,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from nodes.extern.files import write_atomically
-from nodes.runtime import extras
-from schemas import errors
-from schemas.moments import When
-from schemas.plans import HEIGHTS_M, HeightRange
+from semmap.nodes.extern.files import write_atomically
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors
+from semmap.schemas.moments import When
+from semmap.schemas.plans import HEIGHTS_M, HeightRange
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
+    from semmap.nodes.extern.client import Client
 
 RESOLUTION_M: Final = 0.05
 _FINEST_M, _COARSEST_M = 0.005, 1.0
@@ -51,13 +51,13 @@ def write_floorplan(
         return (_svg(client, file, as_of),)
     plan = client.floorplan(as_of=as_of)
     if kind == ".geojson":
-        from nodes.navigation.geojson import geojson
+        from semmap.nodes.navigation.geojson import geojson
 
         write_atomically(file, geojson(plan).encode())
         return (file,)
 
-    from nodes.navigation import map_server
-    from nodes.navigation.grid import forbidden, occupancy
+    from semmap.nodes.navigation import map_server
+    from semmap.nodes.navigation.grid import forbidden, occupancy
 
     encode: Callable[[map_server.Pixels], bytes] = map_server.png if kind == ".png" else map_server.pgm
     grid = occupancy(plan, resolution, heights, furniture=furniture)
@@ -75,8 +75,8 @@ def write_floorplan(
 
 
 def _svg(client: Client, file: Path, as_of: When | None) -> Path:
-    from nodes.extern.plan.floor import floor_of
-    from nodes.extern.plan.svg import drawing
+    from semmap.nodes.extern.plan.floor import floor_of
+    from semmap.nodes.extern.plan.svg import drawing
 
     entities = client.list(as_of=as_of)
     if not entities:

@@ -10,9 +10,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from nodes.runtime import extras
-from nodes.supervisor import registry
-from schemas import errors
+from semmap.nodes.runtime import extras
+from semmap.nodes.supervisor import registry
+from semmap.schemas import errors
 
 
 class JournalCopy(NamedTuple):
@@ -47,8 +47,8 @@ def journal_copy(
     folder, Refused when it is damaged, NoAnswer when no system answers.
     """
     extras.require(what, "kb")
-    from nodes.kb_node.storage.journal import FILENAME
-    from nodes.kb_node.storage.replay.copying import copy
+    from semmap.nodes.kb_node.storage.journal import FILENAME
+    from semmap.nodes.kb_node.storage.replay.copying import copy
 
     with own_folder() as folder:
         path = folder / FILENAME
@@ -61,19 +61,19 @@ def journal_copy(
 
 def _data_of(where: str | None, namespace: str | None) -> Path | None:
     """The data folder of a system that this user runs on this machine and that has the map itself."""
-    from nodes.extern.connection import endpoint
+    from semmap.nodes.extern.connection import endpoint
 
     reachable = where or endpoint(namespace)
     found = [s for s in registry.systems() if reachable in (s.reachable, s.listen)]
     folders = [Path(s.data) for s in found if namespace in (None, s.namespace)]
-    from nodes.kb_node.storage.journal import FILENAME
+    from semmap.nodes.kb_node.storage.journal import FILENAME
 
     return next((folder for folder in folders if (folder / FILENAME).exists()), None)
 
 
 def _backed_up(folder: Path, where: str | None, identity: str | None, namespace: str | None) -> None:
-    from nodes.extern.client import connect
-    from nodes.extern.restoring import restore
+    from semmap.nodes.extern.client import connect
+    from semmap.nodes.extern.restoring import restore
 
     file = folder / "map.backup"
     with connect(where, identity=identity, namespace=namespace) as client:

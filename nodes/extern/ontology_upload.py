@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from nodes.extern.files import read_file
-from nodes.runtime import extras
+from semmap.nodes.extern.files import read_file
+from semmap.nodes.runtime import extras
 
 
 def ontology(path: Path, imports: Mapping[str, str | Path]) -> tuple[bytes, str]:
@@ -19,8 +19,8 @@ def ontology(path: Path, imports: Mapping[str, str | Path]) -> tuple[bytes, str]
     if extras.missing(["kb"]) and not imports and not path.is_dir():
         return read_file(path), path.name
     extras.require("finding imports", "kb")
-    from nodes.kb_node.documents import ontology_files, rdf
-    from ontology.prefixes import declarations
+    from semmap.nodes.kb_node.documents import ontology_files, rdf
+    from semmap.ontology.prefixes import declarations
 
     gathered = ontology_files.gather([path], {iri: Path(file) for iri, file in imports.items()})
     further = len(gathered.files) - 1

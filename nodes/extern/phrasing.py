@@ -6,10 +6,10 @@ import math
 import time
 from collections.abc import Mapping
 
-from schemas import agents, changes
-from schemas.commits import Commit
-from schemas.entities import Entity, Pose, Provenance, distance_m
-from schemas.replies import LoggedCommit
+from semmap.schemas import agents, changes
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Entity, Pose, Provenance, distance_m
+from semmap.schemas.replies import LoggedCommit
 
 _STILL_M = 0.005
 _NOTED_M = 0.95

@@ -6,13 +6,13 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nodes.extern.files import read_file
-from nodes.runtime import extras
-from schemas import errors
+from semmap.nodes.extern.files import read_file
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors
 
 if TYPE_CHECKING:
-    from nodes.navigation.loaded_plan import LoadedPlan
-    from nodes.navigation.map_server import Pixels
+    from semmap.nodes.navigation.loaded_plan import LoadedPlan
+    from semmap.nodes.navigation.map_server import Pixels
 
 
 def is_plan(path: Path) -> bool:
@@ -23,8 +23,8 @@ def is_plan(path: Path) -> bool:
 def read_plan(path: Path) -> LoadedPlan:
     """The rooms and doors of a plan, told by its YAML file. Raises BadFile."""
     extras.require("a plan", "sim")
-    from nodes.navigation.loaded_plan import loaded_plan
-    from nodes.navigation.map_server import read_image, read_yaml
+    from semmap.nodes.navigation.loaded_plan import loaded_plan
+    from semmap.nodes.navigation.map_server import read_image, read_yaml
 
     try:
         text = read_file(path).decode()
@@ -41,7 +41,7 @@ def _png(content: bytes) -> Pixels:
     import numpy as np
     from PIL import Image
 
-    from nodes.navigation.grid import MOST_CELLS
+    from semmap.nodes.navigation.grid import MOST_CELLS
 
     try:
         with Image.open(io.BytesIO(content)) as picture:

@@ -9,12 +9,12 @@ from pathlib import Path
 
 from msgspec import structs
 
-from nodes.extern.journals import journal_copy, own_folder
-from nodes.runtime import extras, rhythm
-from nodes.supervisor.settings import SETTINGS, Replay, Settings
-from ontology import EMPTY_WORLD, FLAT_WORLD, HOUSEHOLD_TTL
-from schemas import codec, errors
-from schemas.moments import When
+from semmap.nodes.extern.journals import journal_copy, own_folder
+from semmap.nodes.runtime import extras, rhythm
+from semmap.nodes.supervisor.settings import SETTINGS, Replay, Settings
+from semmap.ontology import EMPTY_WORLD, FLAT_WORLD, HOUSEHOLD_TTL
+from semmap.schemas import codec, errors
+from semmap.schemas.moments import When
 
 
 def replay(
@@ -51,8 +51,8 @@ def replay(
         *(["record"] if record else []),
         *([] if web is None else ["web"]),
     )
-    from nodes.kb_node.storage.replay.preparing import prepare
-    from nodes.supervisor.up import up
+    from semmap.nodes.kb_node.storage.replay.preparing import prepare
+    from semmap.nodes.supervisor.up import up
 
     with own_folder() as folder:
         span = prepare(data, folder, since=since, until=until)
@@ -87,10 +87,10 @@ def check(
     """
     file, data = Path(file), None if data is None else Path(data)
     extras.require("semmap replay --check", "kb", "record")
-    from nodes.kb_node.storage.journal import Journal
-    from nodes.recorder.checking import check as compare
-    from nodes.recorder.recorded_commits import commits_of
-    from nodes.recorder.whole_part import whole_part
+    from semmap.nodes.kb_node.storage.journal import Journal
+    from semmap.nodes.recorder.checking import check as compare
+    from semmap.nodes.recorder.recorded_commits import commits_of
+    from semmap.nodes.recorder.whole_part import whole_part
 
     with whole_part(file) as whole:
         if told := whole.told(file):

@@ -6,9 +6,9 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-from nodes.runtime import extras
-from schemas import backups
-from schemas.backups import Restored
+from semmap.nodes.runtime import extras
+from semmap.schemas import backups
+from semmap.schemas.backups import Restored
 
 
 def restore(
@@ -28,9 +28,9 @@ def restore(
     `semmap[kb]`.
     """
     extras.require("semmap restore", "kb")
-    from nodes.kb_node.storage.backup.restoring import restore as restore_journal
-    from nodes.supervisor.privacy import UMASK, make_private
-    from nodes.supervisor.up import alone
+    from semmap.nodes.kb_node.storage.backup.restoring import restore as restore_journal
+    from semmap.nodes.supervisor.privacy import UMASK, make_private
+    from semmap.nodes.supervisor.up import alone
 
     file, folder = Path(file), Path(data).resolve()
     next(backups.read(file))  # before a folder is made

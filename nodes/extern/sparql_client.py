@@ -13,9 +13,9 @@ from typing import Any
 
 from msgspec import structs
 
-from nodes import bus
-from schemas import commands, errors, keys, replies
-from schemas.sparql import Row, RowsChanged, Watching
+from semmap.nodes import bus
+from semmap.schemas import commands, errors, keys, replies
+from semmap.schemas.sparql import Row, RowsChanged, Watching
 
 _LEASE_S = 30.0
 _RENEW_S = 5.0

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from nodes.extern.client import Client, connect
-from schemas import errors
+from semmap.nodes.extern.client import Client, connect
+from semmap.schemas import errors
 
 _READY = "stop "
 """How the last line of the greeting begins."""

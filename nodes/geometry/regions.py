@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Final, NamedTuple
 
-from nodes.geometry.polygons import Point, Polygon, area, clipped, contains, distance
+from semmap.nodes.geometry.polygons import Point, Polygon, area, clipped, contains, distance
 
 _Edge = tuple[Point, Point]
 """Its lower end first."""

@@ -4,5 +4,5 @@
 `authority.py` issues them (with the `keys` extra); `register.py` is the list of those that were issued.
 """
 
-from nodes.identity.identity import SUPERVISOR as SUPERVISOR
-from nodes.identity.identity import Identity as Identity
+from semmap.nodes.identity.identity import SUPERVISOR as SUPERVISOR
+from semmap.nodes.identity.identity import Identity as Identity

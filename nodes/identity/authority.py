@@ -20,11 +20,11 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 from msgspec import structs
 
-from nodes.identity.identity import AUTHORITY, SUPERVISOR
-from nodes.identity.register import FILE, Member, Register, changing
-from schemas import errors, keys
-from schemas.keys import ROUTER
-from schemas.roles import Role
+from semmap.nodes.identity.identity import AUTHORITY, SUPERVISOR
+from semmap.nodes.identity.register import FILE, Member, Register, changing
+from semmap.schemas import errors, keys
+from semmap.schemas.keys import ROUTER
+from semmap.schemas.roles import Role
 
 OWN: Final = (ROUTER, SUPERVISOR, *keys.NODES)
 """The names of the system's own certificates."""

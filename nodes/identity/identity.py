@@ -8,7 +8,7 @@ from typing import Final
 
 from msgspec import Struct
 
-from schemas import errors
+from semmap.schemas import errors
 
 AUTHORITY: Final = "ca.crt"
 SUPERVISOR: Final = "supervisor"
@@ -28,8 +28,8 @@ class Identity(Struct, frozen=True):
     @classmethod
     def read(cls, path: Path | str) -> Identity:
         """The identity `DIR/NAME`: `DIR/NAME.crt`, `DIR/NAME.key` and `DIR/ca.crt`. Raises BadFile."""
-        from nodes.identity import certificate  # most clients show none
-        from schemas.roles import ROLES
+        from semmap.nodes.identity import certificate  # most clients show none
+        from semmap.schemas.roles import ROLES
 
         path = Path(path).expanduser()
         path = path.with_suffix("") if path.suffix in (".crt", ".key") else path

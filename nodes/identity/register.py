@@ -13,8 +13,8 @@ from typing import Final
 
 import msgspec
 
-from schemas import codec, errors
-from schemas.roles import Role
+from semmap.schemas import codec, errors
+from semmap.schemas.roles import Role
 
 FILE: Final = "identities.json"
 

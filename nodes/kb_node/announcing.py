@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable
 
 from msgspec import structs
 
-from nodes import bus
-from nodes.kb_node.beliefs import UNCHANGED, Believed
-from schemas import codec, keys
-from schemas.commits import Commit, Effects, PlaceChanges, abridged
-from schemas.entities import Entity
-from schemas.relations import Described
+from semmap.nodes import bus
+from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.schemas import codec, keys
+from semmap.schemas.commits import Commit, Effects, PlaceChanges, abridged
+from semmap.schemas.entities import Entity
+from semmap.schemas.relations import Described
 
 
 class Announcer:

@@ -8,19 +8,19 @@ from typing import Final
 
 from msgspec import structs
 
-from nodes.kb_node import preconditions, proofs
-from nodes.kb_node.beliefs import Believed
-from nodes.kb_node.documents.tbox import tbox_validation
-from nodes.kb_node.entities import entity_changes, entity_reading
-from nodes.kb_node.entities.fast_reading import Patterns
-from nodes.kb_node.map_state import MapState
-from nodes.kb_node.places import at_most
-from nodes.kb_node.progress import parts, steadily
-from nodes.kb_node.reasoner import Change, Inconsistent
-from ontology import vocabulary as v
-from schemas.commits import Commit
-from schemas.entities import Entity
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node import preconditions, proofs
+from semmap.nodes.kb_node.beliefs import Believed
+from semmap.nodes.kb_node.documents.tbox import tbox_validation
+from semmap.nodes.kb_node.entities import entity_changes, entity_reading
+from semmap.nodes.kb_node.entities.fast_reading import Patterns
+from semmap.nodes.kb_node.map_state import MapState
+from semmap.nodes.kb_node.places import at_most
+from semmap.nodes.kb_node.progress import parts, steadily
+from semmap.nodes.kb_node.reasoner import Change, Inconsistent
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Term, Triple
 
 PART: Final = 250_000
 """Triples that the reasoner takes in at once, in a second or two; in smaller parts it takes longer in all."""

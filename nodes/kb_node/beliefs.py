@@ -12,19 +12,19 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from itertools import islice
 from typing import NamedTuple
 
-from nodes.kb_node.progress import parts
-from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
-from nodes.kb_node.reasoner.explain import sentences
-from nodes.kb_node.reasoner.explanations import Explanation
-from nodes.kb_node.relations.facts.computed import Computed, Known, Step
-from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.facts.rules import COMPUTED
-from nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from ontology import stars
-from ontology import vocabulary as v
-from schemas.entities import Entity
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.progress import parts
+from semmap.nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.explain import sentences
+from semmap.nodes.kb_node.reasoner.explanations import Explanation
+from semmap.nodes.kb_node.relations.facts.computed import Computed, Known, Step
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
+from semmap.nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Term, Triple
 
 _STEP = 2000
 """Entities that are compared in some tens of milliseconds."""

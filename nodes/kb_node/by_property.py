@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable
 
-from schemas.explanations import Term, Triple
+from semmap.schemas.explanations import Term, Triple
 
 
 def by_property(triples: Iterable[Triple]) -> dict[Term, list[Triple]]:

@@ -9,22 +9,22 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node.beliefs import Beliefs, Believed
-from nodes.kb_node.entities import entity_changes, entity_reading, foreseeing
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.places import Places
-from nodes.kb_node.progress import parts, steadily
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.relations.facts.ahead import Ahead
-from nodes.kb_node.relations.facts.foreseen import Foreseen
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.runtime import gc_pause
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commits import Commit, Snapshot, Star, Transaction
-from schemas.entities import ClassInfo, Entity
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.beliefs import Beliefs, Believed
+from semmap.nodes.kb_node.entities import entity_changes, entity_reading, foreseeing
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.places import Places
+from semmap.nodes.kb_node.progress import parts, steadily
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.relations.facts.ahead import Ahead
+from semmap.nodes.kb_node.relations.facts.foreseen import Foreseen
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.runtime import gc_pause
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commits import Commit, Snapshot, Star, Transaction
+from semmap.schemas.entities import ClassInfo, Entity
+from semmap.schemas.explanations import Term, Triple
 
 T = TypeVar("T")
 

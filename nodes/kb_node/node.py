@@ -6,29 +6,29 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 
-from nodes.kb_node.announcing import Announcer
-from nodes.kb_node.answers import whereabouts
-from nodes.kb_node.answers.standing_places import StandingPlaces
-from nodes.kb_node.beliefs import Believed
-from nodes.kb_node.checkpointing import Checkpointing
-from nodes.kb_node.config import KbConfig
-from nodes.kb_node.documents.tbox import tbox_notes
-from nodes.kb_node.handlers.asking import Asking
-from nodes.kb_node.handlers.changing import Changing, Tell
-from nodes.kb_node.handlers.keeping import Keeping
-from nodes.kb_node.handlers.loading import Loading
-from nodes.kb_node.replaying import Player, refusing
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.protocol import Surrounded
-from nodes.kb_node.sparql.service import SparqlService
-from nodes.kb_node.sparql.standing_queries.news import NewsStand
-from nodes.kb_node.sparql.triples.large_map import LargeMap
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.journal.sqlite_file import NotWritten
-from nodes.runtime import gc_pause, heap
-from nodes.runtime.loop import Node, open_node
-from schemas import errors, keys, wording
-from schemas.commits import Commit
+from semmap.nodes.kb_node.announcing import Announcer
+from semmap.nodes.kb_node.answers import whereabouts
+from semmap.nodes.kb_node.answers.standing_places import StandingPlaces
+from semmap.nodes.kb_node.beliefs import Believed
+from semmap.nodes.kb_node.checkpointing import Checkpointing
+from semmap.nodes.kb_node.config import KbConfig
+from semmap.nodes.kb_node.documents.tbox import tbox_notes
+from semmap.nodes.kb_node.handlers.asking import Asking
+from semmap.nodes.kb_node.handlers.changing import Changing, Tell
+from semmap.nodes.kb_node.handlers.keeping import Keeping
+from semmap.nodes.kb_node.handlers.loading import Loading
+from semmap.nodes.kb_node.replaying import Player, refusing
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.sparql.protocol import Surrounded
+from semmap.nodes.kb_node.sparql.service import SparqlService
+from semmap.nodes.kb_node.sparql.standing_queries.news import NewsStand
+from semmap.nodes.kb_node.sparql.triples.large_map import LargeMap
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
+from semmap.nodes.runtime import gc_pause, heap
+from semmap.nodes.runtime.loop import Node, open_node
+from semmap.schemas import errors, keys, wording
+from semmap.schemas.commits import Commit
 
 CHECKPOINT_PERIOD_S = 10.0
 STARTS_AGAIN = 70

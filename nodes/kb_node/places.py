@@ -11,26 +11,26 @@ from typing import Final, NamedTuple
 
 from msgspec import structs
 
-from nodes.kb_node.entities import entity_changes, entity_reading
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.preconditions import subjects
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.relations.carrying import Loads
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.facts.rules import RULES, About
-from nodes.kb_node.relations.facts.said import denial, fact_of
-from nodes.kb_node.relations.facts.sayings import Sayings, of_places
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from nodes.kb_node.relations.surroundings import Surroundings
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors, wording
-from schemas.commits import Commit, Edit
-from schemas.entities import Entity, carried
-from schemas.explanations import Term, Triple
-from schemas.joints import OPENING
-from schemas.polygons import EXTENT
+from semmap.nodes.kb_node.entities import entity_changes, entity_reading
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.preconditions import subjects
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.relations.carrying import Loads
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.facts.rules import RULES, About
+from semmap.nodes.kb_node.relations.facts.said import denial, fact_of
+from semmap.nodes.kb_node.relations.facts.sayings import Sayings, of_places
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.nodes.kb_node.relations.surroundings import Surroundings
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors, wording
+from semmap.schemas.commits import Commit, Edit
+from semmap.schemas.entities import Entity, carried
+from semmap.schemas.explanations import Term, Triple
+from semmap.schemas.joints import OPENING
+from semmap.schemas.polygons import EXTENT
 
 _FEW = 10
 """Sentences of one kind."""

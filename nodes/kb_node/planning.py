@@ -8,13 +8,13 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from nodes.kb_node import preconditions
-from nodes.kb_node.entities import entity_writing
-from nodes.kb_node.map_state import MapState
-from ontology import vocabulary as v
-from schemas import agents, errors, wording
-from schemas.commits import Commit, Transaction
-from schemas.explanations import Triple
+from semmap.nodes.kb_node import preconditions
+from semmap.nodes.kb_node.entities import entity_writing
+from semmap.nodes.kb_node.map_state import MapState
+from semmap.ontology import vocabulary as v
+from semmap.schemas import agents, errors, wording
+from semmap.schemas.commits import Commit, Transaction
+from semmap.schemas.explanations import Triple
 
 _VERY_MANY: Final = 100_000
 """Triples."""

@@ -6,13 +6,13 @@ from collections.abc import Callable, Collection, Container, Iterable, Mapping
 from itertools import chain, islice
 from operator import itemgetter
 
-from nodes.kb_node.progress import steadily
-from nodes.kb_node.reasoner import Reasoner
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commits import Transaction
-from schemas.entities import Entity
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.progress import steadily
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commits import Transaction
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Term, Triple
 
 _FEW = 64
 """Triples of one subject: so many are looked through together, and of more each by itself."""

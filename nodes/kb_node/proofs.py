@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from nodes.kb_node.reasoner import Inconsistent
-from nodes.kb_node.reasoner import explanations as reasoner
-from schemas import errors
-from schemas.explanations import Explanation, Step
+from semmap.nodes.kb_node.reasoner import Inconsistent
+from semmap.nodes.kb_node.reasoner import explanations as reasoner
+from semmap.schemas import errors
+from semmap.schemas.explanations import Explanation, Step
 
 
 def message(found: reasoner.Explanation) -> Explanation:

@@ -12,18 +12,18 @@ from typing import Any, Final
 
 from msgspec import structs
 
-from nodes.kb_node.config import Replay
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.replay.preparing import SOURCE
-from nodes.runtime import rhythm
-from nodes.runtime.loop import Node
-from schemas import errors, keys
-from schemas.bridge import LoadDocument, LoadTBox, TakeBack, Transactions
-from schemas.calls import Handler, by_verb
-from schemas.commands import Compact, Status
-from schemas.commits import Commit, Transaction
-from schemas.replies import SystemStatus
+from semmap.nodes.kb_node.config import Replay
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.storage.replay.preparing import SOURCE
+from semmap.nodes.runtime import rhythm
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import errors, keys
+from semmap.schemas.bridge import LoadDocument, LoadTBox, TakeBack, Transactions
+from semmap.schemas.calls import Handler, by_verb
+from semmap.schemas.commands import Compact, Status
+from semmap.schemas.commits import Commit, Transaction
+from semmap.schemas.replies import SystemStatus
 
 _LOOK_S: Final = 0.3
 _MOST_LOOKS: Final = 100

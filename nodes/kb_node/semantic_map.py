@@ -9,25 +9,25 @@ from typing import Any, Final, NamedTuple, TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node import planning
-from nodes.kb_node.applier import Applier
-from nodes.kb_node.beliefs import UNCHANGED, Believed
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.documents.tbox import tbox_validation
-from nodes.kb_node.entities import entity_reading
-from nodes.kb_node.map_state import MapState
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.storage import closure_cache, conclusions_format
-from nodes.kb_node.storage.checkpoint_schedule import CheckpointSchedule
-from nodes.kb_node.storage.encoding import commit_encoding
-from nodes.kb_node.storage.journal import Checkpoint, Journal
-from nodes.kb_node.storage.journal.sqlite_file import NotWritten
-from nodes.kb_node.storage.journal.verification import verify
-from nodes.runtime import gc_pause
-from schemas import errors
-from schemas.commits import Commit, Transaction
-from schemas.entities import Entity
-from schemas.explanations import Triple
+from semmap.nodes.kb_node import planning
+from semmap.nodes.kb_node.applier import Applier
+from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents.tbox import tbox_validation
+from semmap.nodes.kb_node.entities import entity_reading
+from semmap.nodes.kb_node.map_state import MapState
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.storage import closure_cache, conclusions_format
+from semmap.nodes.kb_node.storage.checkpoint_schedule import CheckpointSchedule
+from semmap.nodes.kb_node.storage.encoding import commit_encoding
+from semmap.nodes.kb_node.storage.journal import Checkpoint, Journal
+from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
+from semmap.nodes.kb_node.storage.journal.verification import verify
+from semmap.nodes.runtime import gc_pause
+from semmap.schemas import errors
+from semmap.schemas.commits import Commit, Transaction
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Triple
 
 LARGE: Final = 1_000_000
 """Triples."""

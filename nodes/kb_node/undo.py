@@ -6,17 +6,17 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from itertools import chain
 
-from nodes.kb_node import preconditions
-from nodes.kb_node.documents.tbox import tbox_validation
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import Journal
-from nodes.runtime import gc_pause
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.bridge import TakeBack
-from schemas.commits import Commit, Transaction
-from schemas.entities import LESSER
-from schemas.explanations import Triple
+from semmap.nodes.kb_node import preconditions
+from semmap.nodes.kb_node.documents.tbox import tbox_validation
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.runtime import gc_pause
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.bridge import TakeBack
+from semmap.schemas.commits import Commit, Transaction
+from semmap.schemas.entities import LESSER
+from semmap.schemas.explanations import Triple
 
 
 def undo(

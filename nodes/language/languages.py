@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import functools
 
-from nodes.language import lexicon
-from nodes.language.understanding import italian
-from nodes.language.words import is_verb, lemma, split
-from schemas.language import Language
+from semmap.nodes.language import lexicon
+from semmap.nodes.language.understanding import italian
+from semmap.nodes.language.words import is_verb, lemma, split
+from semmap.schemas.language import Language
 
 
 def language_of(text: str) -> Language:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from nodes.language.lexicon import Lexicon
-from nodes.language.words import Word
+from semmap.nodes.language.lexicon import Lexicon
+from semmap.nodes.language.words import Word
 
 _NOMINAL = ("det", "num", "adj", "noun", "pron")
 

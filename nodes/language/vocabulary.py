@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from nodes.language.lexicon import Lexicon
-from nodes.language.words import based
+from semmap.nodes.language.lexicon import Lexicon
+from semmap.nodes.language.words import based
 
 BRANCHES: Final = (
     "Robot", "Person", "Location", "Door", "Window", "Connecting_Architecture", "Vessel", "Container",

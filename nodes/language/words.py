@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from nodes.language.lexicon import Lexicon
+from semmap.nodes.language.lexicon import Lexicon
 
 PartOfSpeech = Literal[
     "noun",

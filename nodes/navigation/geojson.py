@@ -10,7 +10,7 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from schemas.plans import Corners, Plan
+from semmap.schemas.plans import Corners, Plan
 
 
 def geojson(plan: Plan) -> str:

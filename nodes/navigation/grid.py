@@ -10,10 +10,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.geometry.polygons import Point
-from nodes.geometry.regions import Region
-from schemas import errors
-from schemas.plans import HeightRange, Plan, PlannedPlace, PlannedThing
+from semmap.nodes.geometry.polygons import Point
+from semmap.nodes.geometry.regions import Region
+from semmap.schemas import errors
+from semmap.schemas.plans import HeightRange, Plan, PlannedPlace, PlannedThing
 
 Cells = NDArray[np.int8]
 Mask = NDArray[np.bool_]

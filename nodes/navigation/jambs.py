@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from scipy import ndimage
 
-from nodes.navigation.grid import Mask
+from semmap.nodes.navigation.grid import Mask
 
 _THIN_M: Final = 0.35
 _THICK_M: Final = 0.55

@@ -8,12 +8,12 @@ from typing import Final
 
 import msgspec
 
-from nodes.geometry.polygons import Point
-from nodes.navigation.map_server import Described, Pixels, grid_of
-from nodes.navigation.rooms import Cut, cut
-from schemas import errors, scene_files
-from schemas.polygons import simple, wkt
-from schemas.scene_files import SceneFile
+from semmap.nodes.geometry.polygons import Point
+from semmap.nodes.navigation.map_server import Described, Pixels, grid_of
+from semmap.nodes.navigation.rooms import Cut, cut
+from semmap.schemas import errors, scene_files
+from semmap.schemas.polygons import simple, wkt
+from semmap.schemas.scene_files import SceneFile
 
 _DOOR_M: Final = (0.06, 2.08)
 """How thick and how high a door is."""

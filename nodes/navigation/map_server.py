@@ -17,8 +17,17 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.navigation.grid import FREE, MOST_CELLS, OCCUPIED, UNKNOWN, Cells, Frame, Mask, OccupancyGrid
-from schemas import errors
+from semmap.nodes.navigation.grid import (
+    FREE,
+    MOST_CELLS,
+    OCCUPIED,
+    UNKNOWN,
+    Cells,
+    Frame,
+    Mask,
+    OccupancyGrid,
+)
+from semmap.schemas import errors
 
 Pixels = NDArray[np.uint8]
 

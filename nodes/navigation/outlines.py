@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from nodes.navigation.grid import Mask
-from schemas.errors import BadRequest
-from schemas.polygons import Point, Polygon, signed_area, simple
+from semmap.nodes.navigation.grid import Mask
+from semmap.schemas.errors import BadRequest
+from semmap.schemas.polygons import Point, Polygon, signed_area, simple
 
 _OFF: Final = (1.1, 0.8, 0.5, 0.0)
 """By how many cells corners may be off that are left out; fewer where the border would cross itself."""

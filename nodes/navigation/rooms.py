@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from nodes.geometry.polygons import Point
-from nodes.navigation.grid import FREE, UNKNOWN, Mask, OccupancyGrid
-from nodes.navigation.jambs import Jambs
-from nodes.navigation.outlines import outline_of
-from schemas.polygons import Polygon
+from semmap.nodes.geometry.polygons import Point
+from semmap.nodes.navigation.grid import FREE, UNKNOWN, Mask, OccupancyGrid
+from semmap.nodes.navigation.jambs import Jambs
+from semmap.nodes.navigation.outlines import outline_of
+from semmap.schemas.polygons import Polygon
 
 Labels = NDArray[np.int32]
 

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from nodes.navigation.grid import Mask
+from semmap.nodes.navigation.grid import Mask
 
 Cell = tuple[int, int]
 """Row and column."""

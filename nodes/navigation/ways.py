@@ -11,12 +11,12 @@ from typing import Final
 
 import numpy as np
 
-from nodes.geometry.polygons import Point
-from nodes.navigation import grid as grids
-from nodes.navigation.grid import Frame, Mask
-from nodes.navigation.search import Cell, shortest, straightened
-from schemas import errors
-from schemas.plans import HeightRange, Plan, PlannedPlace, PlannedThing, Way
+from semmap.nodes.geometry.polygons import Point
+from semmap.nodes.navigation import grid as grids
+from semmap.nodes.navigation.grid import Frame, Mask
+from semmap.nodes.navigation.search import Cell, shortest, straightened
+from semmap.schemas import errors
+from semmap.schemas.plans import HeightRange, Plan, PlannedPlace, PlannedThing, Way
 
 _RESOLUTION_M: Final = 0.05
 _MOST_CELLS: Final = 400_000

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
-from nodes.bus import Network
+from semmap.nodes.bus import Network
 
 
 @dataclass(frozen=True)

@@ -12,13 +12,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.detector import Detector
-from nodes.perception_node.fitting.model_surfaces import ClassSurfaces
-from nodes.perception_node.fitting.things import all_fitted
-from nodes.perception_node.input.files.frame_folders import FileFrame, read_frame
-from nodes.perception_node.pipeline import Learnt, look
-from schemas.errors import SemmapError
-from schemas.perception import FrameRow, Observation, SeenInFrame
+from semmap.nodes.perception_node.detector import Detector
+from semmap.nodes.perception_node.fitting.model_surfaces import ClassSurfaces
+from semmap.nodes.perception_node.fitting.things import all_fitted
+from semmap.nodes.perception_node.input.files.frame_folders import FileFrame, read_frame
+from semmap.nodes.perception_node.pipeline import Learnt, look
+from semmap.schemas.errors import SemmapError
+from semmap.schemas.perception import FrameRow, Observation, SeenInFrame
 
 _AHEAD = 2
 """So many frames a core are under way at once."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from nodes.perception_node.input.files.mask_files import read_masks
-from nodes.perception_node.input.masks import Masks
-from nodes.perception_node.recognition.told_names import Labels
+from semmap.nodes.perception_node.input.files.mask_files import read_masks
+from semmap.nodes.perception_node.input.masks import Masks
+from semmap.nodes.perception_node.recognition.told_names import Labels
 
 
 @dataclass(frozen=True)

@@ -13,14 +13,14 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from nodes.perception_node.recognition import likeness
-from nodes.perception_node.recognition.lessons import Lesson, taught
-from nodes.perception_node.recognition.likeness import WIDTH
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
-from nodes.perception_node.showing import View
-from schemas.entities import Size
-from schemas.errors import BadFile, BadRequest, Refused, did_you_mean
-from schemas.lessons import LessonTold
+from semmap.nodes.perception_node.recognition import likeness
+from semmap.nodes.perception_node.recognition.lessons import Lesson, taught
+from semmap.nodes.perception_node.recognition.likeness import WIDTH
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
+from semmap.nodes.perception_node.showing import View
+from semmap.schemas.entities import Size
+from semmap.schemas.errors import BadFile, BadRequest, Refused, did_you_mean
+from semmap.schemas.lessons import LessonTold
 
 FILENAME = "lessons.npz"
 _MOST = 500

@@ -16,37 +16,37 @@ from typing import Any
 
 from msgspec import structs
 
-from nodes import bus
-from nodes.perception_node.config import PerceptionConfig
-from nodes.perception_node.fitting.fit import Fit, available
-from nodes.perception_node.fitting.model_surfaces import shipped as shipped_surfaces
-from nodes.perception_node.fitting.tracked import FitToModels, known_fit, known_of, request_fit
-from nodes.perception_node.fitting.worker import FitTo, FitWorker, Request
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.frame_worker import FrameWorker
-from nodes.perception_node.input.masks import Masks
-from nodes.perception_node.lesson_book import LessonBook
-from nodes.perception_node.pipeline import Look, shipped
-from nodes.perception_node.recognition.shipped_votes import Learnt
-from nodes.perception_node.recognition.told_names import Labels
-from nodes.perception_node.segmented_cloud import segmented_cloud
-from nodes.perception_node.teaching import Teaching
-from nodes.perception_node.tracking.association import associate, renamed
-from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy, hierarchy_of
-from nodes.perception_node.tracking.map_updates import subject_of
-from nodes.perception_node.tracking.occupancy import occupancy_in
-from nodes.perception_node.tracking.tracks import Tracks
-from nodes.perception_node.watching import Watching
-from nodes.runtime.following import Begun, Follower
-from nodes.runtime.loop import Node, open_node
-from nodes.runtime.map_replica import MapReplica
-from schemas import codec, errors, keys, wording
-from schemas.commands import Add, Command, LastSeen
-from schemas.commits import Effects
-from schemas.entities import Size
-from schemas.errors import UnknownName
-from schemas.perception import Observations
-from schemas.replies import Sighting
+from semmap.nodes import bus
+from semmap.nodes.perception_node.config import PerceptionConfig
+from semmap.nodes.perception_node.fitting.fit import Fit, available
+from semmap.nodes.perception_node.fitting.model_surfaces import shipped as shipped_surfaces
+from semmap.nodes.perception_node.fitting.tracked import FitToModels, known_fit, known_of, request_fit
+from semmap.nodes.perception_node.fitting.worker import FitTo, FitWorker, Request
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.frame_worker import FrameWorker
+from semmap.nodes.perception_node.input.masks import Masks
+from semmap.nodes.perception_node.lesson_book import LessonBook
+from semmap.nodes.perception_node.pipeline import Look, shipped
+from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+from semmap.nodes.perception_node.recognition.told_names import Labels
+from semmap.nodes.perception_node.segmented_cloud import segmented_cloud
+from semmap.nodes.perception_node.teaching import Teaching
+from semmap.nodes.perception_node.tracking.association import associate, renamed
+from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy, hierarchy_of
+from semmap.nodes.perception_node.tracking.map_updates import subject_of
+from semmap.nodes.perception_node.tracking.occupancy import occupancy_in
+from semmap.nodes.perception_node.tracking.tracks import Tracks
+from semmap.nodes.perception_node.watching import Watching
+from semmap.nodes.runtime.following import Begun, Follower
+from semmap.nodes.runtime.loop import Node, open_node
+from semmap.nodes.runtime.map_replica import MapReplica
+from semmap.schemas import codec, errors, keys, wording
+from semmap.schemas.commands import Add, Command, LastSeen
+from semmap.schemas.commits import Effects
+from semmap.schemas.entities import Size
+from semmap.schemas.errors import UnknownName
+from semmap.schemas.perception import Observations
+from semmap.schemas.replies import Sighting
 
 _COMPLAINT_S = 60.0
 """What is wrong is over when it was not heard of for so long."""

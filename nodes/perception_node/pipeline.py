@@ -9,26 +9,26 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.masks import Masks
-from nodes.perception_node.recognition.features import features_of
-from nodes.perception_node.recognition.pieces import put_together
-from nodes.perception_node.recognition.recognise import recognise
-from nodes.perception_node.recognition.shipped_votes import Learnt, shipped
-from nodes.perception_node.recognition.told_names import Labels
-from nodes.perception_node.recognition.vote import leaves
-from nodes.perception_node.views.bases import supports_of_things
-from nodes.perception_node.views.disputes import settled
-from nodes.perception_node.views.feet import supports_at_feet
-from nodes.perception_node.views.furniture_planes import with_what_hangs_below
-from nodes.perception_node.views.fusion import Member, fuse, held_for_one
-from nodes.perception_node.views.masked import with_masks
-from nodes.perception_node.views.merged_thing import Thing, thing_of
-from nodes.perception_node.views.remembered import Recalled, Remembered, completed
-from nodes.perception_node.views.segmented_view import Sight, see
-from nodes.perception_node.views.segments import Segment
-from nodes.perception_node.views.supports import Support
-from schemas.perception import CameraView, Observation, Observations
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.masks import Masks
+from semmap.nodes.perception_node.recognition.features import features_of
+from semmap.nodes.perception_node.recognition.pieces import put_together
+from semmap.nodes.perception_node.recognition.recognise import recognise
+from semmap.nodes.perception_node.recognition.shipped_votes import Learnt, shipped
+from semmap.nodes.perception_node.recognition.told_names import Labels
+from semmap.nodes.perception_node.recognition.vote import leaves
+from semmap.nodes.perception_node.views.bases import supports_of_things
+from semmap.nodes.perception_node.views.disputes import settled
+from semmap.nodes.perception_node.views.feet import supports_at_feet
+from semmap.nodes.perception_node.views.furniture_planes import with_what_hangs_below
+from semmap.nodes.perception_node.views.fusion import Member, fuse, held_for_one
+from semmap.nodes.perception_node.views.masked import with_masks
+from semmap.nodes.perception_node.views.merged_thing import Thing, thing_of
+from semmap.nodes.perception_node.views.remembered import Recalled, Remembered, completed
+from semmap.nodes.perception_node.views.segmented_view import Sight, see
+from semmap.nodes.perception_node.views.segments import Segment
+from semmap.nodes.perception_node.views.supports import Support
+from semmap.schemas.perception import CameraView, Observation, Observations
 
 __all__ = ["Learnt", "Look", "look", "look_at", "observe", "one_by_one", "parts_in", "shipped"]
 

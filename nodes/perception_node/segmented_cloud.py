@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.pipeline import Look
-from nodes.perception_node.views.segments import in_map
-from schemas.perception import SegmentedCloud
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.pipeline import Look
+from semmap.nodes.perception_node.views.segments import in_map
+from semmap.schemas.perception import SegmentedCloud
 
 MOST_POINTS = 20_000
 

@@ -9,22 +9,22 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.files.frame_folders import frames_in, read_frame
-from nodes.perception_node.pipeline import parts_in
-from nodes.perception_node.recognition.features import features_of
-from nodes.perception_node.recognition.likeness import views_of
-from nodes.perception_node.recognition.pieces import put_together
-from nodes.perception_node.recognition.shipped_votes import Learnt
-from nodes.perception_node.recognition.sides import completed, side_features
-from nodes.perception_node.recognition.standing_alone import is_compact
-from nodes.perception_node.recognition.vote import expected_sizes, leaves
-from nodes.perception_node.views.boxes import Numbers
-from nodes.perception_node.views.merged_thing import Thing, thing_of
-from nodes.perception_node.views.segmented_view import see
-from schemas import errors
-from schemas.entities import Size
-from schemas.wording import counted
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.files.frame_folders import frames_in, read_frame
+from semmap.nodes.perception_node.pipeline import parts_in
+from semmap.nodes.perception_node.recognition.features import features_of
+from semmap.nodes.perception_node.recognition.likeness import views_of
+from semmap.nodes.perception_node.recognition.pieces import put_together
+from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+from semmap.nodes.perception_node.recognition.sides import completed, side_features
+from semmap.nodes.perception_node.recognition.standing_alone import is_compact
+from semmap.nodes.perception_node.recognition.vote import expected_sizes, leaves
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.views.merged_thing import Thing, thing_of
+from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.schemas import errors
+from semmap.schemas.entities import Size
+from semmap.schemas.wording import counted
 
 BoxPx = tuple[int, int, int, int]
 """First column and row, and those after the last [pixel]."""

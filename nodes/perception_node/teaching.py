@@ -7,16 +7,16 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from nodes.perception_node.lesson_book import LessonBook
-from nodes.perception_node.recognition.shipped_votes import Learnt
-from nodes.perception_node.showing import View, view_of
-from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
-from nodes.perception_node.views.merged_thing import Thing
-from nodes.runtime.loop import Node
-from schemas import calls, errors, keys, wording
-from schemas.commands import Forget, Learn, Learned
-from schemas.lessons import LessonTold, ShownView
-from schemas.perception import Observation
+from semmap.nodes.perception_node.lesson_book import LessonBook
+from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+from semmap.nodes.perception_node.showing import View, view_of
+from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from semmap.nodes.perception_node.views.merged_thing import Thing
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import calls, errors, keys, wording
+from semmap.schemas.commands import Forget, Learn, Learned
+from semmap.schemas.lessons import LessonTold, ShownView
+from semmap.schemas.perception import Observation
 
 _NOW_S = 3.0
 """What was seen longer ago is not seen now."""

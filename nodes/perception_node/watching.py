@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.masks import Masks
-from nodes.perception_node.pipeline import Look, look
-from nodes.perception_node.recognition.shipped_votes import Learnt
-from nodes.perception_node.recognition.told_names import Labels
-from nodes.perception_node.views.remembered import Remembered
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.masks import Masks
+from semmap.nodes.perception_node.pipeline import Look, look
+from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+from semmap.nodes.perception_node.recognition.told_names import Labels
+from semmap.nodes.perception_node.views.remembered import Remembered
 
 
 class Watching:

@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
-from nodes.recorder.recorded_commits import RecordedCommit
-from schemas import wording
-from schemas.commits import Commit, abridged
+from semmap.nodes.recorder.recorded_commits import RecordedCommit
+from semmap.schemas import wording
+from semmap.schemas.commits import Commit, abridged
 
 _FIELDS: Final = ("id", "stamp_ns", "source", "agent", "reason")
 _SHOWN: Final = 80

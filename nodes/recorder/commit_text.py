@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from datetime import UTC, datetime
 
-from ontology import vocabulary as v
-from schemas import wording
-from schemas.commits import Commit
-from schemas.entities import Entity
-from schemas.explanations import Triple
+from semmap.ontology import vocabulary as v
+from semmap.schemas import wording
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Triple
 
 _LINES = 40
 """A page shows as many triples; the recording holds them all."""

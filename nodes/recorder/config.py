@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from nodes.bus import Network
-from nodes.recorder.retention import KEEP_ALL, Retention
+from semmap.nodes.bus import Network
+from semmap.nodes.recorder.retention import KEEP_ALL, Retention
 
 LIVE_VIEW = "127.0.0.1:9876"
 """Where Rerun viewers look for a live recording when nothing else is said."""

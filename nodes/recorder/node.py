@@ -7,24 +7,24 @@ import time
 from collections.abc import Collection
 from concurrent.futures import Future
 
-from nodes.drawing.scene_state import SceneState
-from nodes.drawing.surfaces import Kind
-from nodes.recorder.config import RecorderConfig
-from nodes.recorder.drawing.graph import graph_of
-from nodes.recorder.drawing.stage import Stage
-from nodes.recorder.growth import LOOK_S, Growth
-from nodes.recorder.perception_recorder import PerceptionRecorder
-from nodes.recorder.recording import Recording, free_to_serve, open_recording
-from nodes.recorder.retention import KEEP_ALL, Retention, recordings
-from nodes.recorder.state.map_relations import Relations, missed, subjects
-from nodes.runtime.following import Begun, Follower
-from nodes.runtime.loop import Node, open_node
-from nodes.runtime.map_replica import MapReplica
-from schemas import keys, wording
-from schemas.bridge import Recall, StarQuery
-from schemas.commits import MANY_ENTITIES, Commit, Star
-from schemas.live import LivePoses
-from schemas.scenes import Poses, Scene, SceneQuery, SurfaceQuery, Surfaces
+from semmap.nodes.drawing.scene_state import SceneState
+from semmap.nodes.drawing.surfaces import Kind
+from semmap.nodes.recorder.config import RecorderConfig
+from semmap.nodes.recorder.drawing.graph import graph_of
+from semmap.nodes.recorder.drawing.stage import Stage
+from semmap.nodes.recorder.growth import LOOK_S, Growth
+from semmap.nodes.recorder.perception_recorder import PerceptionRecorder
+from semmap.nodes.recorder.recording import Recording, free_to_serve, open_recording
+from semmap.nodes.recorder.retention import KEEP_ALL, Retention, recordings
+from semmap.nodes.recorder.state.map_relations import Relations, missed, subjects
+from semmap.nodes.runtime.following import Begun, Follower
+from semmap.nodes.runtime.loop import Node, open_node
+from semmap.nodes.runtime.map_replica import MapReplica
+from semmap.schemas import keys, wording
+from semmap.schemas.bridge import Recall, StarQuery
+from semmap.schemas.commits import MANY_ENTITIES, Commit, Star
+from semmap.schemas.live import LivePoses
+from semmap.schemas.scenes import Poses, Scene, SceneQuery, SurfaceQuery, Surfaces
 
 log = logging.getLogger(__name__)
 

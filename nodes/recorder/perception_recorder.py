@@ -5,13 +5,13 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 
-from nodes import bus
-from nodes.recorder.drawing import perception_archetypes as archetypes
-from nodes.recorder.recording import Recording
-from nodes.runtime.loop import Node
-from schemas import keys
-from schemas.perception import Observations, SegmentedCloud
-from schemas.scenes import CameraFrame
+from semmap.nodes import bus
+from semmap.nodes.recorder.drawing import perception_archetypes as archetypes
+from semmap.nodes.recorder.recording import Recording
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import keys
+from semmap.schemas.perception import Observations, SegmentedCloud
+from semmap.schemas.scenes import CameraFrame
 
 log = logging.getLogger(__name__)
 

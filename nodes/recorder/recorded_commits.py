@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from nodes.recorder.recording import COMMIT_FIELDS, COMMITS
-from nodes.recorder.whole_part import chunks, whole_part
-from schemas.explanations import Triple
+from semmap.nodes.recorder.recording import COMMIT_FIELDS, COMMITS
+from semmap.nodes.recorder.whole_part import chunks, whole_part
+from semmap.schemas.explanations import Triple
 
 log = logging.getLogger(__name__)
 

@@ -13,16 +13,16 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from nodes.drawing.figures import Figure
-from nodes.drawing.neighbourhood import Neighbourhood
-from nodes.recorder import commit_text
-from nodes.recorder.drawing.blueprint import bounds_of, layout
-from nodes.recorder.drawing.geometry import shape_of
-from nodes.recorder.drawing.graph import nodes_and_edges
-from schemas import errors
-from schemas.commits import Commit, PlaceChanges
-from schemas.entities import Pose
-from schemas.explanations import Triple
+from semmap.nodes.drawing.figures import Figure
+from semmap.nodes.drawing.neighbourhood import Neighbourhood
+from semmap.nodes.recorder import commit_text
+from semmap.nodes.recorder.drawing.blueprint import bounds_of, layout
+from semmap.nodes.recorder.drawing.geometry import shape_of
+from semmap.nodes.recorder.drawing.graph import nodes_and_edges
+from semmap.schemas import errors
+from semmap.schemas.commits import Commit, PlaceChanges
+from semmap.schemas.entities import Pose
+from semmap.schemas.explanations import Triple
 
 APPLICATION = "semmap"
 COMMITS = "commits"

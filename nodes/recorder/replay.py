@@ -8,8 +8,8 @@ import sysconfig
 from collections.abc import Callable
 from pathlib import Path
 
-from nodes.recorder.whole_part import whole_part
-from schemas import errors
+from semmap.nodes.recorder.whole_part import whole_part
+from semmap.schemas import errors
 
 
 def replay(path: Path, tell: Callable[[str], None] = lambda text: None) -> None:

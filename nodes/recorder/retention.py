@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from schemas.errors import BadRequest
+from semmap.schemas.errors import BadRequest
 
 PATTERN: Final = r"^[1-9][0-9]{0,5}(h|d|MB|GB)$"
 _SECONDS: Final = {"h": 3600, "d": 86400}

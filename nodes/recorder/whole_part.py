@@ -18,7 +18,7 @@ from typing import Any, Final, NamedTuple
 
 from rerun.chunk import RrdReader
 
-from schemas import errors
+from semmap.schemas import errors
 
 _SIGNATURE: Final = b"RRF"
 _FILE_HEADER_BYTES: Final = 12

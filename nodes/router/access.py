@@ -14,9 +14,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any, Final, Literal
 
-from nodes.identity.register import Member
-from schemas import keys, roles
-from schemas.roles import Role
+from semmap.nodes.identity.register import Member
+from semmap.schemas import keys, roles
+from semmap.schemas.roles import Role
 
 Flow = Literal["ingress", "egress"]
 

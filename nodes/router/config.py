@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from nodes.bus import Network
+from semmap.nodes.bus import Network
 
 
 @dataclass(frozen=True)

@@ -14,15 +14,15 @@ from datetime import UTC, datetime, timedelta
 
 from msgspec import structs
 
-from nodes import bus
-from nodes.identity.register import LiveRegister, Register
-from nodes.router.access import access_control
-from nodes.router.config import RouterConfig
-from nodes.router.silent_links import give_up_after
-from nodes.runtime.loop import Node
-from schemas import keys
-from schemas.errors import enumerated
-from schemas.wording import counted
+from semmap.nodes import bus
+from semmap.nodes.identity.register import LiveRegister, Register
+from semmap.nodes.router.access import access_control
+from semmap.nodes.router.config import RouterConfig
+from semmap.nodes.router.silent_links import give_up_after
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import keys
+from semmap.schemas.errors import enumerated
+from semmap.schemas.wording import counted
 
 _LOOK_S = 0.5
 _TELL_S = 60.0

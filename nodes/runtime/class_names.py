@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ontology.name_index import Ambiguous, Named, NameIndex
-from schemas.entities import ClassInfo
-from schemas.errors import UnknownClass, enumerated
+from semmap.ontology.name_index import Ambiguous, Named, NameIndex
+from semmap.schemas.entities import ClassInfo
+from semmap.schemas.errors import UnknownClass, enumerated
 
 
 class AmbiguousClass(UnknownClass):

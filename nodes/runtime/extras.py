@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from importlib.util import find_spec
 
-from schemas import errors
+from semmap.schemas import errors
 
 MODULES: Mapping[str, tuple[str, ...]] = {
     "kb": (

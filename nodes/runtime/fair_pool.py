@@ -7,8 +7,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from typing import Any, Final, TypeVar
 
-from nodes.runtime.fair_queue import FairQueue
-from schemas import errors
+from semmap.nodes.runtime.fair_queue import FairQueue
+from semmap.schemas import errors
 
 R = TypeVar("R")
 

@@ -11,14 +11,14 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any, Generic, NamedTuple, TypeVar
 
-from nodes.runtime.loop import Node
-from nodes.runtime.map_replica import MapReplica
-from schemas import errors, keys
-from schemas.calls import Call
-from schemas.commands import Classes
-from schemas.commits import Commit, Effects, Snapshot
-from schemas.entities import ClassInfo
-from schemas.health import Health
+from semmap.nodes.runtime.loop import Node
+from semmap.nodes.runtime.map_replica import MapReplica
+from semmap.schemas import errors, keys
+from semmap.schemas.calls import Call
+from semmap.schemas.commands import Classes
+from semmap.schemas.commits import Commit, Effects, Snapshot
+from semmap.schemas.entities import ClassInfo
+from semmap.schemas.health import Health
 
 _LOOK_S = 0.2
 _BEHIND_S = 3.0

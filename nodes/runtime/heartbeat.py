@@ -9,10 +9,10 @@ import time
 from collections.abc import Callable
 from typing import Literal
 
-from nodes import bus
-from nodes.runtime.notify import notify
-from schemas import codec, keys
-from schemas.health import Health
+from semmap.nodes import bus
+from semmap.nodes.runtime.notify import notify
+from semmap.schemas import codec, keys
+from semmap.schemas.health import Health
 
 log = logging.getLogger(__name__)
 

@@ -23,11 +23,11 @@ from functools import partial
 from itertools import count
 from typing import Any, TypeVar
 
-from nodes import bus
-from nodes.runtime.fair_queue import FairQueue
-from nodes.runtime.heartbeat import Heartbeat
-from schemas import errors, keys
-from schemas.calls import Call, Handler, Relay, largest, reply_type
+from semmap.nodes import bus
+from semmap.nodes.runtime.fair_queue import FairQueue
+from semmap.nodes.runtime.heartbeat import Heartbeat
+from semmap.schemas import errors, keys
+from semmap.schemas.calls import Call, Handler, Relay, largest, reply_type
 
 log = logging.getLogger(__name__)
 

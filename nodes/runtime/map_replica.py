@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Final, Generic, TypeVar
 
-from nodes.runtime.shared_parts import SharedParts
-from schemas import errors
-from schemas.bridge import SnapshotQuery
-from schemas.commits import Commit, Effects, Snapshot
-from schemas.entities import Entity
+from semmap.nodes.runtime.shared_parts import SharedParts
+from semmap.schemas import errors
+from semmap.schemas.bridge import SnapshotQuery
+from semmap.schemas.commits import Commit, Effects, Snapshot
+from semmap.schemas.entities import Entity
 
 PAGE: Final = 5000
 """Entities in a page of a snapshot: some megabytes, and some milliseconds of the knowledge base."""

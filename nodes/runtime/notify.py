@@ -10,8 +10,8 @@ import contextlib
 import os
 import socket
 
-from schemas import codec
-from schemas.health import Health
+from semmap.schemas import codec
+from semmap.schemas.health import Health
 
 NOTIFY_VARIABLE = "SEMMAP_NOTIFY"
 """The path of the supervisor's datagram socket; unset where nobody supervises."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import Final
 
-from schemas.errors import BadRequest
+from semmap.schemas.errors import BadRequest
 
 LONGEST_S: Final = 3.0
 """How long one waits for the next commit at most: nobody watches a night pass."""

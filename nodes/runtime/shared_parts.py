@@ -6,7 +6,7 @@ from typing import Final
 
 from msgspec.structs import force_setattr as _set
 
-from schemas.entities import IDENTITY, Entity, Provenance
+from semmap.schemas.entities import IDENTITY, Entity, Provenance
 
 _MOST: Final = 10_000
 """Texts, or provenances, remembered; then it begins anew."""

@@ -6,8 +6,8 @@ import re
 import secrets
 from typing import Final
 
-from schemas import errors
-from schemas.endpoints import WEB_TOKEN_VARIABLE
+from semmap.schemas import errors
+from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
 
 SHORTEST: Final = 16
 

@@ -10,10 +10,10 @@ import numpy as np
 from msgspec import structs
 from numpy.typing import NDArray
 
-from nodes.sim_node.models.parts import Vec3, rotation_matrix
-from schemas.entities import Pose
-from schemas.joints import Joint
-from schemas.scenes import Body
+from semmap.nodes.sim_node.models.parts import Vec3, rotation_matrix
+from semmap.schemas.entities import Pose
+from semmap.schemas.joints import Joint
+from semmap.schemas.scenes import Body
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from nodes.bus import RESTART_S, Network
+from semmap.nodes.bus import RESTART_S, Network
 
 
 @dataclass(frozen=True)

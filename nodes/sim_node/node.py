@@ -10,22 +10,22 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 from msgspec import structs
 
-from nodes import bus
-from nodes.runtime.class_names import ClassNames
-from nodes.runtime.loop import Node, open_node
-from nodes.sim_node.config import SimConfig
-from nodes.sim_node.models.sources import Models
-from nodes.sim_node.robots.courses import Outcome
-from nodes.sim_node.vision.studio import Plane, Still, Studio
-from nodes.sim_node.vision.view import FROM_ABOVE, View, camera_view, overview
-from nodes.sim_node.window import Window
-from nodes.sim_node.world_file import names_classes, open_world
-from schemas import codec, errors, keys, wording
-from schemas.calls import by_verb
-from schemas.commands import Classes, Pause, Reset, StepOnce
-from schemas.plans import Outline, WallsQuery
-from schemas.replies import Done
-from schemas.scenes import (
+from semmap.nodes import bus
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.nodes.runtime.loop import Node, open_node
+from semmap.nodes.sim_node.config import SimConfig
+from semmap.nodes.sim_node.models.sources import Models
+from semmap.nodes.sim_node.robots.courses import Outcome
+from semmap.nodes.sim_node.vision.studio import Plane, Still, Studio
+from semmap.nodes.sim_node.vision.view import FROM_ABOVE, View, camera_view, overview
+from semmap.nodes.sim_node.window import Window
+from semmap.nodes.sim_node.world_file import names_classes, open_world
+from semmap.schemas import codec, errors, keys, wording
+from semmap.schemas.calls import by_verb
+from semmap.schemas.commands import Classes, Pause, Reset, StepOnce
+from semmap.schemas.plans import Outline, WallsQuery
+from semmap.schemas.replies import Done
+from semmap.schemas.scenes import (
     BodiesMoved,
     CameraPose,
     CamerasQuery,

@@ -7,14 +7,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import numpy as np
 from msgspec import structs
 
-from nodes.sim_node.bodies import BodyRecord
-from nodes.sim_node.models.library import Model, ModelError
-from nodes.sim_node.models.parts import Vec3
-from nodes.sim_node.physics import build
-from nodes.sim_node.physics.grips import chain
-from schemas.entities import Pose
-from schemas.joints import Joint, stated
-from schemas.scenes import BodyOrder, GripOrder, JointOrder, Placement
+from semmap.nodes.sim_node.bodies import BodyRecord
+from semmap.nodes.sim_node.models.library import Model, ModelError
+from semmap.nodes.sim_node.models.parts import Vec3
+from semmap.nodes.sim_node.physics import build
+from semmap.nodes.sim_node.physics.grips import chain
+from semmap.schemas.entities import Pose
+from semmap.schemas.joints import Joint, stated
+from semmap.schemas.scenes import BodyOrder, GripOrder, JointOrder, Placement
 
 REACH_M = 1000.0
 """No body is put farther than this from the origin."""

@@ -8,8 +8,8 @@ import warnings
 import mujoco
 import numpy as np
 
-from nodes.sim_node.world import World
-from schemas.errors import BadRequest
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.errors import BadRequest
 
 _LABEL_M = 0.3
 _LABEL_LENGTH = 99  # what MuJoCo has room for

@@ -12,23 +12,23 @@ import mujoco
 import numpy as np
 from msgspec import structs
 
-from nodes.sim_node import orders
-from nodes.sim_node.bodies import Floats, Ints, pose_of
-from nodes.sim_node.models.facets import surface_of
-from nodes.sim_node.models.library import build as library_model
-from nodes.sim_node.models.world_surface import body_surface, world_surface
-from nodes.sim_node.orders import ModelSource
-from nodes.sim_node.physics import base_scene, build
-from nodes.sim_node.physics.engine import Engine
-from nodes.sim_node.physics.walls import walls
-from nodes.sim_node.placement.settling import Settling
-from nodes.sim_node.robots.courses import ACTUATORS, Outcome, actuators
-from nodes.sim_node.vision.view import bulk, camera_names, optical_pose, overview
-from schemas import wording
-from schemas.entities import Pose, relative
-from schemas.errors import Refused
-from schemas.plans import Outline
-from schemas.scenes import (
+from semmap.nodes.sim_node import orders
+from semmap.nodes.sim_node.bodies import Floats, Ints, pose_of
+from semmap.nodes.sim_node.models.facets import surface_of
+from semmap.nodes.sim_node.models.library import build as library_model
+from semmap.nodes.sim_node.models.world_surface import body_surface, world_surface
+from semmap.nodes.sim_node.orders import ModelSource
+from semmap.nodes.sim_node.physics import base_scene, build
+from semmap.nodes.sim_node.physics.engine import Engine
+from semmap.nodes.sim_node.physics.walls import walls
+from semmap.nodes.sim_node.placement.settling import Settling
+from semmap.nodes.sim_node.robots.courses import ACTUATORS, Outcome, actuators
+from semmap.nodes.sim_node.vision.view import bulk, camera_names, optical_pose, overview
+from semmap.schemas import wording
+from semmap.schemas.entities import Pose, relative
+from semmap.schemas.errors import Refused
+from semmap.schemas.plans import Outline
+from semmap.schemas.scenes import (
     UPRIGHT,
     BodiesMoved,
     Body,

@@ -10,19 +10,19 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from nodes.runtime.class_names import ClassNames
-from nodes.sim_node.config import RobotConfig
-from nodes.sim_node.models.parts import rotation_matrix
-from nodes.sim_node.orders import ModelSource
-from nodes.sim_node.physics import base_scene
-from nodes.sim_node.physics.build import aside
-from nodes.sim_node.robots.robot import put
-from nodes.sim_node.vision.view import View, look_at, pinhole
-from nodes.sim_node.world import World
-from schemas import codec, scene_files
-from schemas.entities import free_name
-from schemas.errors import BadFile, UnknownClass
-from schemas.scenes import BodyOrder
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.nodes.sim_node.config import RobotConfig
+from semmap.nodes.sim_node.models.parts import rotation_matrix
+from semmap.nodes.sim_node.orders import ModelSource
+from semmap.nodes.sim_node.physics import base_scene
+from semmap.nodes.sim_node.physics.build import aside
+from semmap.nodes.sim_node.robots.robot import put
+from semmap.nodes.sim_node.vision.view import View, look_at, pinhole
+from semmap.nodes.sim_node.world import World
+from semmap.schemas import codec, scene_files
+from semmap.schemas.entities import free_name
+from semmap.schemas.errors import BadFile, UnknownClass
+from semmap.schemas.scenes import BodyOrder
 
 _PICTURE = (4, 3)
 """How wide and high what a camera sees may be thought to be; only the angle counts here."""

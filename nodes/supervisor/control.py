@@ -21,12 +21,12 @@ from typing import Any
 
 from supervisor.xmlrpc import SupervisorTransport
 
-from nodes.runtime.notify import NOTIFY_VARIABLE
-from nodes.supervisor import orphans, registry
-from nodes.supervisor.privacy import UMASK, make_private
-from nodes.supervisor.settings import SETTINGS, Settings
-from schemas import codec, errors
-from schemas.endpoints import WEB_TOKEN_VARIABLE
+from semmap.nodes.runtime.notify import NOTIFY_VARIABLE
+from semmap.nodes.supervisor import orphans, registry
+from semmap.nodes.supervisor.privacy import UMASK, make_private
+from semmap.nodes.supervisor.settings import SETTINGS, Settings
+from semmap.schemas import codec, errors
+from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
 
 GROUP = "semmap"
 _SOCKET = f"semmap-{os.getuid()}-{{}}{{}}"
@@ -79,7 +79,15 @@ class Supervisor:
         self.logs.mkdir(parents=True, exist_ok=True)
         self._settings_path.write_bytes(codec.encode_json(settings))
         self._conf_path.write_text(self._conf(settings))
-        command = [sys.executable, "-P", "-m", "nodes.supervisor.daemon", "-n", "-c", str(self._conf_path)]
+        command = [
+            sys.executable,
+            "-P",
+            "-m",
+            "semmap.nodes.supervisor.daemon",
+            "-n",
+            "-c",
+            str(self._conf_path),
+        ]
         environment = {**os.environ, NOTIFY_VARIABLE: str(self.notices)}
         if web_token:
             environment[WEB_TOKEN_VARIABLE] = web_token
@@ -105,7 +113,14 @@ class Supervisor:
             self._settings_path.write_bytes(codec.encode_json(settings))
         except OSError as error:
             raise errors.BadFile(f"cannot store data in {self.data}: {error.strerror}") from None
-        command = [sys.executable, "-P", "-m", "nodes.supervisor.launch", "seed", str(self._settings_path)]
+        command = [
+            sys.executable,
+            "-P",
+            "-m",
+            "semmap.nodes.supervisor.launch",
+            "seed",
+            str(self._settings_path),
+        ]
         pipe = subprocess.PIPE
         with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, umask=UMASK) as run:
             begun_s = time.monotonic()
@@ -209,7 +224,14 @@ class Supervisor:
         }
         conf[f"group:{GROUP}"] = {"programs": ",".join(settings.nodes)}
         for priority, node in enumerate(settings.nodes, start=1):
-            words = [sys.executable, "-P", "-m", "nodes.supervisor.launch", node, str(self._settings_path)]
+            words = [
+                sys.executable,
+                "-P",
+                "-m",
+                "semmap.nodes.supervisor.launch",
+                node,
+                str(self._settings_path),
+            ]
             conf[f"program:{node}"] = {
                 "command": " ".join(f'"{word}"' for word in words).replace("%", "%%"),
                 "priority": str(priority),

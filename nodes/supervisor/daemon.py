@@ -1,10 +1,10 @@
-"""supervisord that ends when `semmap up` does: `python -m nodes.supervisor.daemon -n -c CONF`."""
+"""supervisord that ends when `semmap up` does: `python -m semmap.nodes.supervisor.daemon -n -c CONF`."""
 
 from __future__ import annotations
 
 from supervisor.supervisord import main
 
-from nodes.supervisor.orphans import end_when_orphaned
+from semmap.nodes.supervisor.orphans import end_when_orphaned
 
 if __name__ == "__main__":
     end_when_orphaned()

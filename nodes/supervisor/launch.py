@@ -1,4 +1,4 @@
-"""Runs one node in this process: `python -m nodes.supervisor.launch NODE SETTINGS`.
+"""Runs one node in this process: `python -m semmap.nodes.supervisor.launch NODE SETTINGS`.
 
 `seed` in place of a node makes the journal and ends.
 """
@@ -14,18 +14,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nodes.bus import FOREVER_S, RESTART_S
-from nodes.supervisor.orphans import end_when_orphaned
-from nodes.supervisor.privacy import UMASK
-from nodes.supervisor.settings import Settings
-from ontology import EMPTY_WORLD, FLAT_WORLD
-from ontology.model_shapes import add_own
-from schemas import codec, errors
-from schemas.endpoints import WEB_TOKEN_VARIABLE
-from schemas.keys import ROUTER, WEB
+from semmap.nodes.bus import FOREVER_S, RESTART_S
+from semmap.nodes.supervisor.orphans import end_when_orphaned
+from semmap.nodes.supervisor.privacy import UMASK
+from semmap.nodes.supervisor.settings import Settings
+from semmap.ontology import EMPTY_WORLD, FLAT_WORLD
+from semmap.ontology.model_shapes import add_own
+from semmap.schemas import codec, errors
+from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
+from semmap.schemas.keys import ROUTER, WEB
 
 if TYPE_CHECKING:
-    from nodes.sim_node.config import RobotConfig
+    from semmap.nodes.sim_node.config import RobotConfig
 
 _RECORDED = "SEMMAP_RECORDED"
 """Handed from a recorder to itself: the last commit that is in its file."""
@@ -43,20 +43,20 @@ def seed(settings: Settings) -> None:
 
     Without the knowledge base there is no journal, and nothing is printed.
     """
-    from nodes.kb_node.storage.existing_map import existing_map
+    from semmap.nodes.kb_node.storage.existing_map import existing_map
 
     if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
-        from nodes.sim_node.models.sources import Models
-        from nodes.sim_node.world_file import require_world
+        from semmap.nodes.sim_node.models.sources import Models
+        from semmap.nodes.sim_node.world_file import require_world
 
         models = Models(Path(settings.models) if settings.models else None, Path(settings.data))
         require_world(Path(settings.world), models, _robot(settings))
     elif settings.sim and settings.robot is not None:
-        from nodes.sim_node.robots.robot import read
+        from semmap.nodes.sim_node.robots.robot import read
 
         read(Path(settings.robot))
     if settings.models is not None or _own_shapes(settings).is_file():
-        from nodes.sim_node.models.write_shapes import write_own
+        from semmap.nodes.sim_node.models.write_shapes import write_own
 
         Path(settings.data).mkdir(parents=True, exist_ok=True)
         write_own(None if settings.models is None else Path(settings.models), _own_shapes(settings))
@@ -68,8 +68,8 @@ def seed(settings: Settings) -> None:
     if not settings.fresh and (told := existing_map(Path(settings.data))) is not None:
         print(told)
         return
-    from nodes.coordinator.files.content import kind_of
-    from nodes.kb_node.storage.seed import seed as seed_journal
+    from semmap.nodes.coordinator.files.content import kind_of
+    from semmap.nodes.kb_node.storage.seed import seed as seed_journal
 
     abox = Path(settings.abox) if settings.abox is not None else None
     if abox is not None and kind_of(abox.read_bytes(), abox.name) != "abox":
@@ -93,8 +93,8 @@ def _own_shapes(settings: Settings) -> Path:
 
 
 def _kb_node(settings: Settings) -> None:
-    from nodes.kb_node.config import KbConfig, Replay
-    from nodes.kb_node.node import run
+    from semmap.nodes.kb_node.config import KbConfig, Replay
+    from semmap.nodes.kb_node.node import run
 
     add_own(_own_shapes(settings))
     replay = settings.replay
@@ -110,8 +110,8 @@ def _kb_node(settings: Settings) -> None:
 
 
 def _coordinator(settings: Settings) -> None:
-    from nodes.coordinator.config import CoordinatorConfig, LiveRules, Thresholds
-    from nodes.coordinator.node import run
+    from semmap.nodes.coordinator.config import CoordinatorConfig, LiveRules, Thresholds
+    from semmap.nodes.coordinator.node import run
 
     add_own(_own_shapes(settings))
     thresholds = Thresholds(distance_m=settings.threshold_m, angle_rad=settings.angle_threshold_rad)
@@ -122,7 +122,7 @@ def _coordinator(settings: Settings) -> None:
 
 def _robot(settings: Settings) -> RobotConfig | None:
     """The robot of the world, if there is one."""
-    from nodes.sim_node.config import RobotConfig
+    from semmap.nodes.sim_node.config import RobotConfig
 
     if settings.robot is None:
         return None
@@ -131,8 +131,8 @@ def _robot(settings: Settings) -> RobotConfig | None:
 
 
 def _sim_node(settings: Settings) -> None:
-    from nodes.sim_node.config import CameraConfig, SimConfig
-    from nodes.sim_node.node import run
+    from semmap.nodes.sim_node.config import CameraConfig, SimConfig
+    from semmap.nodes.sim_node.node import run
 
     width, height = settings.camera_size
     cameras = CameraConfig(
@@ -148,9 +148,9 @@ def _sim_node(settings: Settings) -> None:
 
 
 def _perception_node(settings: Settings) -> None:
-    from nodes.perception_node.config import PerceptionConfig, TrackingConfig
-    from nodes.perception_node.lesson_book import FILENAME
-    from nodes.perception_node.node import run
+    from semmap.nodes.perception_node.config import PerceptionConfig, TrackingConfig
+    from semmap.nodes.perception_node.lesson_book import FILENAME
+    from semmap.nodes.perception_node.node import run
 
     tracking = TrackingConfig(when_gone=settings.when_gone)
     lessons = Path(settings.data) / FILENAME
@@ -158,9 +158,9 @@ def _perception_node(settings: Settings) -> None:
 
 
 def _recorder(settings: Settings) -> None:
-    from nodes.recorder.config import RecorderConfig
-    from nodes.recorder.node import run
-    from nodes.recorder.retention import KEEP_ALL, Retention
+    from semmap.nodes.recorder.config import RecorderConfig
+    from semmap.nodes.recorder.node import run
+    from semmap.nodes.recorder.retention import KEEP_ALL, Retention
 
     started = time.strftime("%Y-%m-%dT%H-%M-%S")
     path = Path(settings.data) / "recordings" / f"{started}.rrd"
@@ -178,7 +178,7 @@ def _recorder(settings: Settings) -> None:
 
 
 def _web(settings: Settings) -> None:
-    from nodes.extern.web.server import WebConfig, run
+    from semmap.nodes.extern.web.server import WebConfig, run
 
     token = os.environ.get(WEB_TOKEN_VARIABLE, "")
     run(WebConfig(network=settings.network(WEB), port=settings.web_port, token=token), tell=_log_address)
@@ -190,8 +190,8 @@ def _log_address(address: str) -> None:
 
 
 def _router(settings: Settings) -> None:
-    from nodes.router.config import RouterConfig
-    from nodes.router.node import run
+    from semmap.nodes.router.config import RouterConfig
+    from semmap.nodes.router.node import run
 
     keys = None if settings.secure is None else Path(settings.secure)
     run(RouterConfig(keys, settings.network(ROUTER), settings.namespace))

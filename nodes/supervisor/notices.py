@@ -8,8 +8,8 @@ import socket
 from collections.abc import Iterator
 from pathlib import Path
 
-from schemas import codec, errors
-from schemas.health import Health
+from semmap.schemas import codec, errors
+from semmap.schemas.health import Health
 
 _MOST_BYTES = 1 << 16
 

@@ -44,7 +44,7 @@ def processes_with(path: Path) -> list[psutil.Process]:
         with contextlib.suppress(psutil.Error):
             if process.uids().real == os.getuid() and process.pid != os.getpid():
                 words = process.cmdline()
-                if str(path) in words and any(word.startswith("nodes.supervisor.") for word in words):
+                if str(path) in words and any(word.startswith("semmap.nodes.supervisor.") for word in words):
                     found.append(process)
     return found
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from schemas import errors
-from schemas.keys import NODES, ROUTER
+from semmap.schemas import errors
+from semmap.schemas.keys import NODES, ROUTER
 
 PARTS: Final[Mapping[str, str]] = {node.removesuffix("_node"): node for node in (*NODES, ROUTER)}
 """What a node is called after `semmap up --only`, and its name on the wire; that one is taken, too."""

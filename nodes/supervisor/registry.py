@@ -14,8 +14,8 @@ from pathlib import Path
 
 import msgspec
 
-from schemas import codec
-from schemas.errors import Refused
+from semmap.schemas import codec
+from semmap.schemas.errors import Refused
 
 _FILE = "systems.json"
 _LOCK = "systems.lock"

@@ -10,12 +10,12 @@ from typing import Annotated, Literal
 import platformdirs
 from msgspec import Meta, Struct, structs
 
-from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network, is_local
-from nodes.identity import Identity
-from schemas.endpoints import ALL_ROBOTS, robot_name
-from schemas.entities import Angle, Metres, Name
-from schemas.errors import BadRequest
-from schemas.keys import ROUTER, WEB
+from semmap.nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network, is_local
+from semmap.nodes.identity import Identity
+from semmap.schemas.endpoints import ALL_ROBOTS, robot_name
+from semmap.schemas.entities import Angle, Metres, Name
+from semmap.schemas.errors import BadRequest
+from semmap.schemas.keys import ROUTER, WEB
 
 _LIMIT = re.compile("[1-9][0-9]{0,5}(h|d|MB|GB)")
 ANY_PORT = "tcp/127.0.0.1:0"

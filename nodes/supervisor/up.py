@@ -18,22 +18,22 @@ from typing import Any
 
 from msgspec import structs
 
-from nodes import bus
-from nodes.identity import SUPERVISOR, Identity
-from nodes.runtime.web_token import new_token
-from nodes.supervisor import presence, registry
-from nodes.supervisor.control import LONGEST_STOP_S, SILENT_S, Supervisor
-from nodes.supervisor.notices import Notices
-from nodes.supervisor.settings import Replay, Settings
-from nodes.supervisor.watchdog import Watchdog
-from ontology import EMPTY_WORLD, FLAT_WORLD
-from ontology.model_shapes import varieties_of
-from schemas import errors, keys
-from schemas.calls import reply_type
-from schemas.commands import Classes, Get, List, Status
-from schemas.endpoints import WEB_TOKEN_VARIABLE
-from schemas.entities import Entity
-from schemas.health import Health
+from semmap.nodes import bus
+from semmap.nodes.identity import SUPERVISOR, Identity
+from semmap.nodes.runtime.web_token import new_token
+from semmap.nodes.supervisor import presence, registry
+from semmap.nodes.supervisor.control import LONGEST_STOP_S, SILENT_S, Supervisor
+from semmap.nodes.supervisor.notices import Notices
+from semmap.nodes.supervisor.settings import Replay, Settings
+from semmap.nodes.supervisor.watchdog import Watchdog
+from semmap.ontology import EMPTY_WORLD, FLAT_WORLD
+from semmap.ontology.model_shapes import varieties_of
+from semmap.schemas import errors, keys
+from semmap.schemas.calls import reply_type
+from semmap.schemas.commands import Classes, Get, List, Status
+from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
+from semmap.schemas.entities import Entity
+from semmap.schemas.health import Health
 
 _START_TIMEOUT_S = 120.0
 _ANSWERS_WITHIN_S = 5.0
@@ -305,8 +305,8 @@ class _Foreground:
         """Say which of the files in `--models` are nobody's model, and what models could not bring along."""
         if self._settings.models is None or not self._settings.sim:
             return
-        from nodes.sim_node.models.sources import passed_over  # and with it MuJoCo
-        from nodes.sim_node.models.write_shapes import own_notes
+        from semmap.nodes.sim_node.models.sources import passed_over  # and with it MuJoCo
+        from semmap.nodes.sim_node.models.write_shapes import own_notes
 
         folder = Path(self._settings.models)
         with contextlib.suppress(errors.SemmapError, OSError):

@@ -7,14 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.fitting.model_surfaces import SHIPPED, ModelSurface, save
-from nodes.sim_node.models.facets import facets
-from nodes.sim_node.models.library import Model, build
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.parts import Floats, Part, Role, Shape, rotation_matrix
-from nodes.sim_node.models.variety_table import KINDS
-from nodes.training.taxonomy import class_of_models
-from ontology.model_shapes import varieties_of
+from semmap.nodes.perception_node.fitting.model_surfaces import SHIPPED, ModelSurface, save
+from semmap.nodes.sim_node.models.facets import facets
+from semmap.nodes.sim_node.models.library import Model, build
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.models.parts import Floats, Part, Role, Shape, rotation_matrix
+from semmap.nodes.sim_node.models.variety_table import KINDS
+from semmap.nodes.training.taxonomy import class_of_models
+from semmap.ontology.model_shapes import varieties_of
 
 POINTS = 450
 _TRIES = 8

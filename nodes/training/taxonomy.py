@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rdflib import OWL, RDF, RDFS, Graph, URIRef
 
-from ontology import vocabulary as v
+from semmap.ontology import vocabulary as v
 
 HOUSEHOLD = Path(v.__file__).with_name("household.ttl")
 _TOP = {"Physical_Thing", "Thing"}

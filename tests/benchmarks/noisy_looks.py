@@ -10,14 +10,14 @@ import random
 from msgspec import structs
 
 from benchmarks.relations.situations import TABLE, on_table, place, tall, thing
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
-from nodes.perception_node.tracking.map_updates import additions, update_of
-from nodes.perception_node.tracking.tracks import Track
-from schemas.commands import Update
-from schemas.entities import Entity, Pose, Provenance
-from schemas.perception import Observation
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.perception_node.config import TrackingConfig
+from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from semmap.nodes.perception_node.tracking.map_updates import additions, update_of
+from semmap.nodes.perception_node.tracking.tracks import Track
+from semmap.schemas.commands import Update
+from semmap.schemas.entities import Entity, Pose, Provenance
+from semmap.schemas.perception import Observation
 
 LOOKS_A_SECOND = 2.0
 POSITION_M, SIZE_M = 0.004, 0.003

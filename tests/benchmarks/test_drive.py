@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from benchmarks.sim.drive import Score, score, stops
-from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
-from schemas.entities import Entity, Pose, Provenance
+from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from semmap.schemas.entities import Entity, Pose, Provenance
 
 KNOWN = ClassHierarchy({"Chair": frozenset({"Furniture"}), "Armchair": frozenset({"Chair", "Furniture"})})
 SAID = Provenance(commit=1, stamp_ns=0, source="operator")

@@ -8,13 +8,13 @@ import pytest
 from benchmarks.language import __main__ as language
 from benchmarks.language import ablations, errors, trials
 from benchmarks.language.scoring import scores
-from nodes.language import lexicon
-from nodes.language.understanding import predicates, roles
-from nodes.language.understanding.grounding import Thing
-from nodes.language.understanding.sentence import sentence
-from nodes.training.language import corpus
-from nodes.training.language.corpus import Example, Filled, Role
-from schemas.language import Argument, Frame, Grounded, Understood
+from semmap.nodes.language import lexicon
+from semmap.nodes.language.understanding import predicates, roles
+from semmap.nodes.language.understanding.grounding import Thing
+from semmap.nodes.language.understanding.sentence import sentence
+from semmap.nodes.training.language import corpus
+from semmap.nodes.training.language.corpus import Example, Filled, Role
+from semmap.schemas.language import Argument, Frame, Grounded, Understood
 from tests.data import data_folder
 
 WORDS = ("take", "the", "book", "to", "me")

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from benchmarks.perception.recorded import Counts, group_of, score
-from nodes.perception_node.input.cloud import Cloud
-from nodes.training.segmentation.recorded_scenes import Scene, mirrored
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.training.segmentation.recorded_scenes import Scene, mirrored
 from tests.data import data_folder
 
 RNG = np.random.default_rng(0)

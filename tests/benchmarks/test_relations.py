@@ -4,10 +4,10 @@ from benchmarks.relations.rightness import Counts, against_contacts, flat, insid
 from benchmarks.relations.speed import rooms
 from benchmarks.relations.watched import at_rest
 from benchmarks.table import Row, as_json
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
-from ontology import FLAT_TTL
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
+from semmap.ontology import FLAT_TTL
 from tests.benchmarks.noisy_looks import gone
 
 

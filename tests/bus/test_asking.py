@@ -10,9 +10,9 @@ import time
 import psutil
 import pytest
 
-from nodes import bus
-from nodes.bus import asking
-from schemas import commands, errors, keys, replies
+from semmap.nodes import bus
+from semmap.nodes.bus import asking
+from semmap.schemas import commands, errors, keys, replies
 from tests.bus.conftest import PREFIX, answer
 from tests.conftest import PATIENCE_S, until
 from tests.waiting import until_served
@@ -52,7 +52,7 @@ def test_one_who_does_not_answer_in_time_is_no_answer(pair):
 
 def test_what_is_quick_is_asked_anew_after_a_while_and_nothing_else(pair, monkeypatch):
     server, client = pair
-    monkeypatch.setattr("nodes.bus.asking._ROUND_S", 0.3)
+    monkeypatch.setattr("semmap.nodes.bus.asking._ROUND_S", 0.3)
     asked = []
 
     def receive(request):
@@ -72,7 +72,7 @@ def test_what_is_quick_is_asked_anew_after_a_while_and_nothing_else(pair, monkey
 
 def test_questions_that_may_take_long_leave_no_memory_behind_when_they_took_a_moment(pair, monkeypatch):
     server, client = pair
-    monkeypatch.setattr("nodes.bus.asking._ROUND_S", 0.2)
+    monkeypatch.setattr("semmap.nodes.bus.asking._ROUND_S", 0.2)
     bus.serve(server, PREFIX, answer(lambda request: replies.Done(text="here")))
     process = psutil.Process()
 
@@ -179,7 +179,7 @@ def test_a_busy_machine_is_not_taken_for_a_node_that_goes_again_and_again(pair, 
         time.sleep(0.15)
         return ()
 
-    monkeypatch.setattr("nodes.bus.asking._get", ask_slowly)
+    monkeypatch.setattr("semmap.nodes.bus.asking._get", ask_slowly)
     with pytest.raises(errors.NoAnswer):
         bus.ask(client, keys.BRIDGE, "get", *ASKED, patience_s=0.3, lifelines=bus.Lifelines(client))
 

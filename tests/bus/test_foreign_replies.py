@@ -9,8 +9,8 @@ import threading
 
 import pytest
 
-from nodes import bus
-from schemas import commands, keys, replies
+from semmap.nodes import bus
+from semmap.schemas import commands, keys, replies
 from tests.bus.conftest import answer
 from tests.conftest import PATIENCE_S, free_endpoint, until
 from tests.waiting import until_served

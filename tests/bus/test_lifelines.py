@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from nodes import bus
-from schemas import keys
+from semmap.nodes import bus
+from semmap.schemas import keys
 from tests.conftest import until
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from nodes import bus
-from schemas import errors
+from semmap.nodes import bus
+from semmap.schemas import errors
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 import zenoh
 
-from nodes import bus
-from nodes.bus import pieces
-from schemas import codec, commands, errors, keys, replies
+from semmap.nodes import bus
+from semmap.nodes.bus import pieces
+from semmap.schemas import codec, commands, errors, keys, replies
 from tests.bus.conftest import PREFIX, answer
 from tests.conftest import PATIENCE_S, until
 from tests.waiting import until_followed

@@ -6,9 +6,9 @@ import queue
 
 import pytest
 
-from nodes import bus
-from schemas import codec, keys
-from schemas.commits import Commit
+from semmap.nodes import bus
+from semmap.schemas import codec, keys
+from semmap.schemas.commits import Commit
 from tests.conftest import PATIENCE_S
 from tests.waiting import until_followed
 

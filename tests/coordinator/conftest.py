@@ -7,18 +7,18 @@ from pathlib import Path
 
 import pytest
 
-from nodes.coordinator.door import Door
-from nodes.kb_node.answers import answers as kb_answers
-from nodes.kb_node.answers import trials
-from nodes.kb_node.answers.pages import Pages
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.undo import undo
-from nodes.runtime.class_names import ClassNames
-from nodes.runtime.futures import settle
-from schemas import errors
-from schemas.bridge import Outcome
-from schemas.commits import Effects
+from semmap.nodes.coordinator.door import Door
+from semmap.nodes.kb_node.answers import answers as kb_answers
+from semmap.nodes.kb_node.answers import trials
+from semmap.nodes.kb_node.answers.pages import Pages
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.undo import undo
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.nodes.runtime.futures import settle
+from semmap.schemas import errors
+from semmap.schemas.bridge import Outcome
+from semmap.schemas.commits import Effects
 
 TBOX = b"""
 @prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#> .

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.coordinator.admission import Admission, claimed
-from nodes.identity import authority
-from schemas import agents, errors
-from schemas.commands import Add, Get
+from semmap.nodes.coordinator.admission import Admission, claimed
+from semmap.nodes.identity import authority
+from semmap.schemas import agents, errors
+from semmap.schemas.commands import Add, Get
 
 
 @pytest.fixture(scope="module")

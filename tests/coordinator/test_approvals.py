@@ -1,8 +1,8 @@
 import pytest
 
-from nodes.coordinator.approvals import Approvals
-from schemas import agents, errors
-from schemas.commands import Approve, Submit
+from semmap.nodes.coordinator.approvals import Approvals
+from semmap.schemas import agents, errors
+from semmap.schemas.commands import Approve, Submit
 
 
 class Clock:

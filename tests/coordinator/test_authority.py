@@ -2,9 +2,9 @@
 
 import pytest
 
-from nodes.coordinator import authority
-from schemas import commands as c
-from schemas import errors
+from semmap.nodes.coordinator import authority
+from semmap.schemas import commands as c
+from semmap.schemas import errors
 from tests.coordinator.test_door import add
 
 AT = (4.0, 5.0, 0.0)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from schemas import commands as c
-from schemas import errors
+from semmap.schemas import commands as c
+from semmap.schemas import errors
 
 
 @pytest.fixture

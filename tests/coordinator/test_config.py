@@ -2,7 +2,7 @@
 
 import math
 
-from nodes.coordinator.config import CoordinatorConfig
+from semmap.nodes.coordinator.config import CoordinatorConfig
 
 
 def test_a_body_has_moved_beyond_five_centimetres_five_degrees_or_a_fiftieth_of_its_way():

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.current_answers import Answers
-from schemas.entities import BodyState
+from semmap.nodes.coordinator.current_answers import Answers
+from semmap.schemas.entities import BodyState
 from tests.kb_node.relations.made import thing
 
 BODY = SimpleNamespace(size_m=(0.3, 0.3, 0.3))

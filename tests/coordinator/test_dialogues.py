@@ -8,10 +8,10 @@ from concurrent.futures import Future
 
 import pytest
 
-from nodes.coordinator.dialogues import alone, hold, hold_later, in_step
-from schemas import errors
-from schemas.bridge import MadeBy, Outcome, Transactions
-from schemas.commits import Commit, Transaction
+from semmap.nodes.coordinator.dialogues import alone, hold, hold_later, in_step
+from semmap.schemas import errors
+from semmap.schemas.bridge import MadeBy, Outcome, Transactions
+from semmap.schemas.commits import Commit, Transaction
 
 
 def transaction(name):

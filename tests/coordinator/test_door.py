@@ -8,19 +8,19 @@ from concurrent.futures import Future
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.dialogues import hold_later
-from nodes.coordinator.door import Door, loading
-from nodes.coordinator.door.known_map import KnownMap
-from nodes.coordinator.scene.settled import Settled
-from nodes.coordinator.turns import Turns
-from nodes.runtime.futures import settle
-from ontology import vocabulary as v
-from schemas import commands as c
-from schemas import errors
-from schemas.bridge import LoadDocument
-from schemas.commits import Commit, Transaction
-from schemas.entities import Pose, orientation_from_yaw
-from schemas.replies import Changed
+from semmap.nodes.coordinator.dialogues import hold_later
+from semmap.nodes.coordinator.door import Door, loading
+from semmap.nodes.coordinator.door.known_map import KnownMap
+from semmap.nodes.coordinator.scene.settled import Settled
+from semmap.nodes.coordinator.turns import Turns
+from semmap.nodes.runtime.futures import settle
+from semmap.ontology import vocabulary as v
+from semmap.schemas import commands as c
+from semmap.schemas import errors
+from semmap.schemas.bridge import LoadDocument
+from semmap.schemas.commits import Commit, Transaction
+from semmap.schemas.entities import Pose, orientation_from_yaw
+from semmap.schemas.replies import Changed
 
 
 def add(door: Door, class_: str = "Chair", name: str | None = None, **fields) -> Changed:
@@ -441,8 +441,8 @@ def test_the_entities_of_a_class_are_those_of_the_map(door, semantic_map):
 
 
 def test_a_change_too_large_to_be_passed_on_is_known_to_the_next_command(door, monkeypatch):
-    monkeypatch.setattr("schemas.commits.MANY_ENTITIES", 2)
-    monkeypatch.setattr("nodes.runtime.map_replica.PAGE", 2)
+    monkeypatch.setattr("semmap.schemas.commits.MANY_ENTITIES", 2)
+    monkeypatch.setattr("semmap.nodes.runtime.map_replica.PAGE", 2)
     entities = b",".join(b'{"class": "Chair", "name": "seat%d"}' % i for i in range(5))
     loaded = door.change(c.Load(content=b'{"entities": [' + entities + b"]}", filename="five.json"))
     assert len(loaded.names) == 5
@@ -459,7 +459,7 @@ def five_chairs(name="seat"):
 
 
 def test_a_scene_in_parts_is_several_commits(door, monkeypatch):
-    monkeypatch.setattr("nodes.coordinator.door.loading.PART", 2)
+    monkeypatch.setattr("semmap.nodes.coordinator.door.loading.PART", 2)
     before = door.map.seq
     loaded = door.change(c.Load(id="five", content=five_chairs(), filename="five.json", parts=True))
     assert len(loaded.names) == 5

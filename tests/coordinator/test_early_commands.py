@@ -1,8 +1,8 @@
 import pytest
 
-from nodes import bus
-from nodes.coordinator.early_commands import EarlyCommands
-from schemas import errors
+from semmap.nodes import bus
+from semmap.nodes.coordinator.early_commands import EarlyCommands
+from semmap.schemas import errors
 
 
 @pytest.fixture

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from nodes.coordinator.files import huric
-from nodes.coordinator.files.content import kind_of
-from schemas import scene_files
-from schemas.errors import BadFile
+from semmap.nodes.coordinator.files import huric
+from semmap.nodes.coordinator.files.content import kind_of
+from semmap.schemas import scene_files
+from semmap.schemas.errors import BadFile
 from tests.data import data_folder
 
 SCENE = {"entities": [{"class": "Chair", "name": "chair9", "at": [1, 2, 0], "yaw": 1.5, "alt": ["seat"]}]}

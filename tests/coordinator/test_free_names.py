@@ -2,8 +2,8 @@ import random
 
 import pytest
 
-from nodes.coordinator.free_names import FreeNames
-from schemas.entities import free_name
+from semmap.nodes.coordinator.free_names import FreeNames
+from semmap.schemas.entities import free_name
 
 
 @pytest.mark.parametrize("seed", range(5))

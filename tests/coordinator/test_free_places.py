@@ -5,8 +5,8 @@ import random
 
 import pytest
 
-from nodes.coordinator.free_places import DEFAULT_POSITION, FreePlaces
-from schemas.entities import Pose, orientation_from_yaw
+from semmap.nodes.coordinator.free_places import DEFAULT_POSITION, FreePlaces
+from semmap.schemas.entities import Pose, orientation_from_yaw
 from tests.coordinator.scene.test_reconcile import entity
 from tests.depth import tries
 

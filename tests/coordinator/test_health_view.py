@@ -2,9 +2,9 @@
 
 import pytest
 
-from nodes.coordinator import health_view
-from nodes.coordinator.health_view import HealthView
-from schemas.health import Health
+from semmap.nodes.coordinator import health_view
+from semmap.nodes.coordinator.health_view import HealthView
+from semmap.schemas.health import Health
 
 
 def beat(state, pid=1, host="", at_s=0, node="kb_node"):

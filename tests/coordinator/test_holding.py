@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.coordinator import holding
-from schemas import errors
-from schemas.entities import Pose, compose, distance_m, orientation_from_yaw
-from schemas.grips import pose_text
+from semmap.nodes.coordinator import holding
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose, compose, distance_m, orientation_from_yaw
+from semmap.schemas.grips import pose_text
 from tests.coordinator.scene.test_reconcile import body, entity, provenance
 
 HERE = Pose(position_m=(1.0, 2.0, 0.0))

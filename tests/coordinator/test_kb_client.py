@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from nodes import bus
-from nodes.coordinator.kb_client import Bridge
-from nodes.runtime.loop import Node
-from schemas import errors, keys
-from schemas.bridge import TakeBack
-from schemas.commits import Commit, Effects, Transaction
+from semmap.nodes import bus
+from semmap.nodes.coordinator.kb_client import Bridge
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import errors, keys
+from semmap.schemas.bridge import TakeBack
+from semmap.schemas.commits import Commit, Effects, Transaction
 from tests.conftest import PATIENCE_S, free_endpoint, handling, until
 from tests.waiting import questions_asked, until_served
 

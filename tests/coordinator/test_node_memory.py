@@ -3,7 +3,7 @@
 import gc
 import weakref
 
-from nodes.coordinator import node
+from semmap.nodes.coordinator import node
 
 
 def test_cycles_with_large_files_are_parted_with():

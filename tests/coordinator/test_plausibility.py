@@ -2,9 +2,9 @@
 
 import pytest
 
-from nodes.coordinator.plausibility import doubts, require_same_nature
-from schemas import errors
-from schemas.entities import ClassInfo, Entity, Pose, Provenance, orientation_from_yaw
+from semmap.nodes.coordinator.plausibility import doubts, require_same_nature
+from semmap.schemas import errors
+from semmap.schemas.entities import ClassInfo, Entity, Pose, Provenance, orientation_from_yaw
 
 BY = Provenance(commit=1, stamp_ns=1, source="operator")
 

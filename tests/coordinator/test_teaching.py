@@ -6,12 +6,12 @@ from types import SimpleNamespace
 
 import pytest
 
-from nodes.coordinator.teaching import Teaching
-from nodes.runtime.class_names import ClassNames
-from schemas import errors, keys
-from schemas.commands import Forget, Learn
-from schemas.entities import ClassInfo
-from schemas.lessons import ShownView
+from semmap.nodes.coordinator.teaching import Teaching
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.schemas import errors, keys
+from semmap.schemas.commands import Forget, Learn
+from semmap.schemas.entities import ClassInfo
+from semmap.schemas.lessons import ShownView
 from tests.perception_node.things import at, entity
 
 VIEW = ShownView(features=b"", size_m=(0.1, 0.1, 0.1))

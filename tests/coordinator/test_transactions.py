@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 from msgspec import structs
 
-from nodes.coordinator import transactions
-from schemas import commands as c
-from schemas import errors
-from schemas.commits import Edit, Statement
-from schemas.entities import ClassInfo, Pose, orientation_from_yaw
-from schemas.scene_files import Described
+from semmap.nodes.coordinator import transactions
+from semmap.schemas import commands as c
+from semmap.schemas import errors
+from semmap.schemas.commits import Edit, Statement
+from semmap.schemas.entities import ClassInfo, Pose, orientation_from_yaw
+from semmap.schemas.scene_files import Described
 from tests.coordinator.scene.test_reconcile import entity
 
 HERE = Pose(position_m=(1.0, 2.0, 0.0))

@@ -6,12 +6,12 @@ from concurrent.futures import Future
 
 import pytest
 
-from nodes.coordinator.scene.settled import Settled
-from nodes.coordinator.turns import GROUP, Turns
-from schemas import errors
-from schemas.commands import Add, Batch, Clear, Set, Track, Undo, Unset, Update
-from schemas.entities import Pose
-from schemas.replies import Changed
+from semmap.nodes.coordinator.scene.settled import Settled
+from semmap.nodes.coordinator.turns import GROUP, Turns
+from semmap.schemas import errors
+from semmap.schemas.commands import Add, Batch, Clear, Set, Track, Undo, Unset, Update
+from semmap.schemas.entities import Pose
+from semmap.schemas.replies import Changed
 
 
 class KnowledgeBase:

@@ -14,9 +14,9 @@ from pathlib import Path
 import click
 import pytest
 
-from nodes.extern.cli.all_verbs import app
-from nodes.extern.cli.app import execute
-from ontology import FLAT_TTL
+from semmap.nodes.extern.cli.all_verbs import app
+from semmap.nodes.extern.cli.app import execute
+from semmap.ontology import FLAT_TTL
 from tests.conftest import until
 
 ROOT = Path(__file__).parents[2]

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from nodes.drawing.bending import bends_of, bent
-from nodes.sim_node.models.facets import surface_of
-from nodes.sim_node.models.library import build
-from schemas.joints import Joint
+from semmap.nodes.drawing.bending import bends_of, bent
+from semmap.nodes.sim_node.models.facets import surface_of
+from semmap.nodes.sim_node.models.library import build
+from semmap.schemas.joints import Joint
 
 
 def points(surface):

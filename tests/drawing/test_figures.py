@@ -1,7 +1,7 @@
 import math
 
-from nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of, still
-from schemas.entities import orientation_from_yaw
+from semmap.nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of, still
+from semmap.schemas.entities import orientation_from_yaw
 from tests.recorder.messages import body, entity, pose
 
 

@@ -1,4 +1,4 @@
-from nodes.drawing.neighbourhood import Link, around, by_class, by_place
+from semmap.nodes.drawing.neighbourhood import Link, around, by_class, by_place
 from tests.recorder.messages import entity
 
 ENTITIES = {

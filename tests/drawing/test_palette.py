@@ -2,7 +2,7 @@ from itertools import combinations
 
 import pytest
 
-from nodes.drawing.palette import colour_of
+from semmap.nodes.drawing.palette import colour_of
 
 CLASSES = ["Chair", "Table", "Bed", "Couch", "Kitchen", "Beer", "Door", "Lamp", "Book", "3Three_Dim_Size"]
 

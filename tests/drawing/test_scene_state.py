@@ -1,7 +1,7 @@
 from msgspec import structs
 
-from nodes.drawing.scene_state import SceneState
-from schemas.joints import Joint
+from semmap.nodes.drawing.scene_state import SceneState
+from semmap.schemas.joints import Joint
 from tests.recorder.messages import body, pose, poses, scene
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from nodes.drawing.sheets import triangles_of
-from schemas.polygons import read_wkt
+from semmap.nodes.drawing.sheets import triangles_of
+from semmap.schemas.polygons import read_wkt
 
 L = "POLYGON ((2 1, 6 1, 6 3, 4 3, 4 5, 2 5, 2 1))"
 HOLED = "POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0), (1 1, 1 2, 2 2, 2 1, 1 1))"

@@ -1,4 +1,4 @@
-from nodes.drawing.surfaces import SurfaceCache
+from semmap.nodes.drawing.surfaces import SurfaceCache
 from tests.recorder.messages import body, surface
 
 SURFACE = surface()

@@ -2,10 +2,10 @@
 
 import contextlib
 
-from nodes import bus
-from nodes.extern import availability
-from nodes.extern.client import connect
-from schemas import keys, replies
+from semmap.nodes import bus
+from semmap.nodes.extern import availability
+from semmap.nodes.extern.client import connect
+from semmap.schemas import keys, replies
 from tests.conftest import free_endpoint, until
 
 

@@ -5,11 +5,11 @@ import time
 
 import pytest
 
-from nodes import bus
-from nodes.extern.client import Client, connect
-from schemas import codec, commands, errors, keys, replies
-from schemas.commands import Status
-from schemas.commits import Commit
+from semmap.nodes import bus
+from semmap.nodes.extern.client import Client, connect
+from semmap.schemas import codec, commands, errors, keys, replies
+from semmap.schemas.commands import Status
+from semmap.schemas.commits import Commit
 from tests.conftest import free_endpoint
 
 

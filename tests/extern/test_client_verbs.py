@@ -7,10 +7,10 @@ import inspect
 import numpy as np
 import pytest
 
-from nodes.extern.client import Client, _checked
-from nodes.extern.client_verbs import Verb, Verbs
-from schemas import commands, errors, replies
-from schemas.entities import Entity
+from semmap.nodes.extern.client import Client, _checked
+from semmap.nodes.extern.client_verbs import Verb, Verbs
+from semmap.schemas import commands, errors, replies
+from semmap.schemas.entities import Entity
 
 UNSIGNED = {"source": "operator", "agent": ""}
 NOT_A_METHOD = {"watch", "renew", "backup"}

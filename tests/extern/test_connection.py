@@ -8,12 +8,12 @@ import threading
 
 import pytest
 
-from nodes import bus
-from nodes.extern import connection
-from nodes.extern.client import connect
-from nodes.extern.connection import open_session
-from nodes.supervisor import presence, registry
-from schemas import errors
+from semmap.nodes import bus
+from semmap.nodes.extern import connection
+from semmap.nodes.extern.client import connect
+from semmap.nodes.extern.connection import open_session
+from semmap.nodes.supervisor import presence, registry
+from semmap.schemas import errors
 from tests.conftest import PATIENCE_S, free_endpoint, until
 
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from nodes.extern import files
-from schemas import errors
+from semmap.nodes.extern import files
+from semmap.schemas import errors
 
 
 def test_a_file_is_read_whole(tmp_path):

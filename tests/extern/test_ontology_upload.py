@@ -1,10 +1,10 @@
 import pytest
 
-from nodes.extern.client_verbs import Verbs
-from nodes.extern.ontology_upload import ontology
-from nodes.kb_node.documents import rdf
-from nodes.runtime import extras
-from schemas import errors
+from semmap.nodes.extern.client_verbs import Verbs
+from semmap.nodes.extern.ontology_upload import ontology
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors
 
 OWL = "@prefix owl: <http://www.w3.org/2002/07/owl#> .\n"
 A = f"{OWL}<http://o.org/a> a owl:Ontology ; owl:imports <http://o.org/b> ."

@@ -6,9 +6,9 @@ import os
 
 import pytest
 
-from nodes import bus
-from nodes.extern.cli.app import execute
-from nodes.identity import authority
+from semmap.nodes import bus
+from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.identity import authority
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +33,7 @@ def up(tmp_path, capsys):
 def starting(monkeypatch):
     """What would be started."""
     started = []
-    monkeypatch.setattr("nodes.supervisor.up.up", lambda settings, say: started.append(settings))
+    monkeypatch.setattr("semmap.nodes.supervisor.up.up", lambda settings, say: started.append(settings))
     return started
 
 
@@ -119,7 +119,7 @@ def test_an_expired_certificate_of_the_systems_own_is_told_before_the_start(star
 def test_a_node_may_join_a_router_elsewhere(keys, tmp_path, monkeypatch):
     ran = []
     monkeypatch.setattr(
-        "nodes.supervisor.launch.run_node", lambda name, settings: ran.append((name, settings))
+        "semmap.nodes.supervisor.launch.run_node", lambda name, settings: ran.append((name, settings))
     )
     words = ["--secure", str(keys), "--connect", "tcp/robot1.local:7447", "--data", str(tmp_path)]
     mask = os.umask(0o022)

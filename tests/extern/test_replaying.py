@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from nodes.extern.client import connect
-from nodes.extern.testing import free_endpoint
-from nodes.recorder.recorded_commits import read_commits
+from semmap.nodes.extern.client import connect
+from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.recorder.recorded_commits import read_commits
 from tests.conftest import running, until
 
 _BIN = Path(sys.executable).parent

@@ -1,10 +1,10 @@
 """A standing query whose system gives way to one with another map."""
 
-from nodes import bus
-from nodes.extern import sparql_client
-from nodes.extern.client import connect
-from schemas import errors, keys
-from schemas.sparql import Watching
+from semmap.nodes import bus
+from semmap.nodes.extern import sparql_client
+from semmap.nodes.extern.client import connect
+from semmap.schemas import errors, keys
+from semmap.schemas.sparql import Watching
 from tests.conftest import free_endpoint
 
 

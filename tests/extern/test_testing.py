@@ -2,7 +2,7 @@
 
 import pytest
 
-from nodes.extern.testing import own_system
+from semmap.nodes.extern.testing import own_system
 
 
 def test_a_system_is_there_for_a_test_and_gone_after_it(tmp_path):

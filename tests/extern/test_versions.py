@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from nodes import bus
-from nodes.extern.client import connect
-from nodes.runtime import version
-from schemas import commands, errors, keys, replies
+from semmap.nodes import bus
+from semmap.nodes.extern.client import connect
+from semmap.nodes.runtime import version
+from semmap.schemas import commands, errors, keys, replies
 from tests.conftest import free_endpoint
 
 STATUS = replies.SystemStatus(
@@ -95,7 +95,7 @@ def test_a_field_that_is_wrong_before_it_is_sent_is_not_the_system_s():
 
 
 def connect_nowhere():
-    from nodes.extern.client import Client
+    from semmap.nodes.extern.client import Client
 
     client = Client.__new__(Client)
     client._signature = {"source": "operator", "agent": ""}

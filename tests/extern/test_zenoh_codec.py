@@ -5,7 +5,7 @@ import json
 import msgpack
 import pytest
 
-from nodes.extern.zenoh_codec import decode, encode
+from semmap.nodes.extern.zenoh_codec import decode, encode
 
 
 def test_json_on_the_command_line_is_messagepack_on_the_wire():

@@ -20,7 +20,7 @@ from dataclasses import asdict, dataclass
 from itertools import count
 from pathlib import Path
 
-from nodes.identity import authority
+from semmap.nodes.identity import authority
 from tests.faults import hosts, on_a_host
 from tests.faults.hosts import HOWS, Host, How, Link, Network
 from tests.faults.table import Row

@@ -16,13 +16,13 @@ from collections.abc import Iterator
 import zenoh
 from msgspec import structs
 
-from nodes import bus
-from schemas import codec, errors, keys
-from schemas.commits import Commit, Departed, Effects
-from schemas.entities import Pose
-from schemas.health import Health
-from schemas.replies import Changed
-from schemas.scenes import BodyOrder, Poses, Spawn, Spawned
+from semmap.nodes import bus
+from semmap.schemas import codec, errors, keys
+from semmap.schemas.commits import Commit, Departed, Effects
+from semmap.schemas.entities import Pose
+from semmap.schemas.health import Health
+from semmap.schemas.replies import Changed
+from semmap.schemas.scenes import BodyOrder, Poses, Spawn, Spawned
 from tests.faults.ground import Ground, free_place, wait_for
 from tests.faults.processes import ALL, NOTICED_S, _runs, all_pids_of
 from tests.faults.table import Fault

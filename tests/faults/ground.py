@@ -10,10 +10,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from nodes.extern.client import Client, connect
-from nodes.extern.testing import free_endpoint
-from schemas import errors
-from schemas.replies import NodeStatus
+from semmap.nodes.extern.client import Client, connect
+from semmap.nodes.extern.testing import free_endpoint
+from semmap.schemas import errors
+from semmap.schemas.replies import NodeStatus
 from tests.conftest import System, running
 
 PATIENCE_S = 60.0
@@ -139,7 +139,7 @@ class Ground:
         return time.monotonic() - began_s
 
     def _settings(self) -> Any:
-        from nodes.supervisor.control import Supervisor
+        from semmap.nodes.supervisor.control import Supervisor
 
         return Supervisor(self.data).settings
 

@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
-from nodes.extern.fleet import asking
-from schemas import errors
+from semmap.nodes.extern.fleet import asking
+from semmap.schemas import errors
 from tests.extern.fleet.sparql_servers import Oxigraph, oxigraph, spelled
 from tests.faults.ground import Ground, wait_for
 from tests.faults.table import SMALL, Fault

@@ -21,9 +21,9 @@ import msgspec
 import zenoh
 from msgspec import inspect
 
-from nodes import bus
-from schemas import bridge, codec, commands, errors, keys, scenes
-from schemas.calls import Call
+from semmap.nodes import bus
+from semmap.schemas import bridge, codec, commands, errors, keys, scenes
+from semmap.schemas.calls import Call
 from tests.conftest import System, running
 
 TIMEOUT_S = 900.0

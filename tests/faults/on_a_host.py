@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import zenoh
 
-from nodes.extern.client import connect
-from schemas import errors
-from schemas.endpoints import IDENTITY_VARIABLE
+from semmap.nodes.extern.client import connect
+from semmap.schemas import errors
+from semmap.schemas.endpoints import IDENTITY_VARIABLE
 from tests.conftest import running
 from tests.faults.ground import Load, free_place, wait_for
 from tests.faults.processes import all_pids_of

@@ -9,9 +9,9 @@ from collections import Counter
 
 import zenoh
 
-from nodes import bus
-from schemas import codec, keys
-from schemas.replies import Ack
+from semmap.nodes import bus
+from semmap.schemas import codec, keys
+from semmap.schemas.replies import Ack
 from tests.faults.ground import Ground, free_place, wait_for
 from tests.faults.table import Fault
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import psutil
 
-from nodes.supervisor.control import Supervisor
+from semmap.nodes.supervisor.control import Supervisor
 from tests.faults.ground import Ground, wait_for
 from tests.faults.table import Fault
 

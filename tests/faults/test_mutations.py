@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from schemas import keys
-from schemas.commands import Load
+from semmap.schemas import keys
+from semmap.schemas.commands import Load
 from tests.conftest import running, until
 from tests.faults.mutations import Mutator, pids, queries, send, topics
 

@@ -3,9 +3,9 @@ import random
 
 import pytest
 
-from nodes.geometry.polygons import area
-from nodes.geometry.regions import Region
-from schemas.polygons import read_wkt
+from semmap.nodes.geometry.polygons import area
+from semmap.nodes.geometry.regions import Region
+from semmap.schemas.polygons import read_wkt
 
 L_SHAPE = read_wkt("POLYGON ((0 0, 4 0, 4 1, 1 1, 1 3, 0 3, 0 0))")
 WITH_HOLE = read_wkt("POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0), (1 1, 1 2, 2 2, 2 1, 1 1))")

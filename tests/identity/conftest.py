@@ -6,7 +6,7 @@ import shutil
 
 import pytest
 
-from nodes.identity import authority
+from semmap.nodes.identity import authority
 
 
 @pytest.fixture(scope="session")

@@ -10,9 +10,9 @@ import pytest
 from cryptography import x509
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
-from nodes.identity import authority
-from nodes.identity.register import Register
-from schemas import errors, keys
+from semmap.nodes.identity import authority
+from semmap.nodes.identity.register import Register
+from semmap.schemas import errors, keys
 
 
 def loaded(folder, name):

@@ -12,9 +12,9 @@ from cryptography import x509
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.identity import Identity, authority, certificate
-from nodes.identity.register import LiveRegister, Register
-from schemas import errors
+from semmap.nodes.identity import Identity, authority, certificate
+from semmap.nodes.identity.register import LiveRegister, Register
+from semmap.schemas import errors
 
 
 def test_name_role_and_end_are_those_of_the_certificate(folder):
@@ -82,9 +82,9 @@ def test_a_live_register_sees_what_is_added_and_revoked(folder):
 def test_to_show_a_certificate_and_to_run_a_system_takes_no_library(folder):
     program = (
         "import sys; sys.modules['cryptography'] = None\n"
-        "import nodes.extern.cli.verbs.lifecycle, nodes.extern.client\n"
-        "import nodes.coordinator.node, nodes.router.node\n"
-        "from nodes.identity import Identity\n"
+        "import semmap.nodes.extern.cli.verbs.lifecycle, semmap.nodes.extern.client\n"
+        "import semmap.nodes.coordinator.node, semmap.nodes.router.node\n"
+        "from semmap.nodes.identity import Identity\n"
         f"print(Identity.read({str(folder / 'vera')!r}).role)\n"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)

@@ -1,9 +1,9 @@
 import pytest
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.semantic_map import SemanticMap
-from ontology import FLAT_TTL
-from schemas.commits import Transaction
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.ontology import FLAT_TTL
+from semmap.schemas.commits import Transaction
 from tests.kb_node import home, stating
 
 

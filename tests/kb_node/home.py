@@ -4,14 +4,14 @@ import functools
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from ontology import HOUSEHOLD_TTL, stars
-from ontology import vocabulary as v
-from schemas.commits import Transaction
-from schemas.entities import Pose
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.ontology import HOUSEHOLD_TTL, stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Transaction
+from semmap.schemas.entities import Pose
+from semmap.schemas.explanations import Triple
 
 PREFIXES = f"""
 @prefix : <{v.ABOX}> .

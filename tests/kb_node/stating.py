@@ -1,8 +1,8 @@
 """A small TBox with properties of every kind, and maps over it."""
 
-from nodes.kb_node.documents import rdf
-from ontology import vocabulary as v
-from schemas.commits import Edit, NewEntity, Statement, Transaction
+from semmap.nodes.kb_node.documents import rdf
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Edit, NewEntity, Statement, Transaction
 from tests.kb_node import home
 
 PROPERTIES = """

@@ -4,16 +4,16 @@ import queue
 
 import pytest
 
-from nodes import bus
-from nodes.kb_node.announcing import Announcer
-from nodes.kb_node.answers.whereabouts import Now
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.semantic_map import SemanticMap
-from ontology import FLAT_TTL
-from ontology import vocabulary as v
-from schemas import keys
-from schemas.commits import Edit, NewEntity, Transaction
-from schemas.entities import Pose
+from semmap.nodes import bus
+from semmap.nodes.kb_node.announcing import Announcer
+from semmap.nodes.kb_node.answers.whereabouts import Now
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.ontology import FLAT_TTL
+from semmap.ontology import vocabulary as v
+from semmap.schemas import keys
+from semmap.schemas.commits import Edit, NewEntity, Transaction
+from semmap.schemas.entities import Pose
 from tests.kb_node import home
 
 FLAT = tuple(rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f"))

@@ -1,8 +1,8 @@
 import pytest
 
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import Journal
-from schemas import errors
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.schemas import errors
 from tests.kb_node import home
 from tests.kb_node.home import chair, state, transaction, turtle
 
@@ -34,7 +34,7 @@ def _worked_on(folder):
 
 def test_a_large_change_is_made_in_parts_and_is_the_same(tmp_path, monkeypatch):
     *whole, beats = _worked_on(tmp_path / "whole")
-    monkeypatch.setattr("nodes.kb_node.applier.PART", 7)
+    monkeypatch.setattr("semmap.nodes.kb_node.applier.PART", 7)
     *in_parts, more_beats = _worked_on(tmp_path / "parts")
     assert in_parts == whole
     assert more_beats > beats + 20

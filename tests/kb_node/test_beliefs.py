@@ -5,11 +5,11 @@ from unittest import mock
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.beliefs import Beliefs
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.fastpaths import paths
-from nodes.kb_node.sparql.triples.consequences import Consequences, inferred
-from nodes.kb_node.sparql.triples.dataset import ASSERTED, DENIED, INFERRED, Dataset, Delta
+from semmap.nodes.kb_node.beliefs import Beliefs
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.fastpaths import paths
+from semmap.nodes.kb_node.sparql.triples.consequences import Consequences, inferred
+from semmap.nodes.kb_node.sparql.triples.dataset import ASSERTED, DENIED, INFERRED, Dataset, Delta
 from tests.kb_node.reasoner import graphs
 from tests.kb_node.relations.made import thing
 

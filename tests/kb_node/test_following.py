@@ -6,16 +6,16 @@ import random
 
 import pytest
 
-from nodes.kb_node import beliefs, map_state
-from nodes.kb_node.relations.facts import place_facts
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.measuring import crowds
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import Journal
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commits import Edit, NewEntity, Transaction
-from schemas.entities import Pose
+from semmap.nodes.kb_node import beliefs, map_state
+from semmap.nodes.kb_node.relations.facts import place_facts
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.measuring import crowds
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commits import Edit, NewEntity, Transaction
+from semmap.schemas.entities import Pose
 
 
 @pytest.fixture

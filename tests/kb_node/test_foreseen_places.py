@@ -6,17 +6,17 @@ from functools import partial
 
 import pytest
 
-from nodes.kb_node import map_state
-from nodes.kb_node.answers import trials
-from nodes.kb_node.entities import foreseeing
-from nodes.kb_node.relations.facts.ahead import Ahead
-from nodes.kb_node.relations.facts.foreseen import WorkedOut
-from nodes.kb_node.semantic_map import SemanticMap
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commits import NewEntity, Statement, Transaction
-from schemas.entities import Pose, orientation_from_yaw
+from semmap.nodes.kb_node import map_state
+from semmap.nodes.kb_node.answers import trials
+from semmap.nodes.kb_node.entities import foreseeing
+from semmap.nodes.kb_node.relations.facts.ahead import Ahead
+from semmap.nodes.kb_node.relations.facts.foreseen import WorkedOut
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commits import NewEntity, Statement, Transaction
+from semmap.schemas.entities import Pose, orientation_from_yaw
 from tests.kb_node import home
 
 pytestmark = pytest.mark.process  # a large commit of a map starts one
@@ -62,7 +62,7 @@ def said(new, name="load"):
 @pytest.fixture
 def few_are_many(monkeypatch):
     monkeypatch.setattr(foreseeing, "MANY", MANY)
-    monkeypatch.setattr("schemas.commits._FEW", MANY)
+    monkeypatch.setattr("semmap.schemas.commits._FEW", MANY)
 
 
 @pytest.fixture

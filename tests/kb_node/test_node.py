@@ -9,14 +9,14 @@ from contextlib import contextmanager, suppress
 import pytest
 from msgspec import structs
 
-from nodes import bus
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.storage.seed import seed
-from nodes.supervisor.settings import Settings
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import codec, errors, keys
-from schemas.bridge import (
+from semmap.nodes import bus
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.storage.seed import seed
+from semmap.nodes.supervisor.settings import Settings
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import codec, errors, keys
+from semmap.schemas.bridge import (
     BRIDGE,
     Entities,
     LoadDocument,
@@ -26,11 +26,11 @@ from schemas.bridge import (
     StarQuery,
     Transactions,
 )
-from schemas.calls import reply_type
-from schemas.commands import Check, Export, Get, Infer, LastSeen, Relations, Sparql
-from schemas.commits import Effects, NewEntity
-from schemas.entities import Entity, Pose
-from schemas.relations import Described
+from semmap.schemas.calls import reply_type
+from semmap.schemas.commands import Check, Export, Get, Infer, LastSeen, Relations, Sparql
+from semmap.schemas.commits import Effects, NewEntity
+from semmap.schemas.entities import Entity, Pose
+from semmap.schemas.relations import Described
 from tests.conftest import PATIENCE_S, free_endpoint
 from tests.kb_node.home import PREFIXES, TBOX_TURTLE, chair, transaction
 
@@ -50,7 +50,7 @@ class Bench:
 
     def start(self):
         """The process of a knowledge base."""
-        command = [sys.executable, "-m", "nodes.supervisor.launch", "kb_node", str(self.settings)]
+        command = [sys.executable, "-m", "semmap.nodes.supervisor.launch", "kb_node", str(self.settings)]
         return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
 
     def session(self):

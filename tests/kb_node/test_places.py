@@ -5,17 +5,17 @@ import re
 
 import pytest
 
-from nodes.kb_node.answers import trials
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.relations.facts.said import denial
-from nodes.kb_node.relations.facts.sayings import Sayings
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.undo import undo
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import History, Undo
-from schemas.commits import Edit, NewEntity, Statement, Transaction
-from schemas.entities import Pose
+from semmap.nodes.kb_node.answers import trials
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.relations.facts.said import denial
+from semmap.nodes.kb_node.relations.facts.sayings import Sayings
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.undo import undo
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import History, Undo
+from semmap.schemas.commits import Edit, NewEntity, Statement, Transaction
+from semmap.schemas.entities import Pose
 from tests.kb_node import home
 
 WORDS = "".join(

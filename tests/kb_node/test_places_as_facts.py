@@ -4,23 +4,23 @@ import random
 
 import pytest
 
-from nodes.kb_node import undo
-from nodes.kb_node.answers import answers, questions, trials
-from nodes.kb_node.answers.standing_places import StandingPlaces
-from nodes.kb_node.answers.whereabouts import Now
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.journal.sqlite_file import NotWritten
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.bridge import Entities, TakeBack
-from schemas.commands import Explain, Get, Relations, Watch
-from schemas.commits import Edit, NewEntity, Transaction
-from schemas.entities import Pose
-from schemas.relations import Where
+from semmap.nodes.kb_node import undo
+from semmap.nodes.kb_node.answers import answers, questions, trials
+from semmap.nodes.kb_node.answers.standing_places import StandingPlaces
+from semmap.nodes.kb_node.answers.whereabouts import Now
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.bridge import Entities, TakeBack
+from semmap.schemas.commands import Explain, Get, Relations, Watch
+from semmap.schemas.commits import Edit, NewEntity, Transaction
+from semmap.schemas.entities import Pose
+from semmap.schemas.relations import Where
 from tests.kb_node import home
 
 FLAT = tuple(rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f"))

@@ -2,8 +2,8 @@ import random
 
 import pytest
 
-from nodes.kb_node import planning
-from schemas.commits import Transaction
+from semmap.nodes.kb_node import planning
+from semmap.schemas.commits import Transaction
 
 
 @pytest.mark.parametrize("count", [10, planning._VERY_MANY])

@@ -2,10 +2,10 @@
 
 import pytest
 
-from nodes.kb_node import preconditions
-from nodes.kb_node.reasoner import Reasoner
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.kb_node import preconditions
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from tests.kb_node.home import transaction
 
 CUP, NEW = v.entity_iri("cup1"), v.entity_iri("cup2")

@@ -1,4 +1,4 @@
-from nodes.kb_node.progress import parts, steadily
+from semmap.nodes.kb_node.progress import parts, steadily
 
 
 def test_the_node_tells_that_it_lives_now_and_then():

@@ -1,11 +1,11 @@
 import pytest
 from msgspec import structs
 
-from nodes.kb_node import proofs
-from nodes.kb_node.reasoner import Inconsistent, Reasoner, explanations, refute
-from ontology import vocabulary as v
-from schemas import codec, errors
-from schemas import explanations as wire
+from semmap.nodes.kb_node import proofs
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner, explanations, refute
+from semmap.ontology import vocabulary as v
+from semmap.schemas import codec, errors
+from semmap.schemas import explanations as wire
 
 CUP, DISH, FOOD = "<urn:Cup>", "<urn:Dish>", "<urn:Food>"
 TBOX = [(CUP, v.RDFS_SUB_CLASS_OF, DISH), (DISH, "<http://www.w3.org/2002/07/owl#disjointWith>", FOOD)]

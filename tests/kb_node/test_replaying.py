@@ -7,13 +7,13 @@ from concurrent.futures import Future
 
 import pytest
 
-from nodes.kb_node.config import Replay
-from nodes.kb_node.replaying import CHANGES, Player, missing, refusing
-from nodes.kb_node.storage.journal import FILENAME
-from nodes.kb_node.storage.replay.preparing import SOURCE
-from schemas import errors
-from schemas.commits import NewEntity, Transaction
-from schemas.replies import NodeStatus, SystemStatus
+from semmap.nodes.kb_node.config import Replay
+from semmap.nodes.kb_node.replaying import CHANGES, Player, missing, refusing
+from semmap.nodes.kb_node.storage.journal import FILENAME
+from semmap.nodes.kb_node.storage.replay.preparing import SOURCE
+from semmap.schemas import errors
+from semmap.schemas.commits import NewEntity, Transaction
+from semmap.schemas.replies import NodeStatus, SystemStatus
 from tests.kb_node import home
 
 

@@ -3,14 +3,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.kb_node.applier import Applier
-from nodes.kb_node.storage import conclusions_format
-from nodes.kb_node.storage.journal.sqlite_file import NotWritten
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import codec, errors
-from schemas.commits import Commit, Edit, NewEntity, Snapshot
-from schemas.entities import Pose, Provenance
+from semmap.nodes.kb_node.applier import Applier
+from semmap.nodes.kb_node.storage import conclusions_format
+from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import codec, errors
+from semmap.schemas.commits import Commit, Edit, NewEntity, Snapshot
+from semmap.schemas.entities import Pose, Provenance
 from tests.kb_node import home
 from tests.kb_node.home import chair, state, transaction, turtle
 from tests.kb_node.storage.journal.test_journal import BULKY, full_by_page_count

@@ -1,11 +1,11 @@
 import pytest
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.undo import undo
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Undo
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.undo import undo
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Undo
 from tests.kb_node import home
 from tests.kb_node.documents.tbox.test_tbox_validation import NEW_CLASSES, replace
 from tests.kb_node.home import chair, transaction, turtle

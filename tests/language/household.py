@@ -1,8 +1,8 @@
 """A small household to speak of."""
 
-from nodes.language import lexicon
-from nodes.language.understanding.grounding import Thing, scene
-from nodes.training.language.household import household
+from semmap.nodes.language import lexicon
+from semmap.nodes.language.understanding.grounding import Thing, scene
+from semmap.nodes.training.language.household import household
 
 LEXICON = lexicon.load()
 THINGS = (

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nodes.language import nouns
+from semmap.nodes.language import nouns
 
 
 @pytest.mark.parametrize(

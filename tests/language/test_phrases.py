@@ -3,8 +3,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.language.phrases import phrases
-from nodes.language.words import split, tag
+from semmap.nodes.language.phrases import phrases
+from semmap.nodes.language.words import split, tag
 from tests.language.household import LEXICON
 
 

@@ -1,6 +1,6 @@
 """What there is to be named: classes by label, name and synonym, and what is above them."""
 
-from nodes.language.vocabulary import vocabulary
+from semmap.nodes.language.vocabulary import vocabulary
 from tests.language.household import LEXICON
 
 KNOWN = vocabulary(

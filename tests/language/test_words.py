@@ -2,7 +2,7 @@
 
 import pytest
 
-from nodes.language.words import lemma, split, tag
+from semmap.nodes.language.words import lemma, split, tag
 from tests.language.household import LEXICON
 
 

@@ -1,6 +1,6 @@
 """Plans drawn by hand: two rooms and a corridor, 0.1 m walls, doors 0.9 m wide."""
 
-from schemas.plans import Outline, Plan, PlannedPlace, PlannedThing
+from semmap.schemas.plans import Outline, Plan, PlannedPlace, PlannedThing
 
 
 def box(x0, y0, x1, y1, low=0.0, high=2.5):

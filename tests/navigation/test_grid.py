@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from nodes.navigation.grid import FREE, OCCUPIED, UNKNOWN, forbidden, occupancy, widened
-from schemas.errors import Refused
-from schemas.plans import Outline
+from semmap.nodes.navigation.grid import FREE, OCCUPIED, UNKNOWN, forbidden, occupancy, widened
+from semmap.schemas.errors import Refused
+from semmap.schemas.plans import Outline
 from tests.navigation.made import DOOR, PLACES, box, place, plan, thing
 
 HEIGHTS = (0.05, 1.5)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.navigation.grid import FREE, OCCUPIED, UNKNOWN, Frame, OccupancyGrid
-from nodes.navigation.map_server import grid_of, pgm, pixels_of, png, read_image, read_yaml, yaml_of
-from schemas.errors import BadFile
+from semmap.nodes.navigation.grid import FREE, OCCUPIED, UNKNOWN, Frame, OccupancyGrid
+from semmap.nodes.navigation.map_server import grid_of, pgm, pixels_of, png, read_image, read_yaml, yaml_of
+from semmap.schemas.errors import BadFile
 
 FRAME = Frame(-0.6, 1.25, 0.05, 3, 2)
 GRID = OccupancyGrid(FRAME, np.array([[FREE, OCCUPIED, UNKNOWN], [UNKNOWN, UNKNOWN, FREE]], dtype=np.int8))

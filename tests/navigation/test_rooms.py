@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from nodes.navigation.grid import FREE, OCCUPIED, UNKNOWN, Frame, OccupancyGrid
-from nodes.navigation.loaded_plan import loaded_plan
-from nodes.navigation.map_server import Described, pixels_of
-from nodes.navigation.rooms import cut
-from schemas.errors import BadFile
-from schemas.polygons import read_wkt
+from semmap.nodes.navigation.grid import FREE, OCCUPIED, UNKNOWN, Frame, OccupancyGrid
+from semmap.nodes.navigation.loaded_plan import loaded_plan
+from semmap.nodes.navigation.map_server import Described, pixels_of
+from semmap.nodes.navigation.rooms import cut
+from semmap.schemas.errors import BadFile
+from semmap.schemas.polygons import read_wkt
 
 SIDE = 0.05
 ROOMS = {"big": (1.0, 1.0, 6.0, 5.0), "small": (6.1, 1.0, 10.0, 4.7), "hall": (1.0, 5.1, 10.0, 6.3)}

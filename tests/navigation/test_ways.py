@@ -3,9 +3,9 @@ import math
 import pytest
 from msgspec import structs
 
-from nodes.navigation.ways import find_way, position
-from schemas.errors import Refused
-from schemas.plans import HEIGHTS_M
+from semmap.nodes.navigation.ways import find_way, position
+from semmap.schemas.errors import Refused
+from semmap.schemas.plans import HEIGHTS_M
 from tests.navigation.made import DOOR, PLACES, box, door, place, plan, thing
 
 

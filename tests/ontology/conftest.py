@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 import rdflib
 
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from tests.ontology.graphs import read
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import rdflib
 from rdflib import OWL, RDF, RDFS, Graph, URIRef
 
-from nodes.kb_node.owlrl.closure_process import QuickGraph
-from ontology.vocabulary import ABOX, TBOX
+from semmap.nodes.kb_node.owlrl.closure_process import QuickGraph
+from semmap.ontology.vocabulary import ABOX, TBOX
 
 DM = rdflib.Namespace(TBOX)
 MAP = rdflib.Namespace(ABOX)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rdflib import OWL, RDF, XSD, Graph, URIRef
 
 from benchmarks.relations.rightness import FLAT_BY_HAND
-from ontology import EMPTY_WORLD, FLAT_WORLD, vocabulary
+from semmap.ontology import EMPTY_WORLD, FLAT_WORLD, vocabulary
 from tests.ontology.graphs import DM, MAP, local, named, read, superclasses
 
 SINK_RIM_M = 0.85

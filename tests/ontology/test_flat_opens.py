@@ -4,16 +4,16 @@ import math
 
 import pytest
 
-from nodes.coordinator.scene.reconcile import order
-from nodes.kb_node.answers.whereabouts import Now
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.sim_node.physics import base_scene
-from nodes.sim_node.world import World
-from ontology import FLAT_TTL, FLAT_WORLD
-from schemas.bridge import Entities
-from schemas.commits import Transaction
-from schemas.scenes import JointOrder
+from semmap.nodes.coordinator.scene.reconcile import order
+from semmap.nodes.kb_node.answers.whereabouts import Now
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.sim_node.physics import base_scene
+from semmap.nodes.sim_node.world import World
+from semmap.ontology import FLAT_TTL, FLAT_WORLD
+from semmap.schemas.bridge import Entities
+from semmap.schemas.commits import Transaction
+from semmap.schemas.scenes import JointOrder
 from tests.kb_node import home
 
 _PUSHED_M = 0.01

@@ -5,7 +5,7 @@ import pytest
 from rdflib import OWL, RDF, RDFS, XSD, Graph, URIRef
 from rdflib.collection import Collection
 
-from ontology import vocabulary
+from semmap.ontology import vocabulary
 from tests.ontology.graphs import DM, classes, local, named, superclasses
 
 PROPERTY_KINDS = (OWL.ObjectProperty, OWL.DatatypeProperty, OWL.AnnotationProperty)

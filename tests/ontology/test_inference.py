@@ -9,8 +9,8 @@ from rdflib import OWL, RDF, Graph, URIRef
 from rdflib.term import Node
 
 from benchmarks.relations.rightness import FLAT_BY_HAND
-from nodes.kb_node.owlrl.closure_process import close
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.nodes.kb_node.owlrl.closure_process import close
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from tests.ontology.graphs import DM, MAP, classes, forget_unused_classes, local, named, read
 
 PREFIXES = """

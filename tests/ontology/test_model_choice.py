@@ -3,10 +3,10 @@
 import msgspec
 import pytest
 
-from ontology import model_choice, model_shapes
-from ontology.model_choice import chosen, require_model
-from ontology.model_shapes import ModelShape, add_own, own_size_m, shapes, varieties_of
-from schemas import errors
+from semmap.ontology import model_choice, model_shapes
+from semmap.ontology.model_choice import chosen, require_model
+from semmap.ontology.model_shapes import ModelShape, add_own, own_size_m, shapes, varieties_of
+from semmap.schemas import errors
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-from ontology.model_shapes import own_size_m
+from semmap.ontology.model_shapes import own_size_m
 
 
 def test_a_class_without_a_model_is_a_box_and_only_the_simulator_knows_a_file():

@@ -2,8 +2,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ontology import prefixes
-from ontology import vocabulary as v
+from semmap.ontology import prefixes
+from semmap.ontology import vocabulary as v
 
 SOMA, DUL = prefixes.WELL_KNOWN["soma"], prefixes.WELL_KNOWN["dul"]
 namespaces = st.builds(

@@ -1,6 +1,6 @@
-from ontology import stars
-from ontology import vocabulary as v
-from schemas.entities import Pose
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import Pose
 
 CHAIR = v.entity_iri("chair1")
 POSE = Pose(position_m=(1.0, -2.5, 1e-7))

@@ -4,7 +4,7 @@ import rdflib
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ontology import vocabulary as v
+from semmap.ontology import vocabulary as v
 
 TEXTS = st.text(st.characters(codec="utf-8"))
 LANGUAGES = st.from_regex(r"[a-z]{2,3}(-[a-z]{2})?", fullmatch=True)

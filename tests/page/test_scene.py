@@ -10,13 +10,13 @@ import uuid
 import numpy as np
 import pytest
 
-from nodes import bus
-from nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view
-from nodes.extern.web.scene.dragging import arm_m
-from nodes.extern.web.scene.seen import wxyz_of
-from schemas import keys
-from schemas.scenes import Scene, SceneQuery
 from semmap.commands import Add, Remove
+from semmap.nodes import bus
+from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view
+from semmap.nodes.extern.web.scene.dragging import arm_m
+from semmap.nodes.extern.web.scene.seen import wxyz_of
+from semmap.schemas import keys
+from semmap.schemas.scenes import Scene, SceneQuery
 from tests.page.conftest import START_MS, chromium_path
 from tests.page.waiting import settle
 

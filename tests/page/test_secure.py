@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.identity import authority
+from semmap.nodes.identity import authority
 from tests.conftest import running, until
 from tests.page.conftest import Web, serving
 
@@ -78,7 +78,7 @@ def test_the_page_of_an_operator_changes(chromium, open_tab, secured, folder):
 
 
 def test_a_secure_page_is_told_whom_it_acts_for(folder, tmp_path, capsys):
-    from nodes.extern.cli.app import execute
+    from semmap.nodes.extern.cli.app import execute
 
     assert execute(["up", "--data", str(tmp_path), "--secure", str(folder), "--web"]) == 2
     assert "--web-as NAME" in capsys.readouterr().err

@@ -5,9 +5,9 @@ from functools import cache
 
 import numpy as np
 
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.vision.view import look_at
-from nodes.training.scenes.simulated_scenes import Item, Shot, Stage
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.vision.view import look_at
+from semmap.nodes.training.scenes.simulated_scenes import Item, Shot, Stage
 
 HEIGHT_M = 0.7
 KINDS = {"cereals": (-0.2, -0.3), "apple": (0.1, -0.1), "bottle": (-0.1, 0.15), "basket": (0.05, 0.45)}

@@ -5,7 +5,7 @@ from dataclasses import FrozenInstanceError, replace
 
 import pytest
 
-from nodes.perception_node.config import PerceptionConfig, TrackingConfig
+from semmap.nodes.perception_node.config import PerceptionConfig, TrackingConfig
 
 
 def test_a_thing_needs_fewer_looks_the_clearer_it_is_and_more_to_go_than_to_come():

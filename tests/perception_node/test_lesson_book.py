@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from nodes.perception_node.lesson_book import LessonBook, known_class
-from nodes.perception_node.pipeline import shipped
-from nodes.perception_node.recognition.likeness import WIDTH
-from nodes.perception_node.showing import View
-from schemas.errors import BadFile, BadRequest, Refused
+from semmap.nodes.perception_node.lesson_book import LessonBook, known_class
+from semmap.nodes.perception_node.pipeline import shipped
+from semmap.nodes.perception_node.recognition.likeness import WIDTH
+from semmap.nodes.perception_node.showing import View
+from semmap.schemas.errors import BadFile, BadRequest, Refused
 
 VIEWS = [View(np.linspace(0.0, n, WIDTH), (0.2 * n, 0.1, 0.3)) for n in (1, 2, 3)]
 

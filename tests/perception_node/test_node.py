@@ -7,19 +7,19 @@ import pytest
 import zenoh
 from msgspec import structs
 
-from nodes import bus
-from nodes.perception_node.config import PerceptionConfig
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.node import Perception, summary
-from nodes.perception_node.pipeline import Look
-from nodes.runtime.loop import Node
-from schemas import codec, errors, keys
-from schemas.bridge import SnapshotQuery
-from schemas.commands import Add, Classes, LastSeen
-from schemas.commits import Commit, Snapshot
-from schemas.entities import ClassInfo, Provenance
-from schemas.perception import DetectedMasks, MaskRun, Observations
-from schemas.replies import Changed, Sighting
+from semmap.nodes import bus
+from semmap.nodes.perception_node.config import PerceptionConfig
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.node import Perception, summary
+from semmap.nodes.perception_node.pipeline import Look
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import codec, errors, keys
+from semmap.schemas.bridge import SnapshotQuery
+from semmap.schemas.commands import Add, Classes, LastSeen
+from semmap.schemas.commits import Commit, Snapshot
+from semmap.schemas.entities import ClassInfo, Provenance
+from semmap.schemas.perception import DetectedMasks, MaskRun, Observations
+from semmap.schemas.replies import Changed, Sighting
 from tests.conftest import PATIENCE_S, free_endpoint, handling, until
 from tests.perception_node.input.test_frames import DEPTH
 from tests.perception_node.things import at, entity, seen
@@ -144,7 +144,9 @@ def endpoint():
 
 @pytest.fixture
 def world(endpoint, monkeypatch):
-    monkeypatch.setattr("nodes.perception_node.input.frame_worker._TAKE_S", 0.02)  # its end waits for that
+    monkeypatch.setattr(
+        "semmap.nodes.perception_node.input.frame_worker._TAKE_S", 0.02
+    )  # its end waits for that
     here = bus.Network(connect=(), listen=(endpoint,), mode="peer")
     there = bus.Network(connect=(endpoint,), listen=("tcp/127.0.0.1:0",), mode="peer")
     with bus.open_session(here) as session, bus.open_session(there) as other:
@@ -198,7 +200,7 @@ def test_a_commit_that_comes_before_a_snapshot_without_it_is_not_lost(world):
 
 
 def test_what_the_map_refuses_is_told_and_not_said_again_at_once(world, monkeypatch):
-    monkeypatch.setattr("nodes.perception_node.node._REFUSED_S", 10 * PATIENCE_S)
+    monkeypatch.setattr("semmap.nodes.perception_node.node._REFUSED_S", 10 * PATIENCE_S)
     world.refusal = errors.Inconsistent("a cup cannot be here")
     world.film_until(lambda: "a cup cannot be here" in world.health.last_error, "it says why")
     world.film_often()
@@ -279,7 +281,7 @@ def test_a_class_that_the_map_does_not_have_is_told_and_the_others_count(world):
 
 
 def test_a_frame_is_looked_at_with_the_masks_of_its_moment(world, monkeypatch, caplog):
-    monkeypatch.setattr("nodes.perception_node.input.frames._SILENT_S", 10 * PATIENCE_S)
+    monkeypatch.setattr("semmap.nodes.perception_node.input.frames._SILENT_S", 10 * PATIENCE_S)
     run = MaskRun(size=(48, 64), counts=(0, 48 * 64), label="spork")
 
     def told():

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.pipeline import look, observe
-from nodes.perception_node.recognition.shipped_votes import shipped
-from nodes.perception_node.views.segments import map_points
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.pipeline import look, observe
+from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.views.segments import map_points
 from tests.perception_node.scenes import HEIGHT_M, KINDS, shot
 
 

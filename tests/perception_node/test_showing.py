@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.pipeline import shipped
-from nodes.perception_node.showing import shown_in, view_of
+from semmap.nodes.perception_node.pipeline import shipped
+from semmap.nodes.perception_node.showing import shown_in, view_of
 from tests.perception_node.scenes import KINDS, shot
 
 

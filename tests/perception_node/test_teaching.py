@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from nodes import bus
-from nodes.perception_node.lesson_book import LessonBook
-from nodes.perception_node.pipeline import look, parts_in, shipped
-from nodes.perception_node.recognition.likeness import WIDTH
-from nodes.perception_node.showing import View, view_of
-from nodes.perception_node.teaching import Teaching, view_told
-from nodes.perception_node.views.segmented_view import see
-from nodes.runtime.loop import Node
-from schemas import errors, keys
-from schemas.calls import reply_type
-from schemas.commands import Forget, Learn, Learned
+from semmap.nodes import bus
+from semmap.nodes.perception_node.lesson_book import LessonBook
+from semmap.nodes.perception_node.pipeline import look, parts_in, shipped
+from semmap.nodes.perception_node.recognition.likeness import WIDTH
+from semmap.nodes.perception_node.showing import View, view_of
+from semmap.nodes.perception_node.teaching import Teaching, view_told
+from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import errors, keys
+from semmap.schemas.calls import reply_type
+from semmap.schemas.commands import Forget, Learn, Learned
 from tests.conftest import PATIENCE_S, free_endpoint, handling
 from tests.perception_node.scenes import shot
 from tests.perception_node.things import CLASSES, at, seen

@@ -1,8 +1,8 @@
 from dataclasses import replace
 
-from nodes.perception_node.pipeline import look
-from nodes.perception_node.recognition.shipped_votes import shipped
-from nodes.perception_node.watching import Watching
+from semmap.nodes.perception_node.pipeline import look
+from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.watching import Watching
 from tests.perception_node.scenes import shot
 
 

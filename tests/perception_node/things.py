@@ -8,14 +8,14 @@ from dataclasses import dataclass, field
 
 from msgspec import structs
 
-from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.tracking.association import associate
-from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
-from nodes.perception_node.tracking.occupancy import Occupancy
-from nodes.perception_node.tracking.tracks import Tracks
-from schemas.commands import Add, Command, Remove, Update
-from schemas.entities import Entity, Pose, Provenance, Size, Source, orientation_from_yaw
-from schemas.perception import Observation
+from semmap.nodes.perception_node.config import TrackingConfig
+from semmap.nodes.perception_node.tracking.association import associate
+from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from semmap.nodes.perception_node.tracking.occupancy import Occupancy
+from semmap.nodes.perception_node.tracking.tracks import Tracks
+from semmap.schemas.commands import Add, Command, Remove, Update
+from semmap.schemas.entities import Entity, Pose, Provenance, Size, Source, orientation_from_yaw
+from semmap.schemas.perception import Observation
 
 CONFIG = TrackingConfig(
     confirm_looks=3, clear_looks=3, rest_looks=2, nudge_looks=5, gone_looks=4, odd_looks=6

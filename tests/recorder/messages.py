@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from ontology import vocabulary as v
-from schemas.commits import Commit, Departed, Star
-from schemas.entities import Entity, Pose, Provenance
-from schemas.scenes import Body, Poses, Scene, Surface
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Commit, Departed, Star
+from semmap.schemas.entities import Entity, Pose, Provenance
+from semmap.schemas.scenes import Body, Poses, Scene, Surface
 
 SINCE = Provenance(commit=1, stamp_ns=1, source="file")
 START_NS = 1_700_000_000_000_000_000

@@ -3,8 +3,8 @@
 import pytest
 from msgspec import structs
 
-from nodes.recorder.checking import check
-from nodes.recorder.recorded_commits import RecordedCommit
+from semmap.nodes.recorder.checking import check
+from semmap.nodes.recorder.recorded_commits import RecordedCommit
 from tests.recorder.messages import commit, entity, relation
 
 A, B = relation("cup1", "isOn", "table1"), relation("cup1", "isOn", "desk1")

@@ -1,6 +1,6 @@
-from nodes.recorder import commit_text
-from ontology import vocabulary as v
-from schemas.commits import PlaceChanges
+from semmap.nodes.recorder import commit_text
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import PlaceChanges
 from tests.recorder.messages import commit, entity, pose, relation
 
 

@@ -8,9 +8,9 @@ from collections import namedtuple
 
 import pytest
 
-from nodes.recorder import growth
-from nodes.recorder.growth import Growth
-from nodes.recorder.recording import open_recording
+from semmap.nodes.recorder import growth
+from semmap.nodes.recorder.growth import Growth
+from semmap.nodes.recorder.recording import open_recording
 
 
 @pytest.fixture
@@ -74,8 +74,8 @@ def test_what_a_recording_notes_is_counted(tmp_path):
 FULL = """
 import os, resource, signal, sys, time
 from pathlib import Path
-from nodes.recorder.growth import Growth
-from nodes.recorder.recording import open_recording
+from semmap.nodes.recorder.growth import Growth
+from semmap.nodes.recorder.recording import open_recording
 
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 with open_recording(Path(sys.argv[1]), None) as recording:

@@ -7,18 +7,18 @@ from contextlib import contextmanager, suppress
 
 import pytest
 
-from nodes import bus
-from nodes.recorder.node import Recorder
-from nodes.recorder.recorded_commits import read_commits
-from nodes.recorder.recording import open_recording
-from nodes.runtime import heartbeat
-from nodes.runtime.loop import Node
-from schemas import codec, errors, keys
-from schemas.bridge import Recall, SnapshotQuery, StarQuery
-from schemas.commands import Classes
-from schemas.commits import PlaceChanges, Snapshot
-from schemas.health import Health
-from schemas.scenes import SceneQuery, SurfaceQuery, Surfaces
+from semmap.nodes import bus
+from semmap.nodes.recorder.node import Recorder
+from semmap.nodes.recorder.recorded_commits import read_commits
+from semmap.nodes.recorder.recording import open_recording
+from semmap.nodes.runtime import heartbeat
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import codec, errors, keys
+from semmap.schemas.bridge import Recall, SnapshotQuery, StarQuery
+from semmap.schemas.commands import Classes
+from semmap.schemas.commits import PlaceChanges, Snapshot
+from semmap.schemas.health import Health
+from semmap.schemas.scenes import SceneQuery, SurfaceQuery, Surfaces
 from tests.conftest import PATIENCE_S, free_endpoint, handling, until
 from tests.recorder.files import column, log, positions
 from tests.recorder.messages import (
@@ -254,9 +254,9 @@ def test_a_knowledge_base_that_begins_anew_is_followed(world, tmp_path):
 _RUN = """
 import sys
 from pathlib import Path
-from nodes.bus import Network
-from nodes.recorder.config import RecorderConfig
-from nodes.recorder.node import run
+from semmap.nodes.bus import Network
+from semmap.nodes.recorder.config import RecorderConfig
+from semmap.nodes.recorder.node import run
 path, endpoint, serve = sys.argv[1:]
 network = Network(connect=(endpoint,), listen=("tcp/127.0.0.1:0",), mode="peer")
 run(RecorderConfig(path=Path(path), network=network, serve=serve))

@@ -2,10 +2,10 @@
 
 import pytest
 
-from nodes.recorder.recorded_commits import read_commits
-from nodes.recorder.recording import open_recording
-from schemas import errors
-from schemas.commits import PlaceChanges
+from semmap.nodes.recorder.recorded_commits import read_commits
+from semmap.nodes.recorder.recording import open_recording
+from semmap.schemas import errors
+from semmap.schemas.commits import PlaceChanges
 from tests.recorder.messages import START_NS, commit, relation
 
 

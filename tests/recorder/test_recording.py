@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import pytest
 
-from nodes.drawing.figures import Figure
-from nodes.recorder.recorded_commits import read_commits
-from nodes.recorder.recording import free_to_serve, open_recording
-from nodes.recorder.replay import replay
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.drawing.figures import Figure
+from semmap.nodes.recorder.recorded_commits import read_commits
+from semmap.nodes.recorder.recording import free_to_serve, open_recording
+from semmap.nodes.recorder.replay import replay
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from tests.conftest import until
 from tests.recorder.files import column, log, positions, timelines
 from tests.recorder.messages import START_NS, commit, entity, pose, relation, surface
@@ -129,7 +129,7 @@ def test_a_damaged_recording_is_told(tmp_path):
 _KILLED = """
 import sys, time
 from pathlib import Path
-from nodes.recorder.recording import open_recording
+from semmap.nodes.recorder.recording import open_recording
 from tests.recorder.messages import commit
 with open_recording(Path(sys.argv[1]), None) as recording:
     for seq in range(50):

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from nodes.recorder.retention import File, Retention, recordings
-from schemas.errors import BadRequest
+from semmap.nodes.recorder.retention import File, Retention, recordings
+from semmap.schemas.errors import BadRequest
 
 DAY_S = 86400.0
 NOW_S = 100 * DAY_S

@@ -2,10 +2,10 @@
 
 import pytest
 
-from nodes.recorder.recorded_commits import commits_of, read_commits
-from nodes.recorder.recording import open_recording
-from nodes.recorder.whole_part import whole_part
-from schemas import errors
+from semmap.nodes.recorder.recorded_commits import commits_of, read_commits
+from semmap.nodes.recorder.recording import open_recording
+from semmap.nodes.recorder.whole_part import whole_part
+from semmap.schemas import errors
 from tests.recorder.messages import START_NS, commit
 
 

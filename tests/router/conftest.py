@@ -8,11 +8,11 @@ import secrets
 import pytest
 import zenoh
 
-from nodes import bus
-from nodes.identity import Identity, authority
-from nodes.identity.register import Register
-from nodes.router.access import access_control
-from schemas.roles import ROLES
+from semmap.nodes import bus
+from semmap.nodes.identity import Identity, authority
+from semmap.nodes.identity.register import Register
+from semmap.nodes.router.access import access_control
+from semmap.schemas.roles import ROLES
 from tests.conftest import free_endpoint, until
 
 

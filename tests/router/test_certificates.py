@@ -12,9 +12,9 @@ import pytest
 import zenoh
 from msgspec import structs
 
-from nodes import bus
-from nodes.identity import Identity, authority
-from schemas import errors, keys
+from semmap.nodes import bus
+from semmap.nodes.identity import Identity, authority
+from semmap.schemas import errors, keys
 from tests.conftest import PATIENCE_S, free_endpoint, until
 from tests.router.conftest import opened
 

@@ -7,13 +7,13 @@ import contextlib
 import pytest
 from msgspec import structs
 
-from nodes import bus
-from nodes.identity import Identity
-from nodes.identity.register import Register
-from nodes.router.access import access_control
-from schemas import errors, keys
-from schemas.commands import Status
-from schemas.replies import Done
+from semmap.nodes import bus
+from semmap.nodes.identity import Identity
+from semmap.nodes.identity.register import Register
+from semmap.nodes.router.access import access_control
+from semmap.schemas import errors, keys
+from semmap.schemas.commands import Status
+from semmap.schemas.replies import Done
 from tests.conftest import PATIENCE_S, free_endpoint, until
 from tests.router.conftest import opened, router_network
 

@@ -11,14 +11,14 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from nodes import bus
-from nodes.identity import Identity, authority
-from nodes.identity.register import Member, Register
-from nodes.router.node import in_words
-from nodes.supervisor.settings import Settings
-from schemas import codec, keys
-from schemas.commits import Effects
-from schemas.health import Health
+from semmap.nodes import bus
+from semmap.nodes.identity import Identity, authority
+from semmap.nodes.identity.register import Member, Register
+from semmap.nodes.router.node import in_words
+from semmap.nodes.supervisor.settings import Settings
+from semmap.schemas import codec, keys
+from semmap.schemas.commits import Effects
+from semmap.schemas.health import Health
 from tests.conftest import PATIENCE_S, free_endpoint, until
 from tests.router.conftest import opened
 
@@ -38,7 +38,7 @@ def routed(own, tmp_path):
     )
     path = tmp_path / "settings.json"
     path.write_bytes(codec.encode_json(settings))
-    command = [sys.executable, "-P", "-m", "nodes.supervisor.launch", keys.ROUTER, str(path)]
+    command = [sys.executable, "-P", "-m", "semmap.nodes.supervisor.launch", keys.ROUTER, str(path)]
     with subprocess.Popen(command) as process:
         yield endpoint
         process.send_signal(signal.SIGTERM)

@@ -9,8 +9,8 @@ from __future__ import annotations
 import pytest
 import zenoh
 
-from schemas import keys, roles
-from schemas.roles import GRANTS, ROLES
+from semmap.schemas import keys, roles
+from semmap.schemas.roles import GRANTS, ROLES
 from tests.conftest import PATIENCE_S, until
 from tests.router.conftest import Heard
 

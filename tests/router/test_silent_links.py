@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from nodes.router.silent_links import give_up_after
+from semmap.nodes.router.silent_links import give_up_after
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there is no such option")

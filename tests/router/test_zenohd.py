@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 import zenoh
 
-from nodes import bus
-from nodes.extern.cli.app import execute
-from nodes.identity import Identity
-from schemas import keys
+from semmap.nodes import bus
+from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.identity import Identity
+from semmap.schemas import keys
 from tests.conftest import PATIENCE_S, free_endpoint, until
 from tests.router.conftest import opened
 

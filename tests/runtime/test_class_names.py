@@ -3,9 +3,9 @@ from __future__ import annotations
 import pytest
 from msgspec import structs
 
-from nodes.runtime.class_names import ClassNames
-from schemas.entities import ClassInfo
-from schemas.errors import UnknownClass
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.schemas.entities import ClassInfo
+from semmap.schemas.errors import UnknownClass
 
 
 def info(name: str, *, spatial: bool = True, italian: str = "") -> ClassInfo:

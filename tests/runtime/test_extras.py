@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from nodes.runtime import extras
-from schemas import errors
-from schemas.keys import NODES, ROUTER, WEB
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors
+from semmap.schemas.keys import NODES, ROUTER, WEB
 from tests.conftest import free_endpoint
 
 ROOT = Path(__file__).parents[2]
@@ -135,7 +135,7 @@ def test_without_the_knowledge_base_there_is_no_way_around(without):
     ],
 )
 def test_a_verb_without_its_extra_exits_with_2(without, capsys, monkeypatch, tmp_path, words, module, extra):
-    from nodes.extern.cli.app import execute
+    from semmap.nodes.extern.cli.app import execute
 
     without(module)
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
@@ -153,15 +153,15 @@ def test_names_are_guessed_without_rapidfuzz_too(monkeypatch):
 
 WITHOUT_EXTRAS = """
 import sys
-from nodes.runtime import extras
+from semmap.nodes.runtime import extras
 
 for module in {m for modules in extras.MODULES.values() for m in modules}:
     sys.modules[module] = None  # importing it is an ImportError
 
 import semmap, semmap.aio, semmap.commands, semmap.reasoner, semmap.testing, semmap.wire
-from nodes.extern import zenoh_codec
-from nodes.extern.cli.all_verbs import app
-from nodes.extern.cli.app import execute
+from semmap.nodes.extern import zenoh_codec
+from semmap.nodes.extern.cli.all_verbs import app
+from semmap.nodes.extern.cli.app import execute
 
 for verb in app.list_commands(None):
     assert execute([verb, "--help"]) == 0, verb

@@ -6,8 +6,8 @@ import threading
 
 import pytest
 
-from nodes.runtime.fair_pool import FairPool
-from schemas import errors
+from semmap.nodes.runtime.fair_pool import FairPool
+from semmap.schemas import errors
 from tests.conftest import until
 
 

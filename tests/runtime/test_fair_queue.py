@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.runtime.fair_queue import LATEST_S, SOONEST_S, FairQueue
+from semmap.nodes.runtime.fair_queue import LATEST_S, SOONEST_S, FairQueue
 
 
 def taken(queue):

@@ -3,15 +3,15 @@
 import msgspec
 import pytest
 
-from nodes import bus
-from nodes.runtime.following import Follower
-from nodes.runtime.loop import Node
-from nodes.runtime.map_replica import MapReplica
-from schemas import codec, keys
-from schemas.bridge import SnapshotQuery
-from schemas.commands import Classes
-from schemas.commits import Commit, Extent, Snapshot
-from schemas.health import Health
+from semmap.nodes import bus
+from semmap.nodes.runtime.following import Follower
+from semmap.nodes.runtime.loop import Node
+from semmap.nodes.runtime.map_replica import MapReplica
+from semmap.schemas import codec, keys
+from semmap.schemas.bridge import SnapshotQuery
+from semmap.schemas.commands import Classes
+from semmap.schemas.commits import Commit, Extent, Snapshot
+from semmap.schemas.health import Health
 from tests.conftest import free_endpoint, handling, until
 from tests.recorder.messages import commit, entity
 from tests.waiting import until_followed

@@ -6,7 +6,7 @@ from concurrent.futures import Future, InvalidStateError
 
 import pytest
 
-from nodes.runtime.futures import OwnFuture, settle, then
+from semmap.nodes.runtime.futures import OwnFuture, settle, then
 
 KINDS = pytest.mark.parametrize("kind", [Future, OwnFuture])
 

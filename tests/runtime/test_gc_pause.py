@@ -2,7 +2,7 @@ import gc
 
 import pytest
 
-from nodes.runtime import gc_pause
+from semmap.nodes.runtime import gc_pause
 
 
 @pytest.fixture(autouse=True)

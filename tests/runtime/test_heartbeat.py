@@ -9,11 +9,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from nodes import bus
-from nodes.runtime import heartbeat
-from nodes.runtime.heartbeat import Heartbeat
-from schemas import keys
-from schemas.health import Health
+from semmap.nodes import bus
+from semmap.nodes.runtime import heartbeat
+from semmap.nodes.runtime.heartbeat import Heartbeat
+from semmap.schemas import keys
+from semmap.schemas.health import Health
 from tests.conftest import free_endpoint, until
 
 

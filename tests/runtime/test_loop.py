@@ -11,15 +11,15 @@ from itertools import count
 import pytest
 import zenoh
 
-from nodes import bus
-from nodes.bus import asking
-from nodes.runtime import heartbeat, loop
-from nodes.runtime.fair_queue import FairQueue
-from nodes.runtime.loop import Node
-from schemas import codec, commands, errors, keys, replies
-from schemas.calls import Call, Handler, Relay
-from schemas.health import Health
-from schemas.scenes import Poses
+from semmap.nodes import bus
+from semmap.nodes.bus import asking
+from semmap.nodes.runtime import heartbeat, loop
+from semmap.nodes.runtime.fair_queue import FairQueue
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import codec, commands, errors, keys, replies
+from semmap.schemas.calls import Call, Handler, Relay
+from semmap.schemas.health import Health
+from semmap.schemas.scenes import Poses
 from tests.conftest import PATIENCE_S, free_endpoint, handling, until
 from tests.waiting import publications_kept, questions_asked, until_followed, until_served
 
@@ -299,7 +299,7 @@ def test_somebody_who_comes_late_is_waited_for(network, monkeypatch):
 
 def test_what_is_quick_is_asked_anew_when_it_has_got_lost(network, monkeypatch):
     node, client = network
-    monkeypatch.setattr("nodes.bus.asking._ROUND_S", 0.3)
+    monkeypatch.setattr("semmap.nodes.bus.asking._ROUND_S", 0.3)
     asked, answers = [], []
 
     def receive(request):

@@ -1,8 +1,8 @@
 import msgspec
 import pytest
 
-from nodes.runtime.map_replica import MapReplica
-from schemas.commits import Extent, Snapshot
+from semmap.nodes.runtime.map_replica import MapReplica
+from semmap.schemas.commits import Extent, Snapshot
 from tests.recorder.messages import commit, entity
 
 

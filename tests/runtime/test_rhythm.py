@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.runtime import rhythm
-from schemas import errors
+from semmap.nodes.runtime import rhythm
+from semmap.schemas import errors
 
 S = 1_000_000_000
 

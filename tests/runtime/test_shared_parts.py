@@ -1,7 +1,7 @@
 import msgspec
 
-from nodes.runtime.shared_parts import SharedParts
-from schemas.entities import IDENTITY, Entity
+from semmap.nodes.runtime.shared_parts import SharedParts
+from semmap.schemas.entities import IDENTITY, Entity
 from tests.recorder.messages import entity
 
 

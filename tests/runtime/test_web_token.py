@@ -1,7 +1,7 @@
 import pytest
 
-from nodes.runtime.web_token import new_token
-from schemas import errors
+from semmap.nodes.runtime.web_token import new_token
+from semmap.schemas import errors
 
 
 def test_a_token_is_made_up_or_long_enough():

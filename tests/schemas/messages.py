@@ -7,7 +7,7 @@ import msgspec
 from hypothesis import strategies as st
 from msgspec import inspect
 
-from schemas import (
+from semmap.schemas import (
     bridge,
     commands,
     commits,

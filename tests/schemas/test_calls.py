@@ -5,18 +5,18 @@ from __future__ import annotations
 import pytest
 from mypy import api
 
-from schemas import bridge, commands
-from schemas.calls import Call, Handler, by_verb, reply_type
-from schemas.commits import Commit, Effects, Transaction
-from schemas.relations import Described
-from schemas.scenes import Scene, SceneQuery
+from semmap.schemas import bridge, commands
+from semmap.schemas.calls import Call, Handler, by_verb, reply_type
+from semmap.schemas.commits import Commit, Effects, Transaction
+from semmap.schemas.relations import Described
+from semmap.schemas.scenes import Scene, SceneQuery
 
 WIRE = """
 from concurrent.futures import Future
-from nodes.extern.client import Client
-from schemas.commands import Get, Pause
-from schemas.relations import Described
-from schemas.replies import Done
+from semmap.nodes.extern.client import Client
+from semmap.schemas.commands import Get, Pause
+from semmap.schemas.relations import Described
+from semmap.schemas.replies import Done
 
 def entity(query: Get) -> Described: ...
 def later(query: Get) -> Future[Described]: ...

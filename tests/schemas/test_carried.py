@@ -1,4 +1,4 @@
-from schemas import wording
+from semmap.schemas import wording
 
 
 def test_what_was_to_be_left_is_not_said_to_be_nowhere():

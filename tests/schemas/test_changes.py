@@ -2,9 +2,9 @@
 
 import pytest
 
-from schemas import codec
-from schemas.changes import Change, between, in_words, of_properties, removed
-from schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
+from semmap.schemas import codec
+from semmap.schemas.changes import Change, between, in_words, of_properties, removed
+from semmap.schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
 
 BY = Provenance(commit=1, stamp_ns=1, source="operator")
 

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from schemas import codec, errors
-from schemas.bridge import Recall, SnapshotQuery, TakeBack
-from schemas.commands import COMMANDS, Add, Check, List, Load, Remove, StepOnce, Undo
-from schemas.commits import Departed, Snapshot, Transaction
-from schemas.entities import Pose
+from semmap.schemas import codec, errors
+from semmap.schemas.bridge import Recall, SnapshotQuery, TakeBack
+from semmap.schemas.commands import COMMANDS, Add, Check, List, Load, Remove, StepOnce, Undo
+from semmap.schemas.commits import Departed, Snapshot, Transaction
+from semmap.schemas.entities import Pose
 from tests.schemas import messages
 
 
@@ -252,7 +252,7 @@ def test_texts_have_an_end_before_anybody_looks_at_them(command):
 MEET_AT_ONCE = """
 import sys, threading
 from msgspec import defstruct, json, msgpack
-from schemas import codec
+from semmap.schemas import codec
 
 sys.setswitchinterval(1e-6)  # threads take turns as often as they can
 content = {f"field{i}": {"x": 1} for i in range(10)}

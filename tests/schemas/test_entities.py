@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from schemas.entities import NAME_PATTERN, Pose, angle_rad, distance_m, free_name, orientation_from_yaw
+from semmap.schemas.entities import NAME_PATTERN, Pose, angle_rad, distance_m, free_name, orientation_from_yaw
 
 YAWS = st.floats(-math.pi + 1e-6, math.pi)
 

@@ -1,7 +1,7 @@
 import pytest
 
-from schemas import errors
-from schemas.explanations import Explanation
+from semmap.schemas import errors
+from semmap.schemas.explanations import Explanation
 
 ALL = [
     error

@@ -3,8 +3,8 @@
 import pytest
 from msgspec import structs
 
-from schemas import joints
-from schemas.joints import Joint
+from semmap.schemas import joints
+from semmap.schemas.joints import Joint
 
 DOOR = Joint(name="door", kind="hinge", lower=0.0, upper=1.6, closed=0.0)
 LID = Joint(name="lid", kind="hinge", lower=-2.0, upper=0.0, closed=0.0)

@@ -1,4 +1,4 @@
-from schemas import keys
+from semmap.schemas import keys
 
 
 def test_every_key_is_below_the_root():

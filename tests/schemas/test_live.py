@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from schemas import codec, errors, keys
-from schemas.entities import Live, Pose, orientation_from_yaw
-from schemas.live import LivePose, LivePoses
+from semmap.schemas import codec, errors, keys
+from semmap.schemas.entities import Live, Pose, orientation_from_yaw
+from semmap.schemas.live import LivePose, LivePoses
 
 
 def test_json_and_messagepack_say_the_same():

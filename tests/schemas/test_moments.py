@@ -4,8 +4,8 @@ from datetime import datetime
 
 import pytest
 
-from schemas import codec, commands, errors
-from schemas.moments import Moment, read_moment, with_offset
+from semmap.schemas import codec, commands, errors
+from semmap.schemas.moments import Moment, read_moment, with_offset
 
 NOON_S = int(datetime(2026, 3, 1, 12, 0).timestamp())
 NOON_NS = NOON_S * 10**9

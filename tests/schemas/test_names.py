@@ -8,11 +8,11 @@ import zenoh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ontology import vocabulary as v
-from schemas import codec, errors, keys
-from schemas.commands import Add, Get, Remove
-from schemas.entities import NAME_PATTERN, composed, free_name
-from schemas.scene_files import Described
+from semmap.ontology import vocabulary as v
+from semmap.schemas import codec, errors, keys
+from semmap.schemas.commands import Add, Get, Remove
+from semmap.schemas.entities import NAME_PATTERN, composed, free_name
+from semmap.schemas.scene_files import Described
 
 GOOD = ["chair1", "_", "A.b-c_9", "tazzinà", "杯子", "кружка_2", "फूल", "कुर्सी", "كوب", "ถ้วย", "x" * 128]
 BAD = [

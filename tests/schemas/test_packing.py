@@ -2,8 +2,8 @@ import gzip
 
 import pytest
 
-from schemas import packing
-from schemas.errors import BadFile
+from semmap.schemas import packing
+from semmap.schemas.errors import BadFile
 
 TEXT = b":cup1 a dm:Cup .\n" * 1000
 

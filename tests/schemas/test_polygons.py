@@ -3,8 +3,8 @@ import random
 
 import pytest
 
-from schemas.errors import BadRequest
-from schemas.polygons import MOST_POINTS, box_around, read_wkt, signed_area, simple, wkt
+from semmap.schemas.errors import BadRequest
+from semmap.schemas.polygons import MOST_POINTS, box_around, read_wkt, signed_area, simple, wkt
 
 L_SHAPE = "POLYGON ((0 0, 4 0, 4 1, 1 1, 1 3, 0 3, 0 0))"
 WITH_HOLE = "POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0), (1 1, 1 2, 2 2, 2 1, 1 1))"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from schemas import roles
-from schemas.calls import reply_type
-from schemas.commands import COMMANDS, Add, Clear, Get, Load, Remove
-from schemas.replies import Changed
+from semmap.schemas import roles
+from semmap.schemas.calls import reply_type
+from semmap.schemas.commands import COMMANDS, Add, Clear, Get, Load, Remove
+from semmap.schemas.replies import Changed
 
 
 def test_every_command_has_a_row():

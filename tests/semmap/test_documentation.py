@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 import semmap
-from nodes.extern.client_verbs import Verb, Verbs
-from nodes.runtime import extras
+from semmap.nodes.extern.client_verbs import Verb, Verbs
+from semmap.nodes.runtime import extras
 
 ROOT = Path(__file__).parents[2]
 PYTHON = (ROOT / "docs" / "python.md").read_text()

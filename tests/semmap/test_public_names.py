@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-import nodes
-import ontology
-import schemas
 import semmap
+import semmap.nodes
+import semmap.ontology
+import semmap.schemas
 
 PUBLIC = {
     "semmap": """

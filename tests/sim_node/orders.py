@@ -1,8 +1,8 @@
 """Short ways to say orders and placements, and worlds in which they are followed."""
 
-from nodes.sim_node.world import World
-from schemas.entities import Pose, Size, orientation_from_yaw
-from schemas.scenes import Body, BodyOrder, Placement
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.entities import Pose, Size, orientation_from_yaw
+from semmap.schemas.scenes import Body, BodyOrder, Placement
 
 
 def pose(x: float, y: float, z: float = 0.0, yaw: float = 0.0) -> Pose:

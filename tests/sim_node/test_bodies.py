@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.sim_node.bodies import BodyIndex, BodyRecord, frame_of, pose_of, rotated
-from nodes.sim_node.models.parts import about, product, rotation_matrix
-from schemas.entities import Pose
-from schemas.joints import Joint
+from semmap.nodes.sim_node.bodies import BodyIndex, BodyRecord, frame_of, pose_of, rotated
+from semmap.nodes.sim_node.models.parts import about, product, rotation_matrix
+from semmap.schemas.entities import Pose
+from semmap.schemas.joints import Joint
 
 MJCF = """<mujoco><worldbody>
   <body name="shelf" pos="5 0 1" euler="0 0 90"><geom type="box" size="1 1 1"/>

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from nodes.bus import RESTART_S
-from nodes.sim_node.config import CameraConfig, RobotConfig, SimConfig
+from semmap.nodes.bus import RESTART_S
+from semmap.nodes.sim_node.config import CameraConfig, RobotConfig, SimConfig
 
 
 def test_without_settings_there_is_a_bare_floor_that_no_camera_films():

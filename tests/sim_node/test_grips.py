@@ -5,13 +5,13 @@ import math
 import pytest
 from msgspec import structs
 
-from nodes.sim_node.config import RobotConfig
-from nodes.sim_node.models.sources import Models
-from nodes.sim_node.robots.robot import SHIPPED
-from nodes.sim_node.world import World
-from nodes.sim_node.world_file import open_world
-from schemas.entities import Pose, angle_rad, compose, distance_m, relative
-from schemas.scenes import DriveBase, GripOrder
+from semmap.nodes.sim_node.config import RobotConfig
+from semmap.nodes.sim_node.models.sources import Models
+from semmap.nodes.sim_node.robots.robot import SHIPPED
+from semmap.nodes.sim_node.world import World
+from semmap.nodes.sim_node.world_file import open_world
+from semmap.schemas.entities import Pose, angle_rad, compose, distance_m, relative
+from semmap.schemas.scenes import DriveBase, GripOrder
 from tests.sim_node.orders import bodies, hand, order, pose, spawned
 
 

@@ -6,8 +6,8 @@ import mujoco
 import pytest
 from msgspec import structs
 
-from nodes.sim_node.world import World
-from schemas.scenes import JointOrder
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.scenes import JointOrder
 from tests.sim_node.orders import bodies, hand, order, pose, spawned
 
 

@@ -3,8 +3,8 @@
 import mujoco
 import pytest
 
-from nodes.sim_node.world import World
-from schemas.scenes import JointOrder, Placement
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.scenes import JointOrder, Placement
 from tests.sim_node.orders import bodies, order, pose
 
 KITCHEN = """<mujoco><compiler angle="radian"/><custom>

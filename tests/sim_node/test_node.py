@@ -4,16 +4,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nodes import bus
-from nodes.runtime.loop import Node
-from nodes.sim_node import node
-from nodes.sim_node.config import CameraConfig, SimConfig
-from nodes.sim_node.node import Simulator
-from nodes.sim_node.world import World
-from schemas import codec, errors, keys
-from schemas.commands import Pause, Reset, StepOnce
-from schemas.replies import Done
-from schemas.scenes import (
+from semmap.nodes import bus
+from semmap.nodes.runtime.loop import Node
+from semmap.nodes.sim_node import node
+from semmap.nodes.sim_node.config import CameraConfig, SimConfig
+from semmap.nodes.sim_node.node import Simulator
+from semmap.nodes.sim_node.world import World
+from semmap.schemas import codec, errors, keys
+from semmap.schemas.commands import Pause, Reset, StepOnce
+from semmap.schemas.replies import Done
+from semmap.schemas.scenes import (
     BodiesMoved,
     CameraFrame,
     Delete,

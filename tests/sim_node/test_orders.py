@@ -2,11 +2,11 @@
 
 import pytest
 
-from nodes.sim_node.models.library import build as library_model
-from nodes.sim_node.orders import REACH_M, grips, joint_targets, moves, newcomers
-from schemas.entities import Pose
-from schemas.joints import Joint
-from schemas.scenes import GripOrder, JointOrder, Placement
+from semmap.nodes.sim_node.models.library import build as library_model
+from semmap.nodes.sim_node.orders import REACH_M, grips, joint_targets, moves, newcomers
+from semmap.schemas.entities import Pose
+from semmap.schemas.joints import Joint
+from semmap.schemas.scenes import GripOrder, JointOrder, Placement
 from tests.sim_node.orders import hand, order, pose
 from tests.sim_node.test_bodies import record
 

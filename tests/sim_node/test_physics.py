@@ -4,9 +4,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.variety_table import KINDS
-from nodes.sim_node.world import World
-from schemas.entities import Pose, angle_rad, distance_m
+from semmap.nodes.sim_node.models.variety_table import KINDS
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.entities import Pose, angle_rad, distance_m
 from tests.sim_node.orders import hand, order, pose
 
 

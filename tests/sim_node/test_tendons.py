@@ -3,7 +3,7 @@
 import mujoco
 import pytest
 
-from nodes.sim_node.world import World
+from semmap.nodes.sim_node.world import World
 
 FINGERS = """<mujoco><worldbody><geom type="plane" size="0 0 .1"/>
 <body name="left" pos="0 0 1"><joint name="l" axis="0 1 0" damping="1"/><geom size=".1" pos=".2 0 0"/></body>

@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import mujoco
 import pytest
 
-from nodes.sim_node.window import Window
-from nodes.sim_node.world import World
-from schemas.entities import distance_m
-from schemas.errors import BadRequest
+from semmap.nodes.sim_node.window import Window
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.entities import distance_m
+from semmap.schemas.errors import BadRequest
 from tests.sim_node.orders import order, pose
 
 DISPLAY = bool(os.environ.get("DISPLAY"))
@@ -77,7 +77,7 @@ class Viewer:
 def opened(monkeypatch):
     world = World()
     viewer = Viewer(world)
-    monkeypatch.setattr("nodes.sim_node.window._require_display", lambda: None)
+    monkeypatch.setattr("semmap.nodes.sim_node.window._require_display", lambda: None)
     shown = SimpleNamespace(launch_passive=lambda model, data, **how: viewer)
     monkeypatch.setattr(mujoco, "viewer", shown, raising=False)
     monkeypatch.setitem(sys.modules, "mujoco.viewer", shown)

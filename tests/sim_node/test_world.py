@@ -4,15 +4,15 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.facets import surface_of
-from nodes.sim_node.models.library import build as library_model
-from nodes.sim_node.physics import base_scene, build
-from nodes.sim_node.physics.base_scene import read_mjcf
-from nodes.sim_node.vision.view import camera_names, overview
-from nodes.sim_node.world import World
-from schemas.entities import Pose, angle_rad, distance_m
-from schemas.errors import BadFile, Refused
-from schemas.scenes import DriveBase, GripOrder, JointOrder, Placement
+from semmap.nodes.sim_node.models.facets import surface_of
+from semmap.nodes.sim_node.models.library import build as library_model
+from semmap.nodes.sim_node.physics import base_scene, build
+from semmap.nodes.sim_node.physics.base_scene import read_mjcf
+from semmap.nodes.sim_node.vision.view import camera_names, overview
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.entities import Pose, angle_rad, distance_m
+from semmap.schemas.errors import BadFile, Refused
+from semmap.schemas.scenes import DriveBase, GripOrder, JointOrder, Placement
 from tests.sim_node.orders import hand, order, pose
 
 

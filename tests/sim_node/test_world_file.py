@@ -3,13 +3,13 @@ import json
 import numpy as np
 import pytest
 
-from nodes.runtime.class_names import ClassNames
-from nodes.sim_node.models.sources import Models
-from nodes.sim_node.physics import base_scene
-from nodes.sim_node.vision.view import camera_names, camera_view
-from nodes.sim_node.world_file import open_world
-from schemas.entities import ClassInfo
-from schemas.errors import BadFile
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.nodes.sim_node.models.sources import Models
+from semmap.nodes.sim_node.physics import base_scene
+from semmap.nodes.sim_node.vision.view import camera_names, camera_view
+from semmap.nodes.sim_node.world_file import open_world
+from semmap.schemas.entities import ClassInfo
+from semmap.schemas.errors import BadFile
 
 SCENE = {
     "entities": [{"class": "Chair", "name": "chair9", "at": [1, 2, 0]}, {"class": "Cup", "at": [0, 0, 0]}]

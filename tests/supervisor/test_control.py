@@ -8,7 +8,7 @@ import sqlite3
 import time
 from contextlib import closing
 
-from nodes.supervisor.watchdog import SILENT_S
+from semmap.nodes.supervisor.watchdog import SILENT_S
 from tests.conftest import PATIENCE_S, running, until
 
 SLOW_S = SILENT_S + 2.0

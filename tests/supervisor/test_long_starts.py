@@ -8,15 +8,15 @@ from pathlib import Path
 import mujoco
 import pytest
 
-from nodes.sim_node.models.library import build
-from nodes.sim_node.physics import base_scene
-from nodes.sim_node.world_file import require_world
-from nodes.supervisor import control, up
-from nodes.supervisor.control import Supervisor
-from nodes.supervisor.settings import Settings
-from ontology import EMPTY_WORLD, HOUSEHOLD_TTL
-from schemas.errors import BadFile
-from schemas.health import Health
+from semmap.nodes.sim_node.models.library import build
+from semmap.nodes.sim_node.physics import base_scene
+from semmap.nodes.sim_node.world_file import require_world
+from semmap.nodes.supervisor import control, up
+from semmap.nodes.supervisor.control import Supervisor
+from semmap.nodes.supervisor.settings import Settings
+from semmap.ontology import EMPTY_WORLD, HOUSEHOLD_TTL
+from semmap.schemas.errors import BadFile
+from semmap.schemas.health import Health
 
 WORLD = """<mujoco><worldbody><geom type="plane" size="5 5 1"/>
 <body name="box1" pos="0 0 0.1"><freejoint/><geom size="0.1"/></body></worldbody></mujoco>"""

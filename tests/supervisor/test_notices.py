@@ -8,9 +8,9 @@ import stat
 
 import pytest
 
-from nodes.runtime.notify import NOTIFY_VARIABLE, notify
-from nodes.supervisor.notices import Notices
-from schemas.health import Health
+from semmap.nodes.runtime.notify import NOTIFY_VARIABLE, notify
+from semmap.nodes.supervisor.notices import Notices
+from semmap.schemas.health import Health
 
 HEALTH = Health(node="kb_node", pid=1, started_ns=2, stamp_ns=3, state="ready", detail="x" * 1000)
 

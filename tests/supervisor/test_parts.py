@@ -2,8 +2,8 @@
 
 import pytest
 
-from nodes.supervisor.parts import nodes_of
-from schemas import errors
+from semmap.nodes.supervisor.parts import nodes_of
+from semmap.schemas import errors
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from nodes.supervisor import presence
+from semmap.nodes.supervisor import presence
 from tests.conftest import free_endpoint
 
 
@@ -25,7 +25,7 @@ def test_what_its_process_left_behind_announces_nothing():
     endpoint = free_endpoint()
     code = f"""if True:
         import os
-        from nodes.supervisor import presence
+        from semmap.nodes.supervisor import presence
         with presence.announced({endpoint!r}):
             print(presence.is_announced({endpoint!r}), flush=True)
             os._exit(1)

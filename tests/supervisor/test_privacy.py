@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import stat
 
-from nodes.supervisor.privacy import make_private
+from semmap.nodes.supervisor.privacy import make_private
 
 
 def mode(path):

@@ -7,8 +7,8 @@ from contextlib import ExitStack
 
 import pytest
 
-from nodes.supervisor import registry
-from schemas import errors
+from semmap.nodes.supervisor import registry
+from semmap.schemas import errors
 
 HERE = "tcp/127.0.0.1:7801"
 

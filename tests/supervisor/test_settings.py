@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.supervisor.settings import Settings
-from schemas import codec, errors
+from semmap.nodes.supervisor.settings import Settings
+from semmap.schemas import codec, errors
 
 
 def settings(**fields) -> Settings:

@@ -4,7 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from nodes.extern.client import connect
+from semmap.nodes.extern.client import connect
 from tests.conftest import PATIENCE_S, free_endpoint, running, until
 
 SEMMAP = Path(sys.executable).with_name("semmap")

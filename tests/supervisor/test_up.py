@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from nodes.kb_node.storage.seed import seed
-from nodes.supervisor.settings import JOURNAL, SETTINGS
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
-from ontology import vocabulary as v
+from semmap.nodes.kb_node.storage.seed import seed
+from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
 from tests.conftest import PATIENCE_S, free_endpoint, running
 
 BASE = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping"

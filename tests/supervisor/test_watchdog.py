@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from nodes.supervisor.watchdog import ENDLESS_S, SILENT_S, UNHEARD_S, Watchdog, work_seconds
+from semmap.nodes.supervisor.watchdog import ENDLESS_S, SILENT_S, UNHEARD_S, Watchdog, work_seconds
 from tests.conftest import PATIENCE_S, until
 
 

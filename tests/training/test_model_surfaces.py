@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.fitting.model_surfaces import SHIPPED, shipped
-from nodes.sim_node.models.library import build
-from nodes.sim_node.models.model_table import MODELS
-from nodes.training.model_surfaces import POINTS, library_models, surface_of
-from nodes.training.taxonomy import class_of_models
+from semmap.nodes.perception_node.fitting.model_surfaces import SHIPPED, shipped
+from semmap.nodes.sim_node.models.library import build
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.training.model_surfaces import POINTS, library_models, surface_of
+from semmap.nodes.training.taxonomy import class_of_models
 
 
 def test_every_class_with_a_model_has_its_surface():

@@ -1,5 +1,5 @@
-from nodes.sim_node.models.model_table import MODELS
-from nodes.training.taxonomy import class_of_models, hierarchy
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.training.taxonomy import class_of_models, hierarchy
 
 
 def test_ancestors_go_from_special_to_general():

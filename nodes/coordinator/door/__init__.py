@@ -5,4 +5,4 @@ dialogue with the knowledge base (`dialogues.py`): `changing.py` add, update, re
 load; `undoing.py` undo. They share `committing.py`, and `known_map.py`, the map as the coordinator knows it.
 """
 
-from nodes.coordinator.door.door import Door as Door
+from semmap.nodes.coordinator.door.door import Door as Door

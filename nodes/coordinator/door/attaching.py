@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from nodes.coordinator import holding, transactions
-from nodes.coordinator.dialogues import Talk, ask
-from nodes.coordinator.door.committing import changed, commit, once
-from nodes.coordinator.door.known_map import KnownMap
-from nodes.coordinator.plausibility import require_carrying
-from schemas import errors, wording
-from schemas.bridge import LoadOf
-from schemas.commands import Attach, Detach
-from schemas.entities import Entity, Pose, rounded
-from schemas.grips import holder_of
-from schemas.replies import Changed
+from semmap.nodes.coordinator import holding, transactions
+from semmap.nodes.coordinator.dialogues import Talk, ask
+from semmap.nodes.coordinator.door.committing import changed, commit, once
+from semmap.nodes.coordinator.door.known_map import KnownMap
+from semmap.nodes.coordinator.plausibility import require_carrying
+from semmap.schemas import errors, wording
+from semmap.schemas.bridge import LoadOf
+from semmap.schemas.commands import Attach, Detach
+from semmap.schemas.entities import Entity, Pose, rounded
+from semmap.schemas.grips import holder_of
+from semmap.schemas.replies import Changed
 
 
 @once

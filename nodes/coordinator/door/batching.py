@@ -6,17 +6,17 @@ from typing import Final, NamedTuple
 
 from msgspec import structs
 
-from nodes.coordinator import transactions
-from nodes.coordinator.dialogues import Talk
-from nodes.coordinator.door.changing import UNCHANGED, notes_on, updatable
-from nodes.coordinator.door.committing import changed, commit, once
-from nodes.coordinator.door.jointed import plain, properties_in, require_opening
-from nodes.coordinator.door.known_map import KnownMap
-from schemas import errors, wording
-from schemas.commands import Batch, Command, Set, Unset, Update
-from schemas.commits import Effects, Transaction
-from schemas.entities import ClassInfo, Entity
-from schemas.replies import Changed
+from semmap.nodes.coordinator import transactions
+from semmap.nodes.coordinator.dialogues import Talk
+from semmap.nodes.coordinator.door.changing import UNCHANGED, notes_on, updatable
+from semmap.nodes.coordinator.door.committing import changed, commit, once
+from semmap.nodes.coordinator.door.jointed import plain, properties_in, require_opening
+from semmap.nodes.coordinator.door.known_map import KnownMap
+from semmap.schemas import errors, wording
+from semmap.schemas.commands import Batch, Command, Set, Unset, Update
+from semmap.schemas.commits import Effects, Transaction
+from semmap.schemas.entities import ClassInfo, Entity
+from semmap.schemas.replies import Changed
 
 _OF_ALL: Final = (
     *("id", "source", "agent", "reason"),

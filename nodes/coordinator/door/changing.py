@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from nodes.coordinator import holding, transactions
-from nodes.coordinator.authority import is_placing, require_authority
-from nodes.coordinator.dialogues import Talk, ask
-from nodes.coordinator.door.committing import changed, commit, new_id, once, taken_anew
-from nodes.coordinator.door.jointed import require_opening
-from nodes.coordinator.door.known_map import KnownMap
-from nodes.coordinator.plausibility import doubts, require_carrying, require_same_nature
-from nodes.coordinator.scene.hands import Hand
-from nodes.coordinator.scene.settled import Settled, doing
-from ontology import vocabulary as v
-from ontology.name_index import Ambiguous, Named, NameIndex
-from schemas import changes, errors, wording
-from schemas.commands import (
+from semmap.nodes.coordinator import holding, transactions
+from semmap.nodes.coordinator.authority import is_placing, require_authority
+from semmap.nodes.coordinator.dialogues import Talk, ask
+from semmap.nodes.coordinator.door.committing import changed, commit, new_id, once, taken_anew
+from semmap.nodes.coordinator.door.jointed import require_opening
+from semmap.nodes.coordinator.door.known_map import KnownMap
+from semmap.nodes.coordinator.plausibility import doubts, require_carrying, require_same_nature
+from semmap.nodes.coordinator.scene.hands import Hand
+from semmap.nodes.coordinator.scene.settled import Settled, doing
+from semmap.ontology import vocabulary as v
+from semmap.ontology.name_index import Ambiguous, Named, NameIndex
+from semmap.schemas import changes, errors, wording
+from semmap.schemas.commands import (
     Add,
     Clear,
     Command,
@@ -26,10 +26,10 @@ from schemas.commands import (
     Unset,
     Update,
 )
-from schemas.commits import Effects, Transaction
-from schemas.entities import ClassInfo, Entity, Pose, Value
-from schemas.replies import Changed
-from schemas.scene_files import pose_of
+from semmap.schemas.commits import Effects, Transaction
+from semmap.schemas.entities import ClassInfo, Entity, Pose, Value
+from semmap.schemas.replies import Changed
+from semmap.schemas.scene_files import pose_of
 
 UNCHANGED = "unchanged: already up to date"
 _TRIES = 4

@@ -10,15 +10,15 @@ from typing import Any, TypeVar
 
 from msgspec import structs
 
-from nodes.coordinator.dialogues import Talk, ask
-from nodes.coordinator.door.known_map import KnownMap
-from nodes.runtime import heap
-from nodes.runtime.class_names import ClassNames
-from schemas import errors
-from schemas.bridge import MadeBy
-from schemas.commands import Classes, Command
-from schemas.commits import Effects, Transaction
-from schemas.replies import Changed
+from semmap.nodes.coordinator.dialogues import Talk, ask
+from semmap.nodes.coordinator.door.known_map import KnownMap
+from semmap.nodes.runtime import heap
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.schemas import errors
+from semmap.schemas.bridge import MadeBy
+from semmap.schemas.commands import Classes, Command
+from semmap.schemas.commits import Effects, Transaction
+from semmap.schemas.replies import Changed
 
 C = TypeVar("C", bound=Command)
 Change = Callable[[KnownMap, C], Talk[Changed]]

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from nodes.coordinator.dialogues import Ask, Talk, alone, hold, in_step
-from nodes.coordinator.door import attaching, batching, changing, loading, undoing
-from nodes.coordinator.door.known_map import KnownMap
-from nodes.coordinator.scene.hands import Hand, Hands
-from nodes.coordinator.scene.settled import Settled
-from nodes.coordinator.turns import Change
-from schemas.commands import (
+from semmap.nodes.coordinator.dialogues import Ask, Talk, alone, hold, in_step
+from semmap.nodes.coordinator.door import attaching, batching, changing, loading, undoing
+from semmap.nodes.coordinator.door.known_map import KnownMap
+from semmap.nodes.coordinator.scene.hands import Hand, Hands
+from semmap.nodes.coordinator.scene.settled import Settled
+from semmap.nodes.coordinator.turns import Change
+from semmap.schemas.commands import (
     Add,
     Attach,
     Batch,
@@ -26,7 +26,7 @@ from schemas.commands import (
     Unset,
     Update,
 )
-from schemas.replies import Changed
+from semmap.schemas.replies import Changed
 
 _CHANGING: Mapping[type[Command], Callable[[KnownMap, Any], Talk[Changed]]] = {
     Add: changing.add,

@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Final
 
-from nodes.coordinator.door.known_map import KnownMap
-from schemas import errors
-from schemas.commands import Set, Update
-from schemas.joints import IS_OPEN, OPENNESS, Joint
+from semmap.nodes.coordinator.door.known_map import KnownMap
+from semmap.schemas import errors
+from semmap.schemas.commands import Set, Update
+from semmap.schemas.joints import IS_OPEN, OPENNESS, Joint
 
 
 def plain(property_: str) -> str:

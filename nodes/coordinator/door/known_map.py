@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from operator import attrgetter
 
-from nodes.coordinator.free_names import FreeNames
-from nodes.coordinator.free_places import FreePlaces
-from nodes.coordinator.holding import Where
-from nodes.runtime import map_replica
-from nodes.runtime.class_names import ClassNames
-from schemas import errors
-from schemas.commits import Effects, Snapshot
-from schemas.entities import Entity, Pose, Size, Vector
-from schemas.grips import holder_of
-from schemas.scenes import Body
+from semmap.nodes.coordinator.free_names import FreeNames
+from semmap.nodes.coordinator.free_places import FreePlaces
+from semmap.nodes.coordinator.holding import Where
+from semmap.nodes.runtime import map_replica
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.schemas import errors
+from semmap.schemas.commits import Effects, Snapshot
+from semmap.schemas.entities import Entity, Pose, Size, Vector
+from semmap.schemas.grips import holder_of
+from semmap.schemas.scenes import Body
 
 
 class KnownMap(map_replica.MapReplica[Effects]):

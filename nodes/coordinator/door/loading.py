@@ -7,24 +7,31 @@ from typing import Final
 
 from msgspec import structs
 
-from nodes.coordinator import transactions
-from nodes.coordinator.authority import require_authority, require_operator
-from nodes.coordinator.dialogues import Talk, ask
-from nodes.coordinator.door.committing import changed, commit, once, taken, taken_anew, taken_with_classes
-from nodes.coordinator.door.known_map import KnownMap
-from nodes.coordinator.files import huric
-from nodes.coordinator.files.content import kind_of
-from nodes.coordinator.free_names import FreeNames
-from nodes.runtime import gc_pause
-from nodes.runtime.class_names import AmbiguousClass, ClassNames
-from schemas import errors, scene_files, wording
-from schemas.bridge import LoadDocument, LoadTBox
-from schemas.commands import Load
-from schemas.commits import Effects, NewEntity, Transaction
-from schemas.entities import ClassInfo
-from schemas.packing import unpacked
-from schemas.replies import Changed
-from schemas.scene_files import Described
+from semmap.nodes.coordinator import transactions
+from semmap.nodes.coordinator.authority import require_authority, require_operator
+from semmap.nodes.coordinator.dialogues import Talk, ask
+from semmap.nodes.coordinator.door.committing import (
+    changed,
+    commit,
+    once,
+    taken,
+    taken_anew,
+    taken_with_classes,
+)
+from semmap.nodes.coordinator.door.known_map import KnownMap
+from semmap.nodes.coordinator.files import huric
+from semmap.nodes.coordinator.files.content import kind_of
+from semmap.nodes.coordinator.free_names import FreeNames
+from semmap.nodes.runtime import gc_pause
+from semmap.nodes.runtime.class_names import AmbiguousClass, ClassNames
+from semmap.schemas import errors, scene_files, wording
+from semmap.schemas.bridge import LoadDocument, LoadTBox
+from semmap.schemas.commands import Load
+from semmap.schemas.commits import Effects, NewEntity, Transaction
+from semmap.schemas.entities import ClassInfo
+from semmap.schemas.packing import unpacked
+from semmap.schemas.replies import Changed
+from semmap.schemas.scene_files import Described
 
 PART: Final = 10_000
 """Entities in a part of a scene that is loaded in parts."""

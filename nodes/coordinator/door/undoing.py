@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from nodes.coordinator.dialogues import Talk, ask
-from nodes.coordinator.door.committing import changed, once, taken_with_classes
-from nodes.coordinator.door.known_map import KnownMap
-from schemas import changes, errors, wording
-from schemas.bridge import TakeBack
-from schemas.changes import Change
-from schemas.commands import Undo
-from schemas.commits import Effects
-from schemas.entities import Entity
-from schemas.replies import Changed
+from semmap.nodes.coordinator.dialogues import Talk, ask
+from semmap.nodes.coordinator.door.committing import changed, once, taken_with_classes
+from semmap.nodes.coordinator.door.known_map import KnownMap
+from semmap.schemas import changes, errors, wording
+from semmap.schemas.bridge import TakeBack
+from semmap.schemas.changes import Change
+from semmap.schemas.commands import Undo
+from semmap.schemas.commits import Effects
+from semmap.schemas.entities import Entity
+from semmap.schemas.replies import Changed
 
 _FEW: Final = 50
 """So many changes are told as data."""

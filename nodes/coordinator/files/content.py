@@ -9,9 +9,9 @@ from typing import Literal
 from msgspec import UNSET, DecodeError, Raw, Struct, UnsetType
 from msgspec import json as _json
 
-from schemas import codec
-from schemas.errors import BadFile
-from schemas.packing import beginning, unpacked
+from semmap.schemas import codec
+from semmap.schemas.errors import BadFile
+from semmap.schemas.packing import beginning, unpacked
 
 Kind = Literal["abox", "scene", "huric"]
 

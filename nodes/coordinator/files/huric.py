@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 
-from schemas import codec
-from schemas.errors import BadFile, BadRequest
-from schemas.scene_files import Described
+from semmap.schemas import codec
+from semmap.schemas.errors import BadFile, BadRequest
+from semmap.schemas.scene_files import Described
 
 _ABILITIES = {"contain_ability": "containing", "support_ability": "supporting"}
 

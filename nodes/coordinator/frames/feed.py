@@ -10,27 +10,27 @@ from typing import Any, TypeVar
 
 from msgspec import structs
 
-from nodes import bus
-from nodes.coordinator.dialogues import hold_later
-from nodes.coordinator.door.committing import done_before
-from nodes.coordinator.door.known_map import KnownMap
-from nodes.coordinator.frames.links import PART_OF, EntityLinks, camera_links
-from nodes.coordinator.frames.placing import Framed, into_map, require_placing, told_in
-from nodes.coordinator.frames.published import Published
-from nodes.coordinator.frames.tree import Link, Tree
-from nodes.coordinator.kb_client import Bridge
-from nodes.coordinator.live.feed import LiveFeed
-from nodes.coordinator.scene.reconciler import AskSim
-from nodes.coordinator.scene.scene_view import SceneView
-from nodes.coordinator.turns import Turns
-from nodes.runtime.futures import OwnFuture, settle
-from nodes.runtime.loop import Node
-from schemas import commands as c
-from schemas import errors, keys
-from schemas.entities import Pose
-from schemas.frames import Frame, FramePose
-from schemas.relations import Described
-from schemas.scenes import CameraPose, CamerasQuery
+from semmap.nodes import bus
+from semmap.nodes.coordinator.dialogues import hold_later
+from semmap.nodes.coordinator.door.committing import done_before
+from semmap.nodes.coordinator.door.known_map import KnownMap
+from semmap.nodes.coordinator.frames.links import PART_OF, EntityLinks, camera_links
+from semmap.nodes.coordinator.frames.placing import Framed, into_map, require_placing, told_in
+from semmap.nodes.coordinator.frames.published import Published
+from semmap.nodes.coordinator.frames.tree import Link, Tree
+from semmap.nodes.coordinator.kb_client import Bridge
+from semmap.nodes.coordinator.live.feed import LiveFeed
+from semmap.nodes.coordinator.scene.reconciler import AskSim
+from semmap.nodes.coordinator.scene.scene_view import SceneView
+from semmap.nodes.coordinator.turns import Turns
+from semmap.nodes.runtime.futures import OwnFuture, settle
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import commands as c
+from semmap.schemas import errors, keys
+from semmap.schemas.entities import Pose
+from semmap.schemas.frames import Frame, FramePose
+from semmap.schemas.relations import Described
+from semmap.schemas.scenes import CameraPose, CamerasQuery
 
 R = TypeVar("R")
 Cameras = Iterable[CameraPose]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
-from nodes.coordinator.frames.tree import Link
-from schemas import errors, wording
-from schemas.entities import Entity, Live, Pose, relative
-from schemas.frames import MAP, FrameSource
-from schemas.scenes import Body, CameraPose
+from semmap.nodes.coordinator.frames.tree import Link
+from semmap.schemas import errors, wording
+from semmap.schemas.entities import Entity, Live, Pose, relative
+from semmap.schemas.frames import MAP, FrameSource
+from semmap.schemas.scenes import Body, CameraPose
 
 PART_OF = "isDirectPartOf"
 

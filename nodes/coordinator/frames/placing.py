@@ -7,12 +7,12 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.coordinator.frames.tree import ORIGIN, seen_from
-from schemas import errors
-from schemas.commands import Add, Drive, Get, List, Move, Update
-from schemas.entities import REACH_M, Entity, Pose, Vector, compose, rounded
-from schemas.relations import position_in
-from schemas.scene_files import pose_of
+from semmap.nodes.coordinator.frames.tree import ORIGIN, seen_from
+from semmap.schemas import errors
+from semmap.schemas.commands import Add, Drive, Get, List, Move, Update
+from semmap.schemas.entities import REACH_M, Entity, Pose, Vector, compose, rounded
+from semmap.schemas.relations import position_in
+from semmap.schemas.scene_files import pose_of
 
 Framed = Add | Update | Move | Drive | Get | List
 """The commands that have a `frame`."""

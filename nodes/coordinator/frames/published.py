@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterator
 from typing import NamedTuple
 
-from nodes.coordinator.frames.tree import Link, in_one_another
-from schemas import errors, keys, wording
-from schemas.entities import Pose
-from schemas.frames import LONGEST_NAME, MAP, FramePose
+from semmap.nodes.coordinator.frames.tree import Link, in_one_another
+from semmap.schemas import errors, keys, wording
+from semmap.schemas.entities import Pose
+from semmap.schemas.frames import LONGEST_NAME, MAP, FramePose
 
 _LATE_NS = 10_000_000_000
 """A pose that is older than the one before by less came late; by more, somebody's clock was set."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
-from schemas import errors
-from schemas.entities import Pose, compose, relative, rounded
-from schemas.frames import MAP, Frame, FrameSource
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose, compose, relative, rounded
+from semmap.schemas.frames import MAP, Frame, FrameSource
 
 ORIGIN = Pose(position_m=(0.0, 0.0, 0.0))
 

@@ -9,19 +9,19 @@ from functools import partial
 
 from msgspec import structs
 
-from nodes import bus
-from nodes.coordinator import holding
-from nodes.coordinator.config import CoordinatorConfig
-from nodes.coordinator.door.known_map import KnownMap
-from nodes.coordinator.live.live_poses import Due, LivePoses
-from nodes.coordinator.scene.scene_view import SceneView
-from nodes.coordinator.scene.settled import Settled
-from nodes.runtime.loop import Node
-from schemas import codec, errors, keys
-from schemas import live as messages
-from schemas.entities import Entity, Live, Pose, Source, Tracking, rounded
-from schemas.grips import holder_of
-from schemas.replies import Changed
+from semmap.nodes import bus
+from semmap.nodes.coordinator import holding
+from semmap.nodes.coordinator.config import CoordinatorConfig
+from semmap.nodes.coordinator.door.known_map import KnownMap
+from semmap.nodes.coordinator.live.live_poses import Due, LivePoses
+from semmap.nodes.coordinator.scene.scene_view import SceneView
+from semmap.nodes.coordinator.scene.settled import Settled
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import codec, errors, keys
+from semmap.schemas import live as messages
+from semmap.schemas.entities import Entity, Live, Pose, Source, Tracking, rounded
+from semmap.schemas.grips import holder_of
+from semmap.schemas.replies import Changed
 
 _PERIOD_S = 0.1
 _AT_LEAST_S = 1.0

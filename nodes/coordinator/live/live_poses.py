@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
-from nodes.coordinator.config import LiveRules, Thresholds
-from nodes.coordinator.live.rest import Rest
-from nodes.coordinator.scene.agreement import describe_distance
-from schemas import errors, keys, wording
-from schemas.entities import Entity, Live, Pose, Tracking, angle_rad, distance_m, rounded
+from semmap.nodes.coordinator.config import LiveRules, Thresholds
+from semmap.nodes.coordinator.live.rest import Rest
+from semmap.nodes.coordinator.scene.agreement import describe_distance
+from semmap.schemas import errors, keys, wording
+from semmap.schemas.entities import Entity, Live, Pose, Tracking, angle_rad, distance_m, rounded
 
 _LATE_NS = 10_000_000_000
 """A pose that is older than the one before by less came late; by more, somebody's clock was set."""

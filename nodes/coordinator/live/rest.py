@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from schemas.entities import Pose, angle_rad, distance_m
+from semmap.schemas.entities import Pose, angle_rad, distance_m
 
 STILL_S = 1.0
 """So long within a small distance is at rest."""

@@ -6,11 +6,11 @@ import math
 from collections.abc import Container, Iterable, Mapping
 from typing import NamedTuple
 
-from nodes.coordinator.config import Thresholds, Truth
-from nodes.coordinator.scene.reconcile import Actions, is_displaced, joints_differ
-from schemas.entities import Entity, Pose, angle_rad, distance_m
-from schemas.grips import holder_of
-from schemas.scenes import Body
+from semmap.nodes.coordinator.config import Thresholds, Truth
+from semmap.nodes.coordinator.scene.reconcile import Actions, is_displaced, joints_differ
+from semmap.schemas.entities import Entity, Pose, angle_rad, distance_m
+from semmap.schemas.grips import holder_of
+from semmap.schemas.scenes import Body
 
 
 class Agreement(NamedTuple):

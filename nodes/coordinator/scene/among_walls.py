@@ -6,13 +6,13 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import TypeVar
 
-from nodes.coordinator.scene.reconciler import AskSim, Keeping
-from nodes.runtime.futures import settle
-from schemas import commands as c
-from schemas import errors
-from schemas.bridge import PlanOf, WayOf
-from schemas.calls import Call
-from schemas.plans import Outline, Plan, WallsQuery, Way
+from semmap.nodes.coordinator.scene.reconciler import AskSim, Keeping
+from semmap.nodes.runtime.futures import settle
+from semmap.schemas import commands as c
+from semmap.schemas import errors
+from semmap.schemas.bridge import PlanOf, WayOf
+from semmap.schemas.calls import Call
+from semmap.schemas.plans import Outline, Plan, WallsQuery, Way
 
 R = TypeVar("R")
 Walls = tuple[Outline, ...] | None

@@ -13,16 +13,16 @@ from typing import Protocol, TypeVar
 
 from msgspec import structs
 
-from nodes.coordinator.config import Truth
-from nodes.coordinator.door import Door
-from nodes.coordinator.scene.reconciler import Keeping
-from nodes.coordinator.scene.settled import Settled
-from nodes.runtime.futures import OwnFuture, then
-from schemas import errors
-from schemas.commands import Close, Drive, Move, Open, Undo
-from schemas.entities import LESSER, Entity, Pose
-from schemas.replies import Changed, Moved
-from schemas.scenes import Body
+from semmap.nodes.coordinator.config import Truth
+from semmap.nodes.coordinator.door import Door
+from semmap.nodes.coordinator.scene.reconciler import Keeping
+from semmap.nodes.coordinator.scene.settled import Settled
+from semmap.nodes.runtime.futures import OwnFuture, then
+from semmap.schemas import errors
+from semmap.schemas.commands import Close, Drive, Move, Open, Undo
+from semmap.schemas.entities import LESSER, Entity, Pose
+from semmap.schemas.replies import Changed, Moved
+from semmap.schemas.scenes import Body
 
 C = TypeVar("C")
 Order = Move | Open | Close | Drive

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from schemas.entities import relative
-from schemas.scenes import Body
+from semmap.schemas.entities import relative
+from semmap.schemas.scenes import Body
 
 _MARGIN_M = 0.02
 

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future
 
-from nodes.coordinator import holding
-from nodes.coordinator.config import Truth
-from nodes.coordinator.door import Door
-from nodes.coordinator.plausibility import require_carrying
-from nodes.coordinator.scene.reconciler import AskSim
-from nodes.coordinator.scene.scene_view import SceneView
-from nodes.runtime.futures import and_then
-from schemas import commands as c
-from schemas import errors
-from schemas.bridge import LoadOf
-from schemas.replies import Changed
-from schemas.scenes import Grip, GripOrder, Gripped
+from semmap.nodes.coordinator import holding
+from semmap.nodes.coordinator.config import Truth
+from semmap.nodes.coordinator.door import Door
+from semmap.nodes.coordinator.plausibility import require_carrying
+from semmap.nodes.coordinator.scene.reconciler import AskSim
+from semmap.nodes.coordinator.scene.scene_view import SceneView
+from semmap.nodes.runtime.futures import and_then
+from semmap.schemas import commands as c
+from semmap.schemas import errors
+from semmap.schemas.bridge import LoadOf
+from semmap.schemas.replies import Changed
+from semmap.schemas.scenes import Grip, GripOrder, Gripped
 
 
 class Gripping:

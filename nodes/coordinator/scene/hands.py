@@ -8,9 +8,9 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple
 
-from schemas import wording
-from schemas.commands import Close, Drive, Move, Open
-from schemas.errors import NoAnswer
+from semmap.schemas import wording
+from semmap.schemas.commands import Close, Drive, Move, Open
+from semmap.schemas.errors import NoAnswer
 
 _RESTS_WITHIN_S = 60.0
 """Longer than a reply waits for rest; what rests and is not followed is forgotten before."""

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from concurrent.futures import Future
 
-from nodes.coordinator.door import Door
-from nodes.coordinator.door.jointed import endless
-from nodes.coordinator.scene.completion import Completion
-from nodes.coordinator.scene.reconciler import AskSim, Keeping
-from nodes.runtime.futures import and_then
-from schemas import commands as c
-from schemas import errors
-from schemas.joints import Joint, in_words
-from schemas.replies import Moved
-from schemas.scenes import Body, JointOrder, JointsMoving, MoveJoints
+from semmap.nodes.coordinator.door import Door
+from semmap.nodes.coordinator.door.jointed import endless
+from semmap.nodes.coordinator.scene.completion import Completion
+from semmap.nodes.coordinator.scene.reconciler import AskSim, Keeping
+from semmap.nodes.runtime.futures import and_then
+from semmap.schemas import commands as c
+from semmap.schemas import errors
+from semmap.schemas.joints import Joint, in_words
+from semmap.schemas.replies import Moved
+from semmap.schemas.scenes import Body, JointOrder, JointsMoving, MoveJoints
 
 _THERE = 0.02
 """Of its way: so near to where it was sent, a joint has arrived."""

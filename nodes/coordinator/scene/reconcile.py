@@ -20,11 +20,11 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Set
 from typing import NamedTuple
 
-from nodes.coordinator.config import Thresholds, Truth
-from schemas import errors
-from schemas.entities import Entity, Pose, angle_rad, distance_m
-from schemas.grips import grip_of, holder_of
-from schemas.joints import (
+from semmap.nodes.coordinator.config import Thresholds, Truth
+from semmap.schemas import errors
+from semmap.schemas.entities import Entity, Pose, angle_rad, distance_m
+from semmap.schemas.grips import grip_of, holder_of
+from semmap.schemas.joints import (
     IS_OPEN,
     IS_SWITCHED_ON,
     JOINT_POSITIONS,
@@ -37,7 +37,7 @@ from schemas.joints import (
     openness,
     wanted,
 )
-from schemas.scenes import Body, BodyOrder, GripOrder, JointOrder, Placement
+from semmap.schemas.scenes import Body, BodyOrder, GripOrder, JointOrder, Placement
 
 _TO_THE_LETTER = Thresholds(distance_m=0.001, angle_rad=0.002, share=0.001)
 

@@ -13,16 +13,16 @@ from concurrent.futures import Future
 from functools import partial
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
-from nodes.coordinator.config import CoordinatorConfig
-from nodes.coordinator.door import Door
-from nodes.coordinator.scene.agreement import (
+from semmap.nodes.coordinator.config import CoordinatorConfig
+from semmap.nodes.coordinator.door import Door
+from semmap.nodes.coordinator.scene.agreement import (
     Agreement,
     describe_displaced,
     describe_pending,
     find_displaced,
 )
-from nodes.coordinator.scene.contents import inside
-from nodes.coordinator.scene.reconcile import (
+from semmap.nodes.coordinator.scene.contents import inside
+from semmap.nodes.coordinator.scene.reconcile import (
     Actions,
     grip_order,
     joint_order,
@@ -31,19 +31,19 @@ from nodes.coordinator.scene.reconcile import (
     order,
     reconcile,
 )
-from nodes.coordinator.scene.rest_waits import RestWaits
-from nodes.coordinator.scene.scene_view import SceneView
-from nodes.coordinator.scene.settled import Settled, statements
-from nodes.coordinator.scene.spawn_batches import batches
-from nodes.runtime.futures import OwnFuture, settle, then
-from schemas import errors, wording
-from schemas.calls import Call
-from schemas.commands import Add
-from schemas.entities import BodyState, Entity, rounded
-from schemas.grips import holder_of
-from schemas.joints import is_on, openness
-from schemas.replies import Changed
-from schemas.scenes import (
+from semmap.nodes.coordinator.scene.rest_waits import RestWaits
+from semmap.nodes.coordinator.scene.scene_view import SceneView
+from semmap.nodes.coordinator.scene.settled import Settled, statements
+from semmap.nodes.coordinator.scene.spawn_batches import batches
+from semmap.nodes.runtime.futures import OwnFuture, settle, then
+from semmap.schemas import errors, wording
+from semmap.schemas.calls import Call
+from semmap.schemas.commands import Add
+from semmap.schemas.entities import BodyState, Entity, rounded
+from semmap.schemas.grips import holder_of
+from semmap.schemas.joints import is_on, openness
+from semmap.schemas.replies import Changed
+from semmap.schemas.scenes import (
     BodiesMoved,
     Body,
     BodyOrder,

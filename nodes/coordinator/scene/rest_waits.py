@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Final, NamedTuple
 
-from schemas.scenes import Body
+from semmap.schemas.scenes import Body
 
 CALM_S: Final = 2.0
 """Simulated time for which the map waits: whether a body rests is judged in simulated time, too."""

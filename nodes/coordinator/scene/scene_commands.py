@@ -7,19 +7,28 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from typing import TypeVar
 
-from nodes.coordinator.config import Truth
-from nodes.coordinator.door import Door
-from nodes.coordinator.plausibility import require_carrying
-from nodes.coordinator.scene.completion import Completion
-from nodes.coordinator.scene.reconciler import AskSim, Keeping, ghostly
-from nodes.runtime.futures import OwnFuture, and_then, settle, then
-from schemas import commands as c
-from schemas import errors, wording
-from schemas.bridge import LoadOf
-from schemas.calls import Call
-from schemas.entities import Pose, Vector, carried, orientation_from_yaw
-from schemas.replies import Changed, Done, Moved
-from schemas.scenes import BodiesMoved, Body, DriveBase, Driven, MoveBodies, Picture, PictureQuery, Placement
+from semmap.nodes.coordinator.config import Truth
+from semmap.nodes.coordinator.door import Door
+from semmap.nodes.coordinator.plausibility import require_carrying
+from semmap.nodes.coordinator.scene.completion import Completion
+from semmap.nodes.coordinator.scene.reconciler import AskSim, Keeping, ghostly
+from semmap.nodes.runtime.futures import OwnFuture, and_then, settle, then
+from semmap.schemas import commands as c
+from semmap.schemas import errors, wording
+from semmap.schemas.bridge import LoadOf
+from semmap.schemas.calls import Call
+from semmap.schemas.entities import Pose, Vector, carried, orientation_from_yaw
+from semmap.schemas.replies import Changed, Done, Moved
+from semmap.schemas.scenes import (
+    BodiesMoved,
+    Body,
+    DriveBase,
+    Driven,
+    MoveBodies,
+    Picture,
+    PictureQuery,
+    Placement,
+)
 
 R = TypeVar("R")
 

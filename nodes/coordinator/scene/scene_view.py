@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 from msgspec import structs
 
-from schemas.entities import Pose
-from schemas.joints import Joint
-from schemas.scenes import Body, Poses, Scene
+from semmap.schemas.entities import Pose
+from semmap.schemas.joints import Joint
+from semmap.schemas.scenes import Body, Poses, Scene
 
 _STRANGE_NS = 10_000_000_000
 """Nanoseconds: poses that are so much later or earlier than the last are strange, and the scene is asked."""

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
-from nodes.coordinator.transactions import gripped
-from schemas.commits import Edit, Statement
-from schemas.entities import Entity, Pose, Source
-from schemas.joints import (
+from semmap.nodes.coordinator.transactions import gripped
+from semmap.schemas.commits import Edit, Statement
+from semmap.schemas.entities import Entity, Pose, Source
+from semmap.schemas.joints import (
     IS_OPEN,
     IS_SWITCHED_ON,
     JOINT_POSITIONS,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from schemas.scenes import BodyOrder
+from semmap.schemas.scenes import BodyOrder
 
 BATCH = 500
 _USUAL_AREA_M2 = 0.1

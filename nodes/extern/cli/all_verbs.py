@@ -9,7 +9,7 @@ import importlib
 
 import click
 
-from schemas import errors
+from semmap.schemas import errors
 
 _MODULES = {
     "edit": ("add", "update", "set", "unset", "track", "remove", "clear", "load"),
@@ -51,7 +51,7 @@ class _Group(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self.commands and cmd_name in _MODULE_OF:
-            module = importlib.import_module(f"nodes.extern.cli.verbs.{_MODULE_OF[cmd_name]}")
+            module = importlib.import_module(f"semmap.nodes.extern.cli.verbs.{_MODULE_OF[cmd_name]}")
             made = [c for c in vars(module).values() if isinstance(c, click.Command) and c.name == cmd_name]
             self.add_command(made[0])
         return super().get_command(ctx, cmd_name)

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import click
 
-from nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.cli.output.printable import say
 
 _ANGLE: Final = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(deg|°|rad)?\s*")
 

@@ -21,8 +21,8 @@ def main() -> None:
 def execute(arguments: list[str]) -> int:
     """Run one command line and return its exit status; what is wrong goes to stderr in one line."""
     try:
-        from nodes.extern.cli.all_verbs import app
-        from nodes.extern.cli.calling import run_words
+        from semmap.nodes.extern.cli.all_verbs import app
+        from semmap.nodes.extern.cli.calling import run_words
 
         return run_words(app, arguments)
     except KeyboardInterrupt:

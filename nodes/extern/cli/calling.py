@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from nodes.extern.cli.output.printable import escaped_json, say
-from schemas import errors
-from schemas.endpoints import CONNECT_VARIABLE, DEFAULT_ENDPOINT, IDENTITY_VARIABLE, NAMESPACE_VARIABLE
+from semmap.nodes.extern.cli.output.printable import escaped_json, say
+from semmap.schemas import errors
+from semmap.schemas.endpoints import CONNECT_VARIABLE, DEFAULT_ENDPOINT, IDENTITY_VARIABLE, NAMESPACE_VARIABLE
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
+    from semmap.nodes.extern.client import Client
 
 TIME = (
     "TIME is ISO 8601 like 2026-03-01T12:30:05, as history shows it, and denotes its written precision: that"
@@ -71,7 +71,9 @@ def talks(function: Callable[..., None]) -> Callable[..., None]:
         if (shared := click.get_current_context().obj) is not None:
             function(shared, **arguments)
             return
-        from nodes.extern.client import connect  # not needed for what only prints help or completes a word
+        from semmap.nodes.extern.client import (
+            connect,  # not needed for what only prints help or completes a word
+        )
 
         # For one question a peer's shorter way saves less time than joining as one takes.
         joining = connect(where, agent=_agent(), identity=identity, namespace=namespace, mode="client")
@@ -99,7 +101,7 @@ def answered_by_robots(show: Callable[..., None]) -> Callable[[Callable[..., Non
             if robots is None:
                 function(**arguments)
                 return
-            from nodes.extern.fleet.robots import robots as connect_robots
+            from semmap.nodes.extern.fleet.robots import robots as connect_robots
 
             where, who = arguments.pop("where"), arguments.pop("identity")
             arguments.pop("namespace")
@@ -116,7 +118,7 @@ def answered_by_robots(show: Callable[..., None]) -> Callable[[Callable[..., Non
 
 def _robots_instead(where: str | None, identity: str | None, namespace: str | None) -> tuple[str, ...]:
     """The robots that can be asked where the one that is meant has no node."""
-    from nodes.extern.fleet.robots import robots_there
+    from semmap.nodes.extern.fleet.robots import robots_there
 
     try:
         there = robots_there(where, identity)
@@ -164,7 +166,7 @@ def print_json(message: Any) -> None:
     """A reply as JSON."""
     import json
 
-    from schemas import codec
+    from semmap.schemas import codec
 
     text = json.dumps(json.loads(codec.encode_json(message)), indent=2, ensure_ascii=False)
     print(escaped_json(text))

@@ -12,7 +12,7 @@ from typing import Literal
 import click
 from click.shell_completion import CompletionItem, get_completion_class
 
-from schemas import errors
+from semmap.schemas import errors
 
 SHELLS = ("bash", "zsh", "fish")
 _VARIABLE = "_SEMMAP_COMPLETE"
@@ -30,7 +30,7 @@ def _completing(
     kind: Literal["entities", "classes"],
 ) -> Callable[[click.Context, click.Parameter, str], list[CompletionItem]]:
     def complete(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
-        from nodes.extern.cli import known_names  # most words are completed without asking
+        from semmap.nodes.extern.cli import known_names  # most words are completed without asking
 
         with suppress(errors.SemmapError):
             found = known_names.KINDS[kind](context.params.get("where"))

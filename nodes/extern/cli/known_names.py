@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from nodes import bus
-from nodes.extern.connection import endpoint, identity, namespace
-from nodes.supervisor import presence
-from schemas import commands
-from schemas.entities import ClassInfo, Entity
+from semmap.nodes import bus
+from semmap.nodes.extern.connection import endpoint, identity, namespace
+from semmap.nodes.supervisor import presence
+from semmap.schemas import commands
+from semmap.schemas.entities import ClassInfo, Entity
 
 _MEET_S = 0.5
 _ANSWER_S = 1.0

@@ -10,14 +10,14 @@ from typing import Final
 
 from msgspec import Struct
 
-from nodes.extern.fleet import facts as f
-from nodes.extern.fleet.facts import FLEET, Facts
-from nodes.extern.fleet.robots import robots as reach
-from nodes.extern.fleet.robots import words
-from nodes.extern.fleet.server import SparqlServer
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.sparql import SparqlResult
+from semmap.nodes.extern.fleet import facts as f
+from semmap.nodes.extern.fleet.facts import FLEET, Facts
+from semmap.nodes.extern.fleet.robots import robots as reach
+from semmap.nodes.extern.fleet.robots import words
+from semmap.nodes.extern.fleet.server import SparqlServer
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.sparql import SparqlResult
 
 _TIMES: Final = 3
 _PREFIXES: Final = {

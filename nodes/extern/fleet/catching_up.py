@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
-from nodes.extern.fleet import facts as f
-from nodes.extern.fleet.facts import Facts
-from nodes.extern.fleet.frames import Frame
-from schemas import errors
-from schemas.bridge import CopyQuery, MapCopy, Recall
-from schemas.calls import Call
-from schemas.commits import Commit
+from semmap.nodes.extern.fleet import facts as f
+from semmap.nodes.extern.fleet.facts import Facts
+from semmap.nodes.extern.fleet.frames import Frame
+from semmap.schemas import errors
+from semmap.schemas.bridge import CopyQuery, MapCopy, Recall
+from semmap.schemas.calls import Call
+from semmap.schemas.commits import Commit
 
 FAR: Final = 1000
 """Commits: a copy that is further behind is made anew."""

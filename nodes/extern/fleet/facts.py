@@ -13,8 +13,8 @@ from typing import Final
 
 from msgspec import Struct
 
-from nodes.extern.fleet.frames import Frame
-from schemas.explanations import Term, Triple
+from semmap.nodes.extern.fleet.frames import Frame
+from semmap.schemas.explanations import Term, Triple
 
 FLEET: Final = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_fleet#"
 """The vocabulary of these facts, and of poses in the fleet's frame."""

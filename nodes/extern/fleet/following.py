@@ -10,12 +10,12 @@ from typing import Final, Literal
 
 from msgspec import structs
 
-from nodes.extern.fleet import facts as f
-from nodes.extern.fleet.catching_up import Anew, Continued
-from nodes.extern.fleet.facts import Facts
-from nodes.extern.fleet.updates import Change
-from schemas import errors
-from schemas.commits import Commit
+from semmap.nodes.extern.fleet import facts as f
+from semmap.nodes.extern.fleet.catching_up import Anew, Continued
+from semmap.nodes.extern.fleet.facts import Facts
+from semmap.nodes.extern.fleet.updates import Change
+from semmap.schemas import errors
+from semmap.schemas.commits import Commit
 
 MOST_AHEAD: Final = 5000
 """Commits that are kept while they cannot be written; what is beyond is asked for later."""

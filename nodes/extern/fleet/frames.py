@@ -7,9 +7,9 @@ from collections.abc import Iterable
 
 from msgspec import Struct
 
-from schemas import errors
-from schemas.endpoints import robot_name
-from schemas.entities import Pose, Quaternion
+from semmap.schemas import errors
+from semmap.schemas.endpoints import robot_name
+from semmap.schemas.entities import Pose, Quaternion
 
 _EXAMPLE = "robot1=12.5,3,0,1.57"
 

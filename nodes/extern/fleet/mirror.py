@@ -19,18 +19,18 @@ from typing import Any, Final
 
 from msgspec import Struct, structs
 
-from nodes import bus
-from nodes.extern.connection import open_session
-from nodes.extern.fleet import facts as f
-from nodes.extern.fleet import updates
-from nodes.extern.fleet.catching_up import FAR, Anew, Continued, catch_up
-from nodes.extern.fleet.facts import Facts
-from nodes.extern.fleet.following import Following
-from nodes.extern.fleet.frames import Frame
-from nodes.extern.fleet.server import TIMEOUT_S, SparqlServer
-from nodes.identity import Identity
-from schemas import errors, keys
-from schemas.calls import Call, reply_type
+from semmap.nodes import bus
+from semmap.nodes.extern.connection import open_session
+from semmap.nodes.extern.fleet import facts as f
+from semmap.nodes.extern.fleet import updates
+from semmap.nodes.extern.fleet.catching_up import FAR, Anew, Continued, catch_up
+from semmap.nodes.extern.fleet.facts import Facts
+from semmap.nodes.extern.fleet.following import Following
+from semmap.nodes.extern.fleet.frames import Frame
+from semmap.nodes.extern.fleet.server import TIMEOUT_S, SparqlServer
+from semmap.nodes.identity import Identity
+from semmap.schemas import errors, keys
+from semmap.schemas.calls import Call, reply_type
 
 _WAIT_S: Final = 0.2
 _VERIFY_S: Final = 10.0

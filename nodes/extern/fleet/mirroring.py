@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from nodes import bus
-from nodes.extern.connection import identity as identify
-from nodes.extern.fleet import frames as frames_
-from nodes.extern.fleet.frames import Frame
-from nodes.extern.fleet.mirror import Mirror, MirrorConfig
-from nodes.extern.fleet.robots import endpoints, words
+from semmap.nodes import bus
+from semmap.nodes.extern.connection import identity as identify
+from semmap.nodes.extern.fleet import frames as frames_
+from semmap.nodes.extern.fleet.frames import Frame
+from semmap.nodes.extern.fleet.mirror import Mirror, MirrorConfig
+from semmap.nodes.extern.fleet.robots import endpoints, words
 
 
 def config(

@@ -17,19 +17,19 @@ from concurrent.futures import ThreadPoolExecutor
 from fnmatch import fnmatchcase
 from typing import Any, Final, TypeVar
 
-from nodes import bus
-from nodes.extern.client import Client
-from nodes.extern.connection import endpoint, identity, open_session
-from nodes.identity import Identity
-from nodes.supervisor import registry
-from schemas import errors
-from schemas.commands import Status
-from schemas.entities import Entity
-from schemas.moments import When
-from schemas.relations import Described
-from schemas.replies import SystemStatus
-from schemas.robots import Answer
-from schemas.sparql import SparqlResult
+from semmap.nodes import bus
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.connection import endpoint, identity, open_session
+from semmap.nodes.identity import Identity
+from semmap.nodes.supervisor import registry
+from semmap.schemas import errors
+from semmap.schemas.commands import Status
+from semmap.schemas.entities import Entity
+from semmap.schemas.moments import When
+from semmap.schemas.relations import Described
+from semmap.schemas.replies import SystemStatus
+from semmap.schemas.robots import Answer
+from semmap.schemas.sparql import SparqlResult
 
 R = TypeVar("R")
 

@@ -10,9 +10,9 @@ from http.client import HTTPConnection, HTTPException, HTTPSConnection
 from typing import Any, Final, NamedTuple
 from urllib.parse import unquote, urlencode, urlsplit
 
-from schemas import errors
-from schemas.explanations import Term
-from schemas.sparql import Row, SparqlResult
+from semmap.schemas import errors
+from semmap.schemas.explanations import Term
+from semmap.schemas.sparql import Row, SparqlResult
 
 TIMEOUT_S: Final = 30.0
 _RESULTS: Final = "application/sparql-results+json"

@@ -14,14 +14,14 @@ from urllib.parse import quote
 
 from msgspec import structs
 
-from nodes.extern.fleet import facts as f
-from nodes.extern.fleet.facts import FACTS, Facts
-from nodes.extern.fleet.frames import Frame
-from ontology import vocabulary as v
-from schemas.bridge import MapCopy
-from schemas.commits import Commit
-from schemas.entities import Entity
-from schemas.explanations import Term, Triple
+from semmap.nodes.extern.fleet import facts as f
+from semmap.nodes.extern.fleet.facts import FACTS, Facts
+from semmap.nodes.extern.fleet.frames import Frame
+from semmap.ontology import vocabulary as v
+from semmap.schemas.bridge import MapCopy
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Term, Triple
 
 CHUNK: Final = 10_000
 """Triples in one operation of a copy."""

@@ -12,8 +12,8 @@ from mcap.records import Schema
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 
-from nodes.extern.ros.types import store
-from schemas.errors import BadFile
+from semmap.nodes.extern.ros.types import store
+from semmap.schemas.errors import BadFile
 
 SUFFIXES: Final = (".bag", ".db3", ".mcap")
 _PARSERS: Final[dict[str, Callable[[str, str], Any]]] = {

@@ -11,16 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from nodes.extern.frame_folders.bag import Bag, opened
-from nodes.extern.frame_folders.frames import RecordedFrame, Recording, check_unit
-from nodes.extern.frame_folders.pairs import pairs
-from nodes.extern.frame_folders.pictures import colour_of, depth_of, encoding_of
-from nodes.extern.frame_folders.pinhole import of_centres, of_info, read_pinhole, scaled
-from nodes.extern.frame_folders.poses import MAPS, Tree, plain, stamp_ns_of
-from nodes.extern.frame_folders.topics import COMPRESSED, IMAGE, INFO, TRANSFORMS, Chosen, choose
-from nodes.extern.ros.frames import Transform
-from schemas.errors import BadFile, BadRequest, SemmapError
-from schemas.wording import few
+from semmap.nodes.extern.frame_folders.bag import Bag, opened
+from semmap.nodes.extern.frame_folders.frames import RecordedFrame, Recording, check_unit
+from semmap.nodes.extern.frame_folders.pairs import pairs
+from semmap.nodes.extern.frame_folders.pictures import colour_of, depth_of, encoding_of
+from semmap.nodes.extern.frame_folders.pinhole import of_centres, of_info, read_pinhole, scaled
+from semmap.nodes.extern.frame_folders.poses import MAPS, Tree, plain, stamp_ns_of
+from semmap.nodes.extern.frame_folders.topics import COMPRESSED, IMAGE, INFO, TRANSFORMS, Chosen, choose
+from semmap.nodes.extern.ros.frames import Transform
+from semmap.schemas.errors import BadFile, BadRequest, SemmapError
+from semmap.schemas.wording import few
 
 _ALIKE: Final = 0.02
 """Two cameras whose numbers differ by less, in widths of the picture, are one."""

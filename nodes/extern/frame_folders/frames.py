@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from nodes.perception_node.input.files import units
-from schemas.errors import BadFile, BadRequest, SemmapError
+from semmap.nodes.perception_node.input.files import units
+from semmap.schemas.errors import BadFile, BadRequest, SemmapError
 
 _MM = 1000.0
 _FARTHEST_MM = 65_535

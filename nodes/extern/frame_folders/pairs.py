@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from schemas.wording import counted
+from semmap.schemas.wording import counted
 
 
 class Pairs(NamedTuple):

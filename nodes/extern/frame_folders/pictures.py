@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from nodes.extern.ros import pictures
-from schemas.errors import BadRequest
+from semmap.nodes.extern.ros import pictures
+from semmap.schemas.errors import BadRequest
 
 _HEADER: Final = struct.Struct("<Iff")
 """Before the PNG of a `compressedDepth`: a format, and how metres were made whole numbers."""

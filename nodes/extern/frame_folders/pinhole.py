@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.files.image_files import PinholeCamera, read_camera
-from nodes.perception_node.input.projection import fits
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.input.files.image_files import PinholeCamera, read_camera
+from semmap.nodes.perception_node.input.projection import fits
+from semmap.schemas.errors import BadFile
 
 _SAME_SHAPE = 0.02
 

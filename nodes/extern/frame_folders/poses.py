@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.extern.ros.frames import Transform, placed
+from semmap.nodes.extern.ros.frames import Transform, placed
 
 _GAP_NS: Final = 1_000_000_000
 """Between two poses so far apart in time nobody knows."""

@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, NamedTuple
 
-from nodes.extern.frame_folders.pictures import is_colour, is_depth
-from schemas.errors import BadFile, BadRequest
-from schemas.wording import few
+from semmap.nodes.extern.frame_folders.pictures import is_colour, is_depth
+from semmap.schemas.errors import BadFile, BadRequest
+from semmap.schemas.wording import few
 
 IMAGE: Final = "sensor_msgs/msg/Image"
 COMPRESSED: Final = "sensor_msgs/msg/CompressedImage"

@@ -10,13 +10,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.extern.frame_folders.frames import RecordedFrame, Recording, check_unit
-from nodes.extern.frame_folders.pairs import pairs
-from nodes.extern.frame_folders.pinhole import of_centres, read_pinhole, scaled
-from nodes.extern.frame_folders.poses import Trajectory
-from nodes.perception_node.input.files.image_files import is_depth, opened
-from schemas import errors
-from schemas.errors import BadFile, BadRequest, SemmapError
+from semmap.nodes.extern.frame_folders.frames import RecordedFrame, Recording, check_unit
+from semmap.nodes.extern.frame_folders.pairs import pairs
+from semmap.nodes.extern.frame_folders.pinhole import of_centres, read_pinhole, scaled
+from semmap.nodes.extern.frame_folders.poses import Trajectory
+from semmap.nodes.perception_node.input.files.image_files import is_depth, opened
+from semmap.schemas import errors
+from semmap.schemas.errors import BadFile, BadRequest, SemmapError
 
 _COLOUR, _DEPTH, _POSES = "rgb", "depth", "groundtruth.txt"
 _SCALE_M: Final = 1.0 / 5000.0

@@ -14,8 +14,8 @@ from typing import Any, Final
 
 from msgspec import Struct
 
-from schemas import errors
-from schemas.entities import Pose, Provenance, Size
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose, Provenance, Size
 
 BUDGET: Final = 4000
 """Characters of an answer, at most."""

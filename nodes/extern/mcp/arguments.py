@@ -11,10 +11,10 @@ from typing import Annotated, Any, Final, Literal
 import msgspec
 from msgspec import Meta, Struct, field
 
-from schemas.entities import Angle, Probability, Size, Text, Value, Vector, Word
-from schemas.happenings import KeptRelation
-from schemas.moments import When
-from schemas.relations import ViewPoint
+from semmap.schemas.entities import Angle, Probability, Size, Text, Value, Vector, Word
+from semmap.schemas.happenings import KeptRelation
+from semmap.schemas.moments import When
+from semmap.schemas.relations import ViewPoint
 
 Moment = Annotated[
     When, Meta(description="A commit number, or a time in ISO 8601 such as 2026-03-01T12:30 or 12:30.")

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable
 from typing import Final
 
-from nodes.extern.mcp.answers import who
-from schemas.entities import Entity
+from semmap.nodes.extern.mcp.answers import who
+from semmap.schemas.entities import Entity
 
 SYSTEM: Final = "semmap"
 _MOST: Final = 5

@@ -18,21 +18,21 @@ from typing import Any, Final, TypeVar
 import msgspec
 from msgspec import structs
 
-from nodes.extern.client import Client
-from nodes.extern.mcp import arguments as a
-from nodes.extern.mcp import limits, reading, requests
-from nodes.extern.mcp.advice import for_agents
-from nodes.extern.mcp.answers import Answer, said, who
-from nodes.extern.mcp.limits import Limits, Touched
-from nodes.extern.mcp.moment import at_one_commit, known, newest
-from nodes.extern.mcp.proposals import Proposal, Proposals
-from nodes.extern.mcp.rate import Rate
-from nodes.extern.mcp.requests import Summary
-from schemas import codec, commands, errors
-from schemas.approvals import Request
-from schemas.commands import COMMANDS, Command
-from schemas.entities import NAME_PATTERN, ClassInfo
-from schemas.replies import Changed
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.mcp import arguments as a
+from semmap.nodes.extern.mcp import limits, reading, requests
+from semmap.nodes.extern.mcp.advice import for_agents
+from semmap.nodes.extern.mcp.answers import Answer, said, who
+from semmap.nodes.extern.mcp.limits import Limits, Touched
+from semmap.nodes.extern.mcp.moment import at_one_commit, known, newest
+from semmap.nodes.extern.mcp.proposals import Proposal, Proposals
+from semmap.nodes.extern.mcp.rate import Rate
+from semmap.nodes.extern.mcp.requests import Summary
+from semmap.schemas import codec, commands, errors
+from semmap.schemas.approvals import Request
+from semmap.schemas.commands import COMMANDS, Command
+from semmap.schemas.entities import NAME_PATTERN, ClassInfo
+from semmap.schemas.replies import Changed
 
 R = TypeVar("R")
 

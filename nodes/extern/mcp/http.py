@@ -9,9 +9,9 @@ from typing import Any, Final
 
 import uvicorn
 
-from nodes.extern.mcp.server import server
-from nodes.extern.mcp.tools import Tools
-from schemas import errors
+from semmap.nodes.extern.mcp.server import server
+from semmap.nodes.extern.mcp.tools import Tools
+from semmap.schemas import errors
 
 HOST: Final = "127.0.0.1"
 PORT: Final = 7448

@@ -7,7 +7,7 @@ from typing import Final
 
 from msgspec import Struct
 
-from schemas import errors
+from semmap.schemas import errors
 
 CHANGES_PER_MIN: Final = 30.0
 """Commits that an agent may make a minute, unless it is said otherwise."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final, TypeVar
 
-from nodes import bus
-from nodes.extern.client import Client
-from schemas import keys
-from schemas.bridge import SnapshotQuery
-from schemas.commits import Snapshot
+from semmap.nodes import bus
+from semmap.nodes.extern.client import Client
+from semmap.schemas import keys
+from semmap.schemas.bridge import SnapshotQuery
+from semmap.schemas.commits import Snapshot
 
 R = TypeVar("R")
 

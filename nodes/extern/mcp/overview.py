@@ -7,9 +7,9 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from nodes.extern.mcp.answers import said
-from schemas.entities import Entity
-from schemas.replies import SystemStatus
+from semmap.nodes.extern.mcp.answers import said
+from semmap.schemas.entities import Entity
+from semmap.schemas.replies import SystemStatus
 
 BUDGET: Final = 1800
 """Characters that this takes, so that the whole answer stays below 2 000."""

@@ -11,9 +11,9 @@ from typing import Any, Final
 
 from msgspec import Struct, structs
 
-from schemas import errors
-from schemas.commands import Command
-from schemas.replies import Changed
+from semmap.schemas import errors
+from semmap.schemas.commands import Command
+from semmap.schemas.replies import Changed
 
 LASTS_S: Final = 1800.0
 """Seconds after which a proposal is forgotten."""

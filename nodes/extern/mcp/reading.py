@@ -6,18 +6,18 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Final, TypeVar
 
-from nodes.extern.client import Client
-from nodes.extern.mcp import arguments as a
-from nodes.extern.mcp import rows
-from nodes.extern.mcp.answers import Answer, read_cursor, said, when
-from nodes.extern.mcp.authors import Authors
-from nodes.extern.mcp.moment import at_one_commit, known, newest
-from nodes.extern.mcp.overview import overview as _overview
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.entities import Entity
-from schemas.language import Candidate
-from schemas.moments import When
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.mcp import arguments as a
+from semmap.nodes.extern.mcp import rows
+from semmap.nodes.extern.mcp.answers import Answer, read_cursor, said, when
+from semmap.nodes.extern.mcp.authors import Authors
+from semmap.nodes.extern.mcp.moment import at_one_commit, known, newest
+from semmap.nodes.extern.mcp.overview import overview as _overview
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.entities import Entity
+from semmap.schemas.language import Candidate
+from semmap.schemas.moments import When
 
 R = TypeVar("R")
 Found = tuple[dict[str, Any], Sequence[Any] | None]

@@ -13,11 +13,11 @@ from typing import Any, Final
 
 from msgspec import Struct
 
-from nodes.extern.cli.output.printable import quoted
-from schemas import commands, errors, wording
-from schemas.changes import Change
-from schemas.entities import Pose, Size
-from schemas.replies import Changed, LoggedCommit
+from semmap.nodes.extern.cli.output.printable import quoted
+from semmap.schemas import commands, errors, wording
+from semmap.schemas.changes import Change
+from semmap.schemas.entities import Pose, Size
+from semmap.schemas.replies import Changed, LoggedCommit
 
 _TELLING: Final = ("isOn", "isInside", "isLocatedIn", "isAttachedTo", "touches")
 """Relations that a person wants to hear of first: where things would be."""

@@ -10,12 +10,12 @@ import re
 from typing import Any, Final
 from urllib.parse import unquote
 
-from nodes.extern.client import Client
-from nodes.extern.mcp import answers, rows
-from nodes.extern.mcp.answers import Answer
-from nodes.extern.mcp.moment import newest
-from ontology.prefixes import WELL_KNOWN
-from schemas import errors
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.mcp import answers, rows
+from semmap.nodes.extern.mcp.answers import Answer
+from semmap.nodes.extern.mcp.moment import newest
+from semmap.ontology.prefixes import WELL_KNOWN
+from semmap.schemas import errors
 
 SCHEMA: Final = "semmap://schema"
 CLASSES: Final = f"{SCHEMA}/classes"

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
-from nodes.extern.cli.output.sparql_formats import spoken
-from nodes.extern.mcp.advice import for_agents
-from nodes.extern.mcp.answers import metres, said, stands, when, who
-from ontology import vocabulary as v
-from schemas import changes
-from schemas.entities import Entity
-from schemas.explanations import Term
-from schemas.happenings import Difference
-from schemas.language import Candidate
-from schemas.relations import Described, Relation
-from schemas.replies import LoggedCommit
-from schemas.sparql import Row
+from semmap.nodes.extern.cli.output.sparql_formats import spoken
+from semmap.nodes.extern.mcp.advice import for_agents
+from semmap.nodes.extern.mcp.answers import metres, said, stands, when, who
+from semmap.ontology import vocabulary as v
+from semmap.schemas import changes
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Term
+from semmap.schemas.happenings import Difference
+from semmap.schemas.language import Candidate
+from semmap.schemas.relations import Described, Relation
+from semmap.schemas.replies import LoggedCommit
+from semmap.schemas.sparql import Row
 
 PLACED: Final = {"isOn": "on", "isInside": "inside", "isLocatedIn": "in"}
 """The relations that say where a thing is, and how a row calls them."""

@@ -22,11 +22,11 @@ from mcp.server.stdio import stdio_server
 from mcp.server.subscriptions import InMemorySubscriptionBus, ListenHandler, ResourceUpdated
 from mcp.shared.exceptions import MCPError
 
-from nodes.extern.mcp import resources
-from nodes.extern.mcp.standing import Standing
-from nodes.extern.mcp.tools import Page, Tool, Tools, complaint
-from nodes.runtime.version import version
-from schemas import errors
+from semmap.nodes.extern.mcp import resources
+from semmap.nodes.extern.mcp.standing import Standing
+from semmap.nodes.extern.mcp.tools import Page, Tool, Tools, complaint
+from semmap.nodes.runtime.version import version
+from semmap.schemas import errors
 
 R = TypeVar("R")
 Context = ServerRequestContext[Any, Any]

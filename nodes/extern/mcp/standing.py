@@ -7,9 +7,9 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from typing import Final, NamedTuple
 
-from nodes.extern.client import Client
-from nodes.extern.mcp import resources
-from schemas import errors
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.mcp import resources
+from semmap.schemas import errors
 
 MOST: Final = 20
 """Standing questions of one server."""

@@ -9,15 +9,15 @@ from typing import Any, Final, NamedTuple
 
 import msgspec
 
-from nodes.extern.client import Client
-from nodes.extern.mcp import answers, reading, resources
-from nodes.extern.mcp import arguments as a
-from nodes.extern.mcp.advice import for_agents
-from nodes.extern.mcp.answers import Answer
-from nodes.extern.mcp.changing import Changes
-from nodes.extern.mcp.rate import Rate
-from nodes.extern.mcp.standing import Standing
-from schemas import codec, errors
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.mcp import answers, reading, resources
+from semmap.nodes.extern.mcp import arguments as a
+from semmap.nodes.extern.mcp.advice import for_agents
+from semmap.nodes.extern.mcp.answers import Answer
+from semmap.nodes.extern.mcp.changing import Changes
+from semmap.nodes.extern.mcp.rate import Rate
+from semmap.nodes.extern.mcp.standing import Standing
+from semmap.schemas import codec, errors
 
 CALLS_PER_S: Final = 20.0
 """Calls of tools a second that a server answers in the long run; a model makes about one."""

@@ -11,11 +11,11 @@ from pathlib import Path
 
 from msgspec import structs
 
-from nodes.extern.journals import journal_copy
-from nodes.extern.movie.wanted import Film
-from nodes.extern.replaying import settings_of
-from nodes.runtime import extras
-from schemas import errors
+from semmap.nodes.extern.journals import journal_copy
+from semmap.nodes.extern.movie.wanted import Film
+from semmap.nodes.extern.replaying import settings_of
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors
 
 __all__ = ["Film", "movie"]
 
@@ -46,8 +46,8 @@ def movie(
     if not file.absolute().parent.is_dir():
         raise errors.BadFile(f"there is no folder {file.absolute().parent}")
     extras.require("semmap movie", "kb", "sim", "movie")
-    from nodes.extern.movie.filming import film
-    from nodes.kb_node.storage.journal import Journal
+    from semmap.nodes.extern.movie.filming import film
+    from semmap.nodes.kb_node.storage.journal import Journal
 
     unfinished = file.with_name(f".{file.stem}.part.mp4")
     with (

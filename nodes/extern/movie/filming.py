@@ -13,16 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from nodes.extern.movie.storyboard import Scene, between, scenes, steps, total_s
-from nodes.extern.movie.wanted import Film
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.replay.spans import span_of
-from nodes.sim_node.vision.film_set import FilmSet
-from nodes.sim_node.vision.view import View
-from schemas import errors
-from schemas.entities import Entity, Vector
-from schemas.scenes import BodyOrder
+from semmap.nodes.extern.movie.storyboard import Scene, between, scenes, steps, total_s
+from semmap.nodes.extern.movie.wanted import Film
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.storage.replay.spans import span_of
+from semmap.nodes.sim_node.vision.film_set import FilmSet
+from semmap.nodes.sim_node.vision.view import View
+from semmap.schemas import errors
+from semmap.schemas.entities import Entity, Vector
+from semmap.schemas.scenes import BodyOrder
 
 Rgb = NDArray[np.uint8]
 _LONGEST_S: Final = 3600.0

@@ -9,11 +9,11 @@ from typing import Final
 
 from msgspec import Struct
 
-from nodes.extern.phrasing import author, changed_in_short
-from nodes.runtime import rhythm
-from schemas import errors, wording
-from schemas.commits import Commit
-from schemas.entities import Entity, Pose
+from semmap.nodes.extern.phrasing import author, changed_in_short
+from semmap.nodes.runtime import rhythm
+from semmap.schemas import errors, wording
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Entity, Pose
 
 GLIDE_S: Final = 0.6
 """How long a thing takes from where it was to where it is."""

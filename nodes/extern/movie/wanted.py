@@ -7,9 +7,9 @@ from typing import Final
 
 from msgspec import Struct
 
-from nodes.runtime import rhythm
-from schemas.errors import BadRequest
-from schemas.moments import When
+from semmap.nodes.runtime import rhythm
+from semmap.schemas.errors import BadRequest
+from semmap.schemas.moments import When
 
 SIZE: Final = (960, 640)
 FPS: Final = 20

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from nodes.geometry.polygons import Point, Polygon, area, clipped, hull
-from schemas.entities import Entity, Pose, Quaternion, Size
-from schemas.polygons import Polygon as Outline
-from schemas.polygons import extent_of
+from semmap.nodes.geometry.polygons import Point, Polygon, area, clipped, hull
+from semmap.schemas.entities import Entity, Pose, Quaternion, Size
+from semmap.schemas.polygons import Polygon as Outline
+from semmap.schemas.polygons import extent_of
 
 Kind = Literal["furniture", "small", "person", "door", "window", "overhead"]
 """`small`: what stands on something. `overhead`: what hangs above where people walk."""

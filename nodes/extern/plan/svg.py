@@ -9,9 +9,9 @@ from datetime import datetime
 from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
-from nodes.extern.plan.floor import Area, Floor, Piece
-from nodes.extern.plan.labels import Box, Label, Sheet, box_of, text_width_mm
-from nodes.geometry.polygons import Point, Polygon
+from semmap.nodes.extern.plan.floor import Area, Floor, Piece
+from semmap.nodes.extern.plan.labels import Box, Label, Sheet, box_of, text_width_mm
+from semmap.nodes.geometry.polygons import Point, Polygon
 
 _SHEETS_MM: Final = ((297.0, 210.0), (210.0, 297.0))
 _MARGIN_MM: Final = 10.0

@@ -7,25 +7,25 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from typing import Any, Final, NamedTuple
 
-from nodes.bus.rmw import RosNode, RosPublisher, RosTopic
-from nodes.drawing.scene_state import SceneState
-from nodes.drawing.surfaces import Kind, SurfaceCache
-from nodes.extern.ros import messages
-from nodes.extern.ros.messages import Moment
-from nodes.extern.ros.published_frames import Placed, PublishedFrames
-from nodes.extern.ros.things import Thing, things_of
-from nodes.extern.ros.types import encode, topic
-from nodes.navigation.grid import occupancy
-from nodes.runtime.following import Follower
-from nodes.runtime.loop import Node
-from nodes.runtime.map_replica import MapReplica
-from schemas import keys
-from schemas.commands import PlanFloor
-from schemas.commits import Effects
-from schemas.entities import Pose
-from schemas.live import LivePoses
-from schemas.plans import HEIGHTS_M, Plan
-from schemas.scenes import Poses, Scene, SceneQuery, Surface, SurfaceQuery, Surfaces
+from semmap.nodes.bus.rmw import RosNode, RosPublisher, RosTopic
+from semmap.nodes.drawing.scene_state import SceneState
+from semmap.nodes.drawing.surfaces import Kind, SurfaceCache
+from semmap.nodes.extern.ros import messages
+from semmap.nodes.extern.ros.messages import Moment
+from semmap.nodes.extern.ros.published_frames import Placed, PublishedFrames
+from semmap.nodes.extern.ros.things import Thing, things_of
+from semmap.nodes.extern.ros.types import encode, topic
+from semmap.nodes.navigation.grid import occupancy
+from semmap.nodes.runtime.following import Follower
+from semmap.nodes.runtime.loop import Node
+from semmap.nodes.runtime.map_replica import MapReplica
+from semmap.schemas import keys
+from semmap.schemas.commands import PlanFloor
+from semmap.schemas.commits import Effects
+from semmap.schemas.entities import Pose
+from semmap.schemas.live import LivePoses
+from semmap.schemas.plans import HEIGHTS_M, Plan
+from semmap.schemas.scenes import Poses, Scene, SceneQuery, Surface, SurfaceQuery, Surfaces
 
 _TICK_S: Final = 0.05
 _AGAIN_S: Final = 1.0

@@ -10,11 +10,11 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from msgspec import structs
 
-from nodes.extern.ros.frames import Frames
-from nodes.extern.ros.pictures import colour_of, depth_of
-from schemas import errors
-from schemas.entities import NAME_PATTERN
-from schemas.scenes import CameraFrame
+from semmap.nodes.extern.ros.frames import Frames
+from semmap.nodes.extern.ros.pictures import colour_of, depth_of
+from semmap.schemas import errors
+from semmap.schemas.entities import NAME_PATTERN
+from semmap.schemas.scenes import CameraFrame
 
 _APART_NS: Final = 30_000_000
 """Colour and depth that were taken within that are of one frame, as drivers stamp them."""

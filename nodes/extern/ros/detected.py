@@ -7,11 +7,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from nodes.extern.ros.frames import Frames, Transform, matrix
-from nodes.extern.ros.types import new
-from schemas import errors
-from schemas.entities import REACH_M, Pose
-from schemas.perception import Observation, Observations
+from semmap.nodes.extern.ros.frames import Frames, Transform, matrix
+from semmap.nodes.extern.ros.types import new
+from semmap.schemas import errors
+from semmap.schemas.entities import REACH_M, Pose
+from semmap.schemas.perception import Observation, Observations
 
 _MOST: Final = 1000
 

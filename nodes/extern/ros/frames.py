@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas import errors
+from semmap.schemas import errors
 
 Transform = NDArray[np.float64]
 """(4, 4): rotation and position [m]."""

@@ -6,13 +6,13 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any, Final, Literal
 
-from nodes import bus
-from nodes.bus.rmw import RosNode
-from nodes.extern.ros.cameras import Camera, CameraTopics, Planes
-from nodes.extern.ros.detected import observations_of
-from nodes.extern.ros.frames import Frames
-from nodes.extern.ros.types import decode, topic
-from schemas import codec, errors, keys
+from semmap.nodes import bus
+from semmap.nodes.bus.rmw import RosNode
+from semmap.nodes.extern.ros.cameras import Camera, CameraTopics, Planes
+from semmap.nodes.extern.ros.detected import observations_of
+from semmap.nodes.extern.ros.frames import Frames
+from semmap.nodes.extern.ros.types import decode, topic
+from semmap.schemas import codec, errors, keys
 
 _COMPLAINT_S: Final = 10.0
 _PLANES: Final[tuple[Literal["rgb", "depth"], ...]] = ("rgb", "depth")

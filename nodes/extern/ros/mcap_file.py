@@ -8,20 +8,20 @@ from typing import IO, Any, Final, NamedTuple
 
 from mcap.writer import Writer
 
-from nodes import bus
-from nodes.bus.rmw import RosTopic
-from nodes.extern.client import Client
-from nodes.extern.ros import messages
-from nodes.extern.ros.bridge import Topics
-from nodes.extern.ros.messages import Moment
-from nodes.extern.ros.things import Thing, things_of
-from nodes.extern.ros.types import encode, store
-from nodes.runtime.version import version
-from schemas import errors, keys
-from schemas.bridge import Recall
-from schemas.calls import reply_type
-from schemas.commits import Commit
-from schemas.entities import Entity
+from semmap.nodes import bus
+from semmap.nodes.bus.rmw import RosTopic
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.ros import messages
+from semmap.nodes.extern.ros.bridge import Topics
+from semmap.nodes.extern.ros.messages import Moment
+from semmap.nodes.extern.ros.things import Thing, things_of
+from semmap.nodes.extern.ros.types import encode, store
+from semmap.nodes.runtime.version import version
+from semmap.schemas import errors, keys
+from semmap.schemas.bridge import Recall
+from semmap.schemas.calls import reply_type
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Entity
 
 _AT_ONCE: Final = 100
 _MOST: Final = 10_000

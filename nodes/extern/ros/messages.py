@@ -8,14 +8,14 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from nodes.drawing.palette import colour_of
-from nodes.extern.ros.things import Thing, header, middle, pose_of, time_of, transform_of, vector
-from nodes.extern.ros.types import new
-from nodes.navigation.grid import OccupancyGrid
-from schemas import errors
-from schemas.entities import Pose
-from schemas.frames import MAP
-from schemas.scenes import Surface
+from semmap.nodes.drawing.palette import colour_of
+from semmap.nodes.extern.ros.things import Thing, header, middle, pose_of, time_of, transform_of, vector
+from semmap.nodes.extern.ros.types import new
+from semmap.nodes.navigation.grid import OccupancyGrid
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose
+from semmap.schemas.frames import MAP
+from semmap.schemas.scenes import Surface
 
 _ADD, _REMOVE, _MOVE = 0, 1, 3
 _BOX: Final = 1

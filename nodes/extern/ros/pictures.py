@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas import errors
+from semmap.schemas import errors
 
 COLOURS: Final[Mapping[str, tuple[int, tuple[int, int, int]]]] = {
     "rgb8": (3, (0, 1, 2)),

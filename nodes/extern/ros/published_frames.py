@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from concurrent.futures import Future
 from typing import Any, Final
 
-from nodes import bus
-from nodes.runtime.loop import Node
-from nodes.runtime.map_replica import MapReplica
-from schemas import errors, keys
-from schemas.commands import ListFrames
-from schemas.entities import Pose
-from schemas.frames import Frame
+from semmap.nodes import bus
+from semmap.nodes.runtime.loop import Node
+from semmap.nodes.runtime.map_replica import MapReplica
+from semmap.schemas import errors, keys
+from semmap.schemas.commands import ListFrames
+from semmap.schemas.entities import Pose
+from semmap.schemas.frames import Frame
 
 _ASK_S: Final = 1.0
 

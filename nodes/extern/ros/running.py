@@ -9,13 +9,13 @@ from typing import Final
 
 from msgspec import Struct
 
-from nodes import bus
-from nodes.bus.rmw import RosNode
-from nodes.extern.ros.bridge import Bridge, topics
-from nodes.extern.ros.cameras import CameraTopics
-from nodes.extern.ros.inbound import Inbound
-from nodes.runtime.loop import Node
-from schemas import errors, keys
+from semmap.nodes import bus
+from semmap.nodes.bus.rmw import RosNode
+from semmap.nodes.extern.ros.bridge import Bridge, topics
+from semmap.nodes.extern.ros.cameras import CameraTopics
+from semmap.nodes.extern.ros.inbound import Inbound
+from semmap.nodes.runtime.loop import Node
+from semmap.schemas import errors, keys
 
 ROUTER: Final = "tcp/127.0.0.1:7447"
 """Where rmw_zenoh's router listens when nothing else is said."""

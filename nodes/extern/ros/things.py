@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, Final, NamedTuple
 
-from nodes.extern.ros.types import new
-from schemas.entities import IDENTITY, Entity, Pose, Size, carried
-from schemas.scenes import Body
+from semmap.nodes.extern.ros.types import new
+from semmap.schemas.entities import IDENTITY, Entity, Pose, Size, carried
+from semmap.schemas.scenes import Body
 
 _ORIGIN: Final = Pose(position_m=(0.0, 0.0, 0.0))
 _STILL_M: Final = 1e-3

@@ -9,9 +9,9 @@ import numpy as np
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
-from nodes.bus.rmw import RosTopic
-from nodes.extern.ros.definitions import DEFINITIONS
-from schemas import errors
+from semmap.nodes.bus.rmw import RosTopic
+from semmap.nodes.extern.ros.definitions import DEFINITIONS
+from semmap.schemas import errors
 
 DISTRIBUTION: Final = Stores.ROS2_JAZZY
 _BASE, _NAME, _ARRAY, _SEQUENCE = 1, 2, 3, 4

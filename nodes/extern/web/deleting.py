@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.views.consequences import consequences, facts_of
-from schemas import wording
-from schemas.commands import Remove, Undo
-from schemas.errors import shortened
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.views.consequences import consequences, facts_of
+from semmap.schemas import wording
+from semmap.schemas.commands import Remove, Undo
+from semmap.schemas.errors import shortened
 
 _NAMED = 5
 _FACTS = 8

@@ -7,10 +7,10 @@ from typing import Final, Literal
 
 from msgspec import Struct
 
-from schemas import changes
-from schemas.changes import Change
-from schemas.entities import Entity
-from schemas.scenes import Body, Scene
+from semmap.schemas import changes
+from semmap.schemas.changes import Change
+from semmap.schemas.entities import Entity
+from semmap.schemas.scenes import Body, Scene
 
 Mark = Literal["added", "removed", "moved", "changed"]
 MARKS: Final[tuple[Mark, ...]] = ("added", "removed", "moved", "changed")

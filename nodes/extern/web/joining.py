@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from nodes import bus
-from nodes.extern.connection import endpoint, open_session
-from nodes.extern.connection import identity as identify
-from nodes.extern.connection import namespace as robot
+from semmap.nodes import bus
+from semmap.nodes.extern.connection import endpoint, open_session
+from semmap.nodes.extern.connection import identity as identify
+from semmap.nodes.extern.connection import namespace as robot
 
 
 def network_of(where: str | None, identity: str | None, namespace: str | None) -> bus.Network:

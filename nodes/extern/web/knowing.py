@@ -12,16 +12,16 @@ from collections.abc import Callable
 from typing import Final
 from weakref import WeakKeyDictionary
 
-from nodes.extern.web.differences import bodies_otherwise
-from nodes.extern.web.live import Happening, Live
-from nodes.extern.web.views.steps import words_of
-from nodes.extern.web.views.whereabouts import QUERY, Whereabouts
-from nodes.kb_node.reasoner.explain.words import Words
-from schemas import errors
-from schemas.commands import Properties, Sparql
-from schemas.commits import Commit
-from schemas.entities import PropertyInfo
-from schemas.moments import When
+from semmap.nodes.extern.web.differences import bodies_otherwise
+from semmap.nodes.extern.web.live import Happening, Live
+from semmap.nodes.extern.web.views.steps import words_of
+from semmap.nodes.extern.web.views.whereabouts import QUERY, Whereabouts
+from semmap.nodes.kb_node.reasoner.explain.words import Words
+from semmap.schemas import errors
+from semmap.schemas.commands import Properties, Sparql
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import PropertyInfo
+from semmap.schemas.moments import When
 
 log = logging.getLogger(__name__)
 

@@ -9,27 +9,27 @@ from typing import Any, Final
 from nicegui import events, ui
 from nicegui.elements.mixins.text_element import TextElement
 
-from nodes.extern.web.deleting import delete_selected, undo
-from nodes.extern.web.marks import marks
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.add import add
-from nodes.extern.web.panels.classes import classes
-from nodes.extern.web.panels.commits import commits
-from nodes.extern.web.panels.consistency import consistency
-from nodes.extern.web.panels.detail import detail
-from nodes.extern.web.panels.entities import entities
-from nodes.extern.web.panels.files import files
-from nodes.extern.web.panels.find import find
-from nodes.extern.web.panels.graph import graph
-from nodes.extern.web.panels.log import log
-from nodes.extern.web.panels.places import places
-from nodes.extern.web.panels.plan import plan
-from nodes.extern.web.panels.refused import refused
-from nodes.extern.web.panels.sparql import sparql
-from nodes.extern.web.panels.standing import standing
-from nodes.extern.web.panels.status import status
-from nodes.extern.web.panels.timeline import timeline
-from schemas import wording
+from semmap.nodes.extern.web.deleting import delete_selected, undo
+from semmap.nodes.extern.web.marks import marks
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.add import add
+from semmap.nodes.extern.web.panels.classes import classes
+from semmap.nodes.extern.web.panels.commits import commits
+from semmap.nodes.extern.web.panels.consistency import consistency
+from semmap.nodes.extern.web.panels.detail import detail
+from semmap.nodes.extern.web.panels.entities import entities
+from semmap.nodes.extern.web.panels.files import files
+from semmap.nodes.extern.web.panels.find import find
+from semmap.nodes.extern.web.panels.graph import graph
+from semmap.nodes.extern.web.panels.log import log
+from semmap.nodes.extern.web.panels.places import places
+from semmap.nodes.extern.web.panels.plan import plan
+from semmap.nodes.extern.web.panels.refused import refused
+from semmap.nodes.extern.web.panels.sparql import sparql
+from semmap.nodes.extern.web.panels.standing import standing
+from semmap.nodes.extern.web.panels.status import status
+from semmap.nodes.extern.web.panels.timeline import timeline
+from semmap.schemas import wording
 
 Panel = Callable[[Page], None]
 Panels = Mapping[str, Sequence[Panel]]

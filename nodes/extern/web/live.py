@@ -18,25 +18,25 @@ from typing import Any, Final, Literal, TypeVar
 
 from msgspec import Struct
 
-from nodes import bus
-from nodes.drawing.bending import Bends, bends_of
-from nodes.drawing.scene_state import SceneState
-from nodes.extern.client import Client
-from nodes.extern.sparql_client import StandingQuery
-from nodes.extern.web.loads import loads_of
-from nodes.extern.web.views.rates import Rates
-from nodes.identity import Identity
-from nodes.runtime.following import Begun, Follower
-from nodes.runtime.loop import Node
-from nodes.runtime.map_replica import MapReplica
-from schemas import keys, roles
-from schemas.bridge import CopyQuery, MapCopy
-from schemas.calls import Call
-from schemas.commands import Command
-from schemas.commits import Commit
-from schemas.entities import ClassInfo, Entity, Pose
-from schemas.health import Health
-from schemas.scenes import Poses, Scene, SceneQuery
+from semmap.nodes import bus
+from semmap.nodes.drawing.bending import Bends, bends_of
+from semmap.nodes.drawing.scene_state import SceneState
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.sparql_client import StandingQuery
+from semmap.nodes.extern.web.loads import loads_of
+from semmap.nodes.extern.web.views.rates import Rates
+from semmap.nodes.identity import Identity
+from semmap.nodes.runtime.following import Begun, Follower
+from semmap.nodes.runtime.loop import Node
+from semmap.nodes.runtime.map_replica import MapReplica
+from semmap.schemas import keys, roles
+from semmap.schemas.bridge import CopyQuery, MapCopy
+from semmap.schemas.calls import Call
+from semmap.schemas.commands import Command
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import ClassInfo, Entity, Pose
+from semmap.schemas.health import Health
+from semmap.schemas.scenes import Poses, Scene, SceneQuery
 
 Kind = Literal["commit", "poses", "scene", "begun", "connection", "health"]
 

@@ -8,8 +8,8 @@ from collections.abc import Iterable
 
 import psutil  # type: ignore[import-untyped]
 
-from nodes.extern.web.views.rates import Load
-from schemas.health import Health
+from semmap.nodes.extern.web.views.rates import Load
+from semmap.schemas.health import Health
 
 
 def loads_of(beats: Iterable[Health]) -> dict[int, Load]:

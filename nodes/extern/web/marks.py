@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from nicegui import events, ui
 
-from nodes.extern.web.page import Page
+from semmap.nodes.extern.web.page import Page
 
 
 def marks(page: Page) -> None:

@@ -7,7 +7,7 @@ from typing import Final, Protocol
 
 from msgspec import Struct
 
-from schemas.entities import Entity, Pose
+from semmap.schemas.entities import Entity, Pose
 
 
 class State(Protocol):

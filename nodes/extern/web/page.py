@@ -13,15 +13,15 @@ from typing import Any, Literal, TypeVar
 
 from nicegui import Client, background_tasks
 
-from nodes.extern.web.differences import Difference, differences
-from nodes.extern.web.live import Happening, Live
-from nodes.extern.web.moments import NOW, Moment, Past, State
-from nodes.extern.web.notices import Notices, Tone
-from nodes.extern.web.tape import tape_of
-from nodes.extern.web.views.sentences import in_the_page
-from schemas import errors
-from schemas.commands import Command
-from schemas.relations import ViewPoint
+from semmap.nodes.extern.web.differences import Difference, differences
+from semmap.nodes.extern.web.live import Happening, Live
+from semmap.nodes.extern.web.moments import NOW, Moment, Past, State
+from semmap.nodes.extern.web.notices import Notices, Tone
+from semmap.nodes.extern.web.tape import tape_of
+from semmap.nodes.extern.web.views.sentences import in_the_page
+from semmap.schemas import errors
+from semmap.schemas.commands import Command
+from semmap.schemas.relations import ViewPoint
 
 log = logging.getLogger(__name__)
 

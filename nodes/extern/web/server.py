@@ -15,11 +15,11 @@ import uvicorn
 from fastapi import FastAPI
 from msgspec import Struct
 
-from nodes import bus
-from nodes.extern.web.access import TOKEN, Access
-from nodes.identity import Identity
-from nodes.runtime.web_token import new_token
-from schemas import errors
+from semmap.nodes import bus
+from semmap.nodes.extern.web.access import TOKEN, Access
+from semmap.nodes.identity import Identity
+from semmap.nodes.runtime.web_token import new_token
+from semmap.schemas import errors
 
 HOST: Final = "127.0.0.1"
 PORT: Final = 8080
@@ -65,12 +65,12 @@ def _serve(
     with _as_if_not_installed("aiohttp", "requests"):
         from nicegui import Client, ui  # after its storage has a place
 
-    from nodes.extern.web import proxy
-    from nodes.extern.web.layout import layout
-    from nodes.extern.web.live import Live
-    from nodes.extern.web.page import Page
-    from nodes.extern.web.scene.stage import Stage
-    from nodes.extern.web.scene.viser_server import SceneServer
+    from semmap.nodes.extern.web import proxy
+    from semmap.nodes.extern.web.layout import layout
+    from semmap.nodes.extern.web.live import Live
+    from semmap.nodes.extern.web.page import Page
+    from semmap.nodes.extern.web.scene.stage import Stage
+    from semmap.nodes.extern.web.scene.viser_server import SceneServer
 
     live, scene = Live(session, config.network, config.identity), SceneServer()
     stage = Stage(live, scene)

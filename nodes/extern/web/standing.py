@@ -7,9 +7,9 @@ import contextlib
 import threading
 from collections.abc import Callable
 
-from nodes.extern.sparql_client import StandingQuery
-from schemas import errors
-from schemas.sparql import RowsChanged
+from semmap.nodes.extern.sparql_client import StandingQuery
+from semmap.schemas import errors
+from semmap.schemas.sparql import RowsChanged
 
 
 class Following:

@@ -17,14 +17,14 @@ from weakref import WeakKeyDictionary
 
 from msgspec import structs
 
-from nodes.extern.web.live import Happening, Live
-from nodes.extern.web.moments import Past
-from schemas import bridge, errors, keys
-from schemas.commands import History, List
-from schemas.commits import Commit
-from schemas.entities import Entity
-from schemas.moments import When, read_moment
-from schemas.replies import LoggedCommit
+from semmap.nodes.extern.web.live import Happening, Live
+from semmap.nodes.extern.web.moments import Past
+from semmap.schemas import bridge, errors, keys
+from semmap.schemas.commands import History, List
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Entity
+from semmap.schemas.moments import When, read_moment
+from semmap.schemas.replies import LoggedCommit
 
 log = logging.getLogger(__name__)
 

@@ -5,22 +5,22 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Set
 
-from nodes.kb_node.answers import answers
-from nodes.kb_node.answers.inventories import LARGEST, Inventories
-from nodes.kb_node.answers.sightings import Sightings
-from nodes.kb_node.answers.whereabouts import Now
-from nodes.kb_node.relations.selection import only_meant
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.language import nouns
-from nodes.language.telling import account
-from nodes.language.telling.account import Account
-from nodes.language.telling.inventory import Inventory
-from nodes.language.vocabulary import spoken
-from ontology.model_shapes import own_size_m
-from schemas import language
-from schemas.commands import Tell
-from schemas.entities import Entity, PropertyInfo, Stated, Value
-from schemas.joints import JOINT_POSITIONS, SWITCH_POSITIONS
+from semmap.nodes.kb_node.answers import answers
+from semmap.nodes.kb_node.answers.inventories import LARGEST, Inventories
+from semmap.nodes.kb_node.answers.sightings import Sightings
+from semmap.nodes.kb_node.answers.whereabouts import Now
+from semmap.nodes.kb_node.relations.selection import only_meant
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.language import nouns
+from semmap.nodes.language.telling import account
+from semmap.nodes.language.telling.account import Account
+from semmap.nodes.language.telling.inventory import Inventory
+from semmap.nodes.language.vocabulary import spoken
+from semmap.ontology.model_shapes import own_size_m
+from semmap.schemas import language
+from semmap.schemas.commands import Tell
+from semmap.schemas.entities import Entity, PropertyInfo, Stated, Value
+from semmap.schemas.joints import JOINT_POSITIONS, SWITCH_POSITIONS
 
 
 class Accounts:

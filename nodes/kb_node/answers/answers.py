@@ -8,26 +8,26 @@ from itertools import chain
 from types import MappingProxyType
 from typing import NamedTuple
 
-from nodes.kb_node import proofs
-from nodes.kb_node.answers import asked_terms
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.documents.abox_document import undeclared_classes
-from nodes.kb_node.owlrl.second_opinion import owlrl_faults
-from nodes.kb_node.reasoner import Held, Inconsistent, Reasoner
-from nodes.kb_node.relations.facts import said
-from nodes.kb_node.relations.facts.beside import MIRRORED, Beside
-from nodes.kb_node.relations.facts.derived import Derived
-from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.semantic_map import SemanticMap
-from ontology import prefixes
-from ontology import vocabulary as v
-from ontology.prefixes import Prefixes
-from schemas import errors
-from schemas.commands import RdfFormat
-from schemas.entities import Entity
-from schemas.explanations import Term, Triple
-from schemas.replies import Checked, Document, Inferred
+from semmap.nodes.kb_node import proofs
+from semmap.nodes.kb_node.answers import asked_terms
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents.abox_document import undeclared_classes
+from semmap.nodes.kb_node.owlrl.second_opinion import owlrl_faults
+from semmap.nodes.kb_node.reasoner import Held, Inconsistent, Reasoner
+from semmap.nodes.kb_node.relations.facts import said
+from semmap.nodes.kb_node.relations.facts.beside import MIRRORED, Beside
+from semmap.nodes.kb_node.relations.facts.derived import Derived
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.ontology import prefixes
+from semmap.ontology import vocabulary as v
+from semmap.ontology.prefixes import Prefixes
+from semmap.schemas import errors
+from semmap.schemas.commands import RdfFormat
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Term, Triple
+from semmap.schemas.replies import Checked, Document, Inferred
 
 
 def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Entity, ...]:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import Final
 
-from nodes.kb_node.entities import property_values
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.queries.text import query_prefixes
-from ontology import prefixes
-from ontology import vocabulary as v
-from ontology.name_index import Ambiguous
-from schemas import errors
-from schemas.entities import composed
-from schemas.explanations import Term
+from semmap.nodes.kb_node.entities import property_values
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.sparql.queries.text import query_prefixes
+from semmap.ontology import prefixes
+from semmap.ontology import vocabulary as v
+from semmap.ontology.name_index import Ambiguous
+from semmap.schemas import errors
+from semmap.schemas.entities import composed
+from semmap.schemas.explanations import Term
 
 RELATIONS: Final = {
     "a": v.RDF_TYPE,

@@ -13,20 +13,20 @@ from typing import NamedTuple
 
 from msgspec import Struct
 
-from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.facts.rules import RULES
-from nodes.kb_node.relations.geometry.opening import positions_of
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import Journal
-from ontology.model_shapes import own_size_m
-from schemas.entities import Entity, Pose, Size, Stated
-from schemas.grips import IS_GRASPED_BY
-from schemas.polygons import EXTENT
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.facts.rules import RULES
+from semmap.nodes.kb_node.relations.geometry.opening import positions_of
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.ontology.model_shapes import own_size_m
+from semmap.schemas.entities import Entity, Pose, Size, Stated
+from semmap.schemas.grips import IS_GRASPED_BY
+from semmap.schemas.polygons import EXTENT
 
 _MARGIN_M = 1.5
 """Beyond what can touch the thing: so all of the cells of the spatial index that it is in are complete."""

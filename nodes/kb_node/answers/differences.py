@@ -6,23 +6,23 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, get_args
 
-from nodes.kb_node.answers.beginnings import Moves
-from nodes.kb_node.answers.beginnings import spells as spells_of
-from nodes.kb_node.relations.facts.place_facts import Fact, Facts
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring.phrases import SPOKEN
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from nodes.kb_node.relations.selection import is_in, is_on, only_meant
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import Journal
-from schemas import errors, wording
-from schemas.changes import Change, between, removed
-from schemas.commands import Diff, WasWhen
-from schemas.entities import Entity
-from schemas.happenings import Difference, KeptRelation, Related, Spell, Spells
-from schemas.relations import RelationName
+from semmap.nodes.kb_node.answers.beginnings import Moves
+from semmap.nodes.kb_node.answers.beginnings import spells as spells_of
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact, Facts
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.nodes.kb_node.relations.selection import is_in, is_on, only_meant
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.schemas import errors, wording
+from semmap.schemas.changes import Change, between, removed
+from semmap.schemas.commands import Diff, WasWhen
+from semmap.schemas.entities import Entity
+from semmap.schemas.happenings import Difference, KeptRelation, Related, Spell, Spells
+from semmap.schemas.relations import RelationName
 
 _KEPT: Final[dict[RelationName, KeptRelation]] = {name: name for name in get_args(KeptRelation)}
 _LONGEST = 10

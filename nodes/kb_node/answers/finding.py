@@ -6,23 +6,23 @@ from typing import NamedTuple
 
 from msgspec import structs
 
-from nodes.kb_node.answers.speakable import item, terms
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.relations.asked import Asked
-from nodes.kb_node.relations.measuring.phrases import SPOKEN
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.measuring.viewing import View
-from nodes.kb_node.relations.selection import is_in, is_on, only_meant
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.language.finding import asking_back, telling
-from nodes.language.finding.finding import find
-from nodes.language.finding.known import Known
-from nodes.language.finding.missing import Missing, missing
-from nodes.language.finding.resolving import Resolver
-from schemas import errors
-from schemas.commands import Find
-from schemas.entities import Entity
-from schemas.language import Found, Language
+from semmap.nodes.kb_node.answers.speakable import item, terms
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.relations.asked import Asked
+from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.viewing import View
+from semmap.nodes.kb_node.relations.selection import is_in, is_on, only_meant
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.language.finding import asking_back, telling
+from semmap.nodes.language.finding.finding import find
+from semmap.nodes.language.finding.known import Known
+from semmap.nodes.language.finding.missing import Missing, missing
+from semmap.nodes.language.finding.resolving import Resolver
+from semmap.schemas import errors
+from semmap.schemas.commands import Find
+from semmap.schemas.entities import Entity
+from semmap.schemas.language import Found, Language
 
 
 class Sought(NamedTuple):

@@ -7,15 +7,15 @@ from collections.abc import Iterator, Set
 from itertools import islice
 from typing import Final
 
-from nodes.kb_node.answers.differences import spells
-from nodes.kb_node.answers.speakable import item
-from nodes.kb_node.relations.measuring.phrases import SPOKEN
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import Journal
-from nodes.language.finding.missing import Missing
-from schemas import errors
-from schemas.commands import WasWhen
+from semmap.nodes.kb_node.answers.differences import spells
+from semmap.nodes.kb_node.answers.speakable import item
+from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.language.finding.missing import Missing
+from semmap.schemas import errors
+from semmap.schemas.commands import WasWhen
 
 _MOST: Final = 3
 """Sentences of each sort."""

@@ -5,15 +5,15 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from nodes.kb_node.relations.geometry.opening import joint_at
-from nodes.kb_node.relations.measuring.measures import hollow_around
-from ontology import vocabulary as v
-from schemas import wording
-from schemas.entities import Entity
-from schemas.joints import IS_OPEN, OPEN_FROM
+from semmap.nodes.kb_node.relations.geometry.opening import joint_at
+from semmap.nodes.kb_node.relations.measuring.measures import hollow_around
+from semmap.ontology import vocabulary as v
+from semmap.schemas import wording
+from semmap.schemas.entities import Entity
+from semmap.schemas.joints import IS_OPEN, OPEN_FROM
 
 if TYPE_CHECKING:
-    from nodes.kb_node.semantic_map import SemanticMap
+    from semmap.nodes.kb_node.semantic_map import SemanticMap
 
 _IS_INSIDE: Final = v.dm("isInside")
 

@@ -7,17 +7,17 @@ import re
 from collections.abc import Iterable, Iterator, Set
 from typing import Final
 
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.language import nouns
-from nodes.language.telling.inventory import How, Inventory, Place, Thing
-from nodes.language.vocabulary import spoken
-from ontology.model_shapes import own_size_m
-from schemas.entities import Entity
-from schemas.relations import RelationName
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.language import nouns
+from semmap.nodes.language.telling.inventory import How, Inventory, Place, Thing
+from semmap.nodes.language.vocabulary import spoken
+from semmap.ontology.model_shapes import own_size_m
+from semmap.schemas.entities import Entity
+from semmap.schemas.relations import RelationName
 
 LARGEST: Final = 10_000
 """Of a map with more things (a quarter of a second) only their numbers are told."""

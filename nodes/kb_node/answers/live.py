@@ -8,9 +8,9 @@ from contextlib import contextmanager
 
 from msgspec import structs
 
-from nodes.kb_node.semantic_map import SemanticMap
-from schemas.entities import Entity, Live, distance_m
-from schemas.live import LivePoses
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.schemas.entities import Entity, Live, distance_m
+from semmap.schemas.live import LivePoses
 
 _LOST_S = 3.0
 """Live poses are told at least once a second while there are any: who tells them is gone after that."""

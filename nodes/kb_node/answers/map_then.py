@@ -4,29 +4,29 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from nodes.kb_node.answers import answers
-from nodes.kb_node.beliefs import UNCHANGED, Beliefs, Believed
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.documents.abox_document import undeclared_classes
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from nodes.kb_node.sparql.protocol import Surrounded
-from nodes.kb_node.sparql.service import SparqlService
-from nodes.kb_node.storage import closure_cache
-from nodes.kb_node.storage.compaction.compaction import asserted_after
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import Journal
-from ontology import prefixes
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Export, Sparql
-from schemas.entities import Entity
-from schemas.explanations import Triple
-from schemas.replies import Document
-from schemas.sparql import SparqlResult
+from semmap.nodes.kb_node.answers import answers
+from semmap.nodes.kb_node.beliefs import UNCHANGED, Beliefs, Believed
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents.abox_document import undeclared_classes
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.nodes.kb_node.sparql.protocol import Surrounded
+from semmap.nodes.kb_node.sparql.service import SparqlService
+from semmap.nodes.kb_node.storage import closure_cache
+from semmap.nodes.kb_node.storage.compaction.compaction import asserted_after
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.ontology import prefixes
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Export, Sparql
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Triple
+from semmap.schemas.replies import Document
+from semmap.schemas.sparql import SparqlResult
 
 
 class MapThen(NamedTuple):

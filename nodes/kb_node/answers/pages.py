@@ -7,9 +7,9 @@ import time
 from bisect import bisect_right
 from itertools import islice
 
-from nodes.kb_node.semantic_map import SemanticMap
-from schemas.bridge import SnapshotQuery
-from schemas.commits import Snapshot
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.schemas.bridge import SnapshotQuery
+from semmap.schemas.commits import Snapshot
 
 _PATIENCE_S = 0.5
 """For those who follow the map to ask for its first page after a start, and for the next one."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from nodes.kb_node.relations.geometry.solids import solid_of
-from schemas.entities import Entity, Stated
-from schemas.plans import Corners, Outline, Plan, PlannedPlace, PlannedThing
-from schemas.polygons import Polygon, extent_of
+from semmap.nodes.kb_node.relations.geometry.solids import solid_of
+from semmap.schemas.entities import Entity, Stated
+from semmap.schemas.plans import Corners, Outline, Plan, PlannedPlace, PlannedThing
+from semmap.schemas.polygons import Polygon, extent_of
 
 _NO_WALLS = "no simulator tells where the walls are, so they are where no place and no door is"
 

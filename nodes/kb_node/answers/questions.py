@@ -8,21 +8,21 @@ from typing import NamedTuple
 
 from msgspec import structs
 
-from nodes.kb_node import proofs
-from nodes.kb_node.answers import asked_terms
-from nodes.kb_node.answers.asked_terms import RELATIONS
-from nodes.kb_node.reasoner import Held, Inconsistent, Reasoner
-from nodes.kb_node.reasoner import explanations as reasons
-from nodes.kb_node.reasoner.entailment.explaining import nearby, why_entailed, why_excluded
-from nodes.kb_node.reasoner.explain.sentences import as_measured, said
-from nodes.kb_node.reasoner.refutation import refute, why_different
-from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
-from nodes.kb_node.semantic_map import SemanticMap
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Could, Explain
-from schemas.explanations import Explanation, Term, Triple
-from schemas.replies import Possible
+from semmap.nodes.kb_node import proofs
+from semmap.nodes.kb_node.answers import asked_terms
+from semmap.nodes.kb_node.answers.asked_terms import RELATIONS
+from semmap.nodes.kb_node.reasoner import Held, Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner import explanations as reasons
+from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby, why_entailed, why_excluded
+from semmap.nodes.kb_node.reasoner.explain.sentences import as_measured, said
+from semmap.nodes.kb_node.reasoner.refutation import refute, why_different
+from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Could, Explain
+from semmap.schemas.explanations import Explanation, Term, Triple
+from semmap.schemas.replies import Possible
 
 _QUICK = 2000
 """Triples about an individual with which supposing something of it still takes milliseconds."""

@@ -11,11 +11,11 @@ from typing import Final
 
 from msgspec import structs
 
-from nodes.kb_node.storage.history import Past, sighting
-from schemas import wording
-from schemas.entities import Entity, Provenance
-from schemas.perception import DISPLACED, MISSING, Observations
-from schemas.replies import Sighting
+from semmap.nodes.kb_node.storage.history import Past, sighting
+from semmap.schemas import wording
+from semmap.schemas.entities import Entity, Provenance
+from semmap.schemas.perception import DISPLACED, MISSING, Observations
+from semmap.schemas.replies import Sighting
 
 _JUST_NOW_S: Final = 10.0
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Reasoner
-from nodes.language.finding.known import Item, Terms
-from ontology import vocabulary as v
-from schemas.entities import Entity
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.language.finding.known import Item, Terms
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import Entity
 
 _HAS_AFFORDANCE = v.dm("hasAffordance")
 

@@ -7,26 +7,26 @@ import uuid
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from nodes.kb_node.answers import asked_terms
-from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.geometry.solids import solid_of
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.selection import (
+from semmap.nodes.kb_node.answers import asked_terms
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.geometry.solids import solid_of
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.selection import (
     Meant,
     chosen,
     require_possible,
     require_whole,
     resolved,
 )
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.protocol import News
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Renew, Watch
-from schemas.entities import Entity
-from schemas.relations import Where
-from schemas.replies import Done
-from schemas.sparql import Row, RowsChanged, Watching
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.sparql.protocol import News
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Renew, Watch
+from semmap.schemas.entities import Entity
+from semmap.schemas.relations import Where
+from semmap.schemas.replies import Done
+from semmap.schemas.sparql import Row, RowsChanged, Watching
 
 STANDING = 64
 """How many there may be."""

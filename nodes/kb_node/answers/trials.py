@@ -7,11 +7,11 @@ from itertools import islice
 
 from msgspec import structs
 
-from nodes.kb_node.answers.answers import worth_saying
-from nodes.kb_node.semantic_map import SemanticMap
-from ontology import vocabulary as v
-from schemas.commits import Commit, Effects, Trial
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.answers.answers import worth_saying
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Commit, Effects, Trial
+from semmap.schemas.explanations import Term, Triple
 
 _FEW = 50
 """Entities of which it is said what follows."""

@@ -7,18 +7,18 @@ from itertools import product
 
 from msgspec import structs
 
-from nodes.kb_node.answers.finding import Finding
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.language import lexicon
-from nodes.language.understanding.grounding import Scene, Thing, scene
-from nodes.language.understanding.interpretation import shipped
-from nodes.language.vocabulary import Vocabulary, vocabulary
-from nodes.language.words import split
-from schemas import errors
-from schemas.commands import Understand
-from schemas.entities import Entity
-from schemas.language import Frame, Understood
+from semmap.nodes.kb_node.answers.finding import Finding
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.language import lexicon
+from semmap.nodes.language.understanding.grounding import Scene, Thing, scene
+from semmap.nodes.language.understanding.interpretation import shipped
+from semmap.nodes.language.vocabulary import Vocabulary, vocabulary
+from semmap.nodes.language.words import split
+from semmap.schemas import errors
+from semmap.schemas.commands import Understand
+from semmap.schemas.entities import Entity
+from semmap.schemas.language import Frame, Understood
 
 _MOST_WORDS = 200  # of a command: a minute of speech
 

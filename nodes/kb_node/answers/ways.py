@@ -6,15 +6,15 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from typing import Protocol, TypeVar
 
-from nodes.kb_node.answers.plans import plan_of
-from nodes.kb_node.relations.selection import only_meant
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.history import Past
-from nodes.navigation.ways import find_way, position
-from schemas.bridge import PlanOf, WayOf
-from schemas.entities import Entity
-from schemas.moments import When
-from schemas.plans import Plan, Way
+from semmap.nodes.kb_node.answers.plans import plan_of
+from semmap.nodes.kb_node.relations.selection import only_meant
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.navigation.ways import find_way, position
+from semmap.schemas.bridge import PlanOf, WayOf
+from semmap.schemas.entities import Entity
+from semmap.schemas.moments import When
+from semmap.schemas.plans import Plan, Way
 
 R = TypeVar("R")
 

@@ -7,25 +7,25 @@ from typing import Final, NamedTuple
 
 from msgspec import structs
 
-from nodes.kb_node.answers import answers, questions
-from nodes.kb_node.answers.beginnings import Beginnings
-from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.facts.rules import COMPUTED
-from nodes.kb_node.relations.facts.said import PROPERTIES, denial, denied, fact_of
-from nodes.kb_node.relations.measuring.phrases import SPOKEN
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.selection import only_meant, selected
-from nodes.kb_node.relations.support import on_nothing
-from nodes.kb_node.relations.telling import explained, relations, whereabouts
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.history import Past
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.bridge import Entities
-from schemas.commands import Explain, Get, Relations
-from schemas.entities import Entity
-from schemas.explanations import Explanation, Term, Triple
-from schemas.relations import Described, Relation, RelationName
+from semmap.nodes.kb_node.answers import answers, questions
+from semmap.nodes.kb_node.answers.beginnings import Beginnings
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
+from semmap.nodes.kb_node.relations.facts.said import PROPERTIES, denial, denied, fact_of
+from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.selection import only_meant, selected
+from semmap.nodes.kb_node.relations.support import on_nothing
+from semmap.nodes.kb_node.relations.telling import explained, relations, whereabouts
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.bridge import Entities
+from semmap.schemas.commands import Explain, Get, Relations
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Explanation, Term, Triple
+from semmap.schemas.relations import Described, Relation, RelationName
 
 _MEASURED: Final[dict[Term, tuple[RelationName, bool]]] = {
     **{v.dm(name): (name, False) for name in SPOKEN},

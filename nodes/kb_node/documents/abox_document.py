@@ -7,13 +7,13 @@ from itertools import chain
 from operator import itemgetter
 from typing import NamedTuple
 
-from nodes.kb_node.by_property import by_property
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Reasoner
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.by_property import by_property
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.explanations import Term, Triple
 
 _VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD)
 _TBOX = f"<{v.TBOX}"

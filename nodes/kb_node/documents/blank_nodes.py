@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping
 
-from schemas.explanations import Term, Triple
+from semmap.schemas.explanations import Term, Triple
 
 
 def labelled_like(new: Collection[Triple], known: Collection[Triple]) -> frozenset[Triple]:

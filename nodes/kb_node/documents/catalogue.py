@@ -7,7 +7,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 from xml.etree import ElementTree
 
-from schemas import errors
+from semmap.schemas import errors
 
 FILENAME = "catalog-v001.xml"
 _SPACE = "{urn:oasis:names:tc:entity:xmlns:xml:catalog}"

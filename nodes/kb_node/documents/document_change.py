@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from operator import is_
 
-from nodes.kb_node.documents import abox_document, rdf
-from nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
-from nodes.kb_node.semantic_map import SemanticMap
-from schemas import errors, wording
-from schemas.bridge import LoadDocument, LoadTBox
-from schemas.commits import Transaction
-from schemas.explanations import Triple
-from schemas.packing import unpacked
+from semmap.nodes.kb_node.documents import abox_document, rdf
+from semmap.nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.schemas import errors, wording
+from semmap.schemas.bridge import LoadDocument, LoadTBox
+from semmap.schemas.commits import Transaction
+from semmap.schemas.explanations import Triple
+from semmap.schemas.packing import unpacked
 
 
 def of_document(

@@ -7,9 +7,9 @@ from typing import Final
 
 from msgspec import structs
 
-from schemas import errors
-from schemas.commits import Commit, Transaction
-from schemas.explanations import Triple
+from semmap.schemas import errors
+from semmap.schemas.commits import Commit, Transaction
+from semmap.schemas.explanations import Triple
 
 PART: Final = 100_000
 """Triples; a part ends with the star that it ends in."""

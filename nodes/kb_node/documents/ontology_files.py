@@ -13,12 +13,12 @@ from types import MappingProxyType
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
-from nodes.kb_node.documents import catalogue, rdf
-from ontology import vocabulary as v
-from ontology.prefixes import Prefixes
-from schemas import errors
-from schemas.explanations import Term, Triple
-from schemas.packing import unpacked
+from semmap.nodes.kb_node.documents import catalogue, rdf
+from semmap.ontology import vocabulary as v
+from semmap.ontology.prefixes import Prefixes
+from semmap.schemas import errors
+from semmap.schemas.explanations import Term, Triple
+from semmap.schemas.packing import unpacked
 
 SUFFIXES = (".owl", ".rdf", ".rdfs", ".ttl", ".nt", ".n3", ".jsonld", ".ofn", ".fss", ".omn", ".owx", ".xml")
 VERSION = v.iri(f"{v.OWL}versionIRI")

@@ -14,9 +14,9 @@ from typing import Final
 
 import pyoxigraph
 
-from nodes.kb_node.documents.plain_words import plain_terms
-from ontology import vocabulary as v
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.documents.plain_words import plain_terms
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term, Triple
 
 _PIECE: Final = 1 << 17
 """Bytes; what is made of so many stays in the processor's cache."""

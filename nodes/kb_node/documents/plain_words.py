@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
-from schemas.explanations import Term
+from semmap.schemas.explanations import Term
 
 _FEWEST = 100
 """Words of a kind; fewer are looked at as quickly one by one."""

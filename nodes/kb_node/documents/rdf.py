@@ -16,15 +16,15 @@ from xml.parsers import expat
 
 import pyoxigraph
 
-from nodes.kb_node.documents import plain_turtle
-from nodes.kb_node.documents.fault_lines import line_of_fault
-from nodes.kb_node.documents.owl import syntaxes as owl_syntaxes
-from nodes.kb_node.documents.owl.syntaxes import OwlSyntax
-from ontology import vocabulary as v
-from ontology.prefixes import Prefixes
-from schemas import errors
-from schemas.commands import RdfFormat
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.documents import plain_turtle
+from semmap.nodes.kb_node.documents.fault_lines import line_of_fault
+from semmap.nodes.kb_node.documents.owl import syntaxes as owl_syntaxes
+from semmap.nodes.kb_node.documents.owl.syntaxes import OwlSyntax
+from semmap.ontology import vocabulary as v
+from semmap.ontology.prefixes import Prefixes
+from semmap.schemas import errors
+from semmap.schemas.commands import RdfFormat
+from semmap.schemas.explanations import Triple
 
 _SYNTAX = {
     "rdfxml": pyoxigraph.RdfFormat.RDF_XML,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from schemas import errors
-from schemas.explanations import Triple
+from semmap.schemas import errors
+from semmap.schemas.explanations import Triple
 
 _IRI = r"<(?!javascript:|data:)[A-Za-z][A-Za-z0-9+.-]*:[^\x00-\x20<>\"{}|^`\\]*>"
 _BLANK = r"_:[A-Za-z0-9_](?:[A-Za-z0-9_.-]*[A-Za-z0-9_-])?"

@@ -7,10 +7,10 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from nodes.kb_node.entities.alignments import Alignment, PoseWords, SizeWords
-from ontology import vocabulary as v
-from schemas.entities import IDENTITY, REACH_M, Pose, Quaternion, Size, Vector
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.entities.alignments import Alignment, PoseWords, SizeWords
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import IDENTITY, REACH_M, Pose, Quaternion, Size, Vector
+from semmap.schemas.explanations import Term, Triple
 
 About = Callable[[Term], Mapping[Term, Sequence[Term]]]
 """What is asserted of a subject: predicate to objects."""

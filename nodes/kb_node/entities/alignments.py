@@ -14,10 +14,10 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta, Struct
 
-from ontology import ALIGNMENTS
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.explanations import Term
+from semmap.ontology import ALIGNMENTS
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.explanations import Term
 
 _PLAIN = frozenset({"title", "prefixes", "order", "origin", "why"})
 

@@ -8,17 +8,17 @@ from typing import NamedTuple
 
 from msgspec import structs
 
-from nodes.kb_node.entities import alignments
-from nodes.kb_node.entities.alignments import Alignment
-from nodes.kb_node.entities.property_names import PropertyNames
-from nodes.kb_node.entities.property_table import PropertyTable
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.relations.measuring import thresholds
-from ontology import prefixes, stars
-from ontology import vocabulary as v
-from ontology.name_index import Named, NameIndex
-from schemas.entities import ClassInfo, Entity
-from schemas.explanations import Term
+from semmap.nodes.kb_node.entities import alignments
+from semmap.nodes.kb_node.entities.alignments import Alignment
+from semmap.nodes.kb_node.entities.property_names import PropertyNames
+from semmap.nodes.kb_node.entities.property_table import PropertyTable
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.relations.measuring import thresholds
+from semmap.ontology import prefixes, stars
+from semmap.ontology import vocabulary as v
+from semmap.ontology.name_index import Named, NameIndex
+from semmap.schemas.entities import ClassInfo, Entity
+from semmap.schemas.explanations import Term
 
 _BUILT_IN = frozenset((v.OWL_THING, v.OWL_NOTHING))
 _CLASSES = (v.OWL_CLASS, v.RDFS_CLASS)

@@ -8,18 +8,18 @@ from typing import NamedTuple
 
 from msgspec import structs
 
-from nodes.kb_node import preconditions
-from nodes.kb_node.entities import entity_reading
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.entities.fast_reading import Pattern, Patterns, read_at_sight
-from nodes.kb_node.progress import steadily
-from nodes.kb_node.reasoner import Change, Reasoner
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commits import Commit, Departed
-from schemas.entities import Entity, Provenance
-from schemas.explanations import Term
+from semmap.nodes.kb_node import preconditions
+from semmap.nodes.kb_node.entities import entity_reading
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.entities.fast_reading import Pattern, Patterns, read_at_sight
+from semmap.nodes.kb_node.progress import steadily
+from semmap.nodes.kb_node.reasoner import Change, Reasoner
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commits import Commit, Departed
+from semmap.schemas.entities import Entity, Provenance
+from semmap.schemas.explanations import Term
 
 _COORDINATES = frozenset(stars.COORDINATE_PROPERTIES)
 

@@ -9,18 +9,18 @@ from itertools import islice
 
 from msgspec import structs
 
-from nodes.kb_node.entities import aligned
-from nodes.kb_node.entities.class_table import ClassTable, Kind
-from nodes.kb_node.reasoner import Reasoner
-from ontology import stars
-from ontology import vocabulary as v
-from ontology.model_choice import chosen
-from schemas import errors, polygons
-from schemas.commits import Star
-from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
-from schemas.explanations import Term, Triple
-from schemas.grips import GRASPING
-from schemas.joints import OPENING, SWITCHING
+from semmap.nodes.kb_node.entities import aligned
+from semmap.nodes.kb_node.entities.class_table import ClassTable, Kind
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.ontology.model_choice import chosen
+from semmap.schemas import errors, polygons
+from semmap.schemas.commits import Star
+from semmap.schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
+from semmap.schemas.explanations import Term, Triple
+from semmap.schemas.grips import GRASPING
+from semmap.schemas.joints import OPENING, SWITCHING
 
 _NAME = re.compile(NAME_PATTERN)
 _FEW = 16

@@ -11,18 +11,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from nodes.kb_node.entities import aligned, entity_reading, gripping, opening
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.entities.entity_reading import Objects
-from nodes.kb_node.entities.property_table import Property
-from nodes.kb_node.entities.property_values import same, spoken
-from nodes.kb_node.reasoner import Reasoner
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commits import Edit, NewEntity, Statement
-from schemas.entities import Entity, Pose, Size
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.entities import aligned, entity_reading, gripping, opening
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.entities.entity_reading import Objects
+from semmap.nodes.kb_node.entities.property_table import Property
+from semmap.nodes.kb_node.entities.property_values import same, spoken
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commits import Edit, NewEntity, Statement
+from semmap.schemas.entities import Entity, Pose, Size
+from semmap.schemas.explanations import Term, Triple
 
 
 class Draft:

@@ -11,13 +11,13 @@ from itertools import count
 from typing import Final, NamedTuple
 from weakref import WeakKeyDictionary
 
-from nodes.kb_node.entities.class_table import ClassTable, Kind
-from nodes.kb_node.entities.entity_reading import entity_of
-from nodes.kb_node.reasoner import Alike, Form, Reasoner
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.entities import REACH_M, Entity, Pose, Provenance
-from schemas.explanations import Term
+from semmap.nodes.kb_node.entities.class_table import ClassTable, Kind
+from semmap.nodes.kb_node.entities.entity_reading import entity_of
+from semmap.nodes.kb_node.reasoner import Alike, Form, Reasoner
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.entities import REACH_M, Entity, Pose, Provenance
+from semmap.schemas.explanations import Term
 
 _EXTENT: Final = frozenset((v.HAS_EXTENT,))
 Places = tuple[int, ...]

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
-from nodes.kb_node.by_property import by_property
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.relations.facts.foreseen import Arrival, Coming, Look
-from ontology import vocabulary as v
-from schemas.commits import NewEntity, Transaction
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.by_property import by_property
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.relations.facts.foreseen import Arrival, Coming, Look
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import NewEntity, Transaction
+from semmap.schemas.explanations import Term, Triple
 
 MANY: Final = 10_000
 """Entities: of fewer it is soon worked out where they are."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from ontology import vocabulary as v
-from schemas.explanations import Term
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term
 
 
 def implied(

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from nodes.kb_node.entities.property_values import plain
-from ontology import vocabulary as v
-from schemas.explanations import Term
-from schemas.joints import OPEN_FROM
+from semmap.nodes.kb_node.entities.property_values import plain
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term
+from semmap.schemas.joints import OPEN_FROM
 
 _FROM_ROUGH_TO_EXACT: Final = (
     (v.IS_OPEN, v.OPENNESS, v.JOINT_POSITIONS),

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable
 from functools import cached_property
 
-from nodes.kb_node.reasoner import Reasoner
-from ontology import prefixes
-from ontology import vocabulary as v
-from ontology.name_index import Ambiguous, Named, NameIndex
-from ontology.prefixes import Prefixes
-from schemas import errors
-from schemas.explanations import Term
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import prefixes
+from semmap.ontology import vocabulary as v
+from semmap.ontology.name_index import Ambiguous, Named, NameIndex
+from semmap.ontology.prefixes import Prefixes
+from semmap.schemas import errors
+from semmap.schemas.explanations import Term
 
 
 class PropertyNames:

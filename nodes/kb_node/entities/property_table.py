@@ -7,15 +7,15 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import NamedTuple
 
-from nodes.kb_node.entities import property_values
-from nodes.kb_node.entities.property_names import PropertyNames
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.sparql.queries.text import query_prefixes
-from ontology import vocabulary as v
-from ontology.model_choice import require_model
-from schemas import errors
-from schemas.entities import PropertyInfo
-from schemas.explanations import Term
+from semmap.nodes.kb_node.entities import property_values
+from semmap.nodes.kb_node.entities.property_names import PropertyNames
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.sparql.queries.text import query_prefixes
+from semmap.ontology import vocabulary as v
+from semmap.ontology.model_choice import require_model
+from semmap.schemas import errors
+from semmap.schemas.entities import PropertyInfo
+from semmap.schemas.explanations import Term
 
 _FEW = 12
 STRUCTURAL: Mapping[Term, str] = {

@@ -6,13 +6,13 @@ import math
 import re
 from collections.abc import Set
 
-from nodes.kb_node.reasoner import datatypes
-from ontology import vocabulary as v
-from schemas import errors, polygons
-from schemas.changes import value_in_words
-from schemas.entities import Stated as Stated
-from schemas.entities import Value
-from schemas.explanations import Term
+from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors, polygons
+from semmap.schemas.changes import value_in_words
+from semmap.schemas.entities import Stated as Stated
+from semmap.schemas.entities import Value
+from semmap.schemas.explanations import Term
 
 _TAGGED = re.compile(r"(.*)@([a-z]{2,3}(?:-[A-Za-z0-9]{1,8})*)", re.DOTALL)
 _LITERAL = re.compile(r'".*"(?:@[A-Za-z0-9-]+|\^\^<[^<>\s]+>)?', re.DOTALL)

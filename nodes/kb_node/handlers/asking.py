@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node.answers import (
+from semmap.nodes.kb_node.answers import (
     answers,
     beginnings,
     differences,
@@ -19,25 +19,25 @@ from nodes.kb_node.answers import (
     questions,
     whereabouts,
 )
-from nodes.kb_node.answers.accounts import Accounts
-from nodes.kb_node.answers.finding import Finding
-from nodes.kb_node.answers.gone import gone
-from nodes.kb_node.answers.live import LiveEntities
-from nodes.kb_node.answers.pages import Pages
-from nodes.kb_node.answers.sightings import Sightings
-from nodes.kb_node.answers.standing_places import StandingPlaces
-from nodes.kb_node.answers.understanding import Understanding
-from nodes.kb_node.answers.ways import Ways
-from nodes.kb_node.reasoner import Held
-from nodes.kb_node.reasoner.entailment.explaining import nearby
-from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.service import SparqlService
-from nodes.kb_node.storage import history
-from nodes.kb_node.storage.journal import Journal
-from nodes.runtime.fair_pool import FairPool
-from schemas import errors
-from schemas.bridge import (
+from semmap.nodes.kb_node.answers.accounts import Accounts
+from semmap.nodes.kb_node.answers.finding import Finding
+from semmap.nodes.kb_node.answers.gone import gone
+from semmap.nodes.kb_node.answers.live import LiveEntities
+from semmap.nodes.kb_node.answers.pages import Pages
+from semmap.nodes.kb_node.answers.sightings import Sightings
+from semmap.nodes.kb_node.answers.standing_places import StandingPlaces
+from semmap.nodes.kb_node.answers.understanding import Understanding
+from semmap.nodes.kb_node.answers.ways import Ways
+from semmap.nodes.kb_node.reasoner import Held
+from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby
+from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.sparql.service import SparqlService
+from semmap.nodes.kb_node.storage import history
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.runtime.fair_pool import FairPool
+from semmap.schemas import errors
+from semmap.schemas.bridge import (
     CopyQuery,
     Entities,
     LoadOf,
@@ -48,8 +48,8 @@ from schemas.bridge import (
     StarQuery,
     WayOf,
 )
-from schemas.calls import Handler, by_verb
-from schemas.commands import (
+from semmap.schemas.calls import Handler, by_verb
+from semmap.schemas.commands import (
     Check,
     Classes,
     Could,
@@ -70,14 +70,14 @@ from schemas.commands import (
     WasWhen,
     Watch,
 )
-from schemas.commits import Commit, Snapshot, Star
-from schemas.entities import ClassInfo, Entity, PropertyInfo
-from schemas.explanations import Explanation
-from schemas.happenings import Difference, Spells
-from schemas.language import Found
-from schemas.relations import Described, Relation
-from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
-from schemas.sparql import SparqlResult, Watching
+from semmap.schemas.commits import Commit, Snapshot, Star
+from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo
+from semmap.schemas.explanations import Explanation
+from semmap.schemas.happenings import Difference, Spells
+from semmap.schemas.language import Found
+from semmap.schemas.relations import Described, Relation
+from semmap.schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
+from semmap.schemas.sparql import SparqlResult, Watching
 
 R = TypeVar("R", Explanation, Possible)
 

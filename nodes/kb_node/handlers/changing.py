@@ -6,16 +6,16 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from typing import Protocol, TypeVar
 
-from nodes.kb_node import undo
-from nodes.kb_node.answers import trials
-from nodes.kb_node.documents import term_syntax
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.journal.sqlite_file import NotWritten
-from schemas import errors
-from schemas.bridge import MadeBy, Outcome, TakeBack, Transactions
-from schemas.calls import Handler, by_verb
-from schemas.commits import Commit, Effects, Transaction
+from semmap.nodes.kb_node import undo
+from semmap.nodes.kb_node.answers import trials
+from semmap.nodes.kb_node.documents import term_syntax
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
+from semmap.schemas import errors
+from semmap.schemas.bridge import MadeBy, Outcome, TakeBack, Transactions
+from semmap.schemas.calls import Handler, by_verb
+from semmap.schemas.commits import Commit, Effects, Transaction
 
 Tell = Callable[[str], None]
 TellingOf = Callable[[str], AbstractContextManager[Tell]]

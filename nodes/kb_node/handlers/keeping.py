@@ -8,15 +8,15 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from datetime import datetime
 from typing import Final
 
-from nodes.kb_node.storage.backup import backing_up
-from nodes.kb_node.storage.compaction import compaction, leftovers
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import Journal
-from schemas import errors, wording
-from schemas.backups import BackupPart
-from schemas.calls import Handler, by_verb
-from schemas.commands import Backup, Compact
-from schemas.replies import Compacted
+from semmap.nodes.kb_node.storage.backup import backing_up
+from semmap.nodes.kb_node.storage.compaction import compaction, leftovers
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.schemas import errors, wording
+from semmap.schemas.backups import BackupPart
+from semmap.schemas.calls import Handler, by_verb
+from semmap.schemas.commands import Backup, Compact
+from semmap.schemas.replies import Compacted
 
 _AGE: Final = re.compile(r"([1-9][0-9]{0,5})([hd])")
 _SECONDS: Final = {"h": 3600, "d": 86_400}

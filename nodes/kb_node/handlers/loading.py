@@ -7,18 +7,18 @@ import uuid
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from nodes.kb_node.answers import trials
-from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
-from nodes.kb_node.documents.tbox import tbox_validation
-from nodes.kb_node.handlers.changing import Changing, TellingOf, effects
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.service import SparqlService
-from nodes.kb_node.storage.journal import Journal
-from ontology import vocabulary as v
-from schemas.bridge import LoadDocument, Loaded, LoadTBox
-from schemas.calls import Handler, by_verb
-from schemas.commits import Commit, Effects, Transaction
-from schemas.packing import unpacked
+from semmap.nodes.kb_node.answers import trials
+from semmap.nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
+from semmap.nodes.kb_node.documents.tbox import tbox_validation
+from semmap.nodes.kb_node.handlers.changing import Changing, TellingOf, effects
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.sparql.service import SparqlService
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.ontology import vocabulary as v
+from semmap.schemas.bridge import LoadDocument, Loaded, LoadTBox
+from semmap.schemas.calls import Handler, by_verb
+from semmap.schemas.commits import Commit, Effects, Transaction
+from semmap.schemas.packing import unpacked
 
 
 class Loading:

@@ -7,12 +7,12 @@ import sys
 import time
 from collections.abc import Callable, Iterable
 
-from schemas import errors
-from schemas.explanations import Triple
+from semmap.schemas import errors
+from semmap.schemas.explanations import Triple
 
 TIMEOUT_S = 600.0
 _LOOK_S = 0.5
-_CHILD = "nodes.kb_node.owlrl.closure_process"
+_CHILD = "semmap.nodes.kb_node.owlrl.closure_process"
 
 
 def owlrl_faults(triples: Iterable[Triple], *, is_over: Callable[[], bool] = lambda: False) -> list[str]:

@@ -7,12 +7,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from nodes.kb_node.reasoner.change import Change
-    from nodes.kb_node.reasoner.entailment import entails
-    from nodes.kb_node.reasoner.fastpaths.runs import Form
-    from nodes.kb_node.reasoner.fastpaths.shapes import Alike
-    from nodes.kb_node.reasoner.reasoner import Held, Inconsistent, Reasoner
-    from nodes.kb_node.reasoner.refutation import refute
+    from semmap.nodes.kb_node.reasoner.change import Change
+    from semmap.nodes.kb_node.reasoner.entailment import entails
+    from semmap.nodes.kb_node.reasoner.fastpaths.runs import Form
+    from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Alike
+    from semmap.nodes.kb_node.reasoner.reasoner import Held, Inconsistent, Reasoner
+    from semmap.nodes.kb_node.reasoner.refutation import refute
 
 __all__ = ["Alike", "Change", "Form", "Held", "Inconsistent", "Reasoner", "entails", "refute"]
 

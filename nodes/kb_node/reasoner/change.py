@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from itertools import chain
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.fastpaths.shapes import Alike
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Alike
 
 
 class Change(NamedTuple):

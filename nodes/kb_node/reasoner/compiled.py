@@ -6,29 +6,29 @@ import hashlib
 from collections.abc import Container, Iterable, Iterator, Sequence, Set
 from itertools import chain
 
-from nodes.kb_node.reasoner.abox.abox import ABox
-from nodes.kb_node.reasoner.abox.abox_view import View
-from nodes.kb_node.reasoner.abox.columns import Columns
-from nodes.kb_node.reasoner.abox.retraction import Retraction
-from nodes.kb_node.reasoner.abox.saturation import Saturation
-from nodes.kb_node.reasoner.abox.snapshot import columns_of, fill
-from nodes.kb_node.reasoner.abox.store import COMPUTED
-from nodes.kb_node.reasoner.change import Change
-from nodes.kb_node.reasoner.explain.proof import Prover
-from nodes.kb_node.reasoner.explain.reasons import Clash
-from nodes.kb_node.reasoner.explain.schema_support import SchemaSupport
-from nodes.kb_node.reasoner.explain.support import Support
-from nodes.kb_node.reasoner.explain.words import Words
-from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
-from nodes.kb_node.reasoner.fastpaths.paths import FastPaths, Known, PlainPaths
-from nodes.kb_node.reasoner.fastpaths.shapes import Alike
-from nodes.kb_node.reasoner.fastpaths.star_order import in_stars
-from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.reasoner.rules.facts import Facts
-from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, NotCompilable
-from nodes.kb_node.reasoner.tbox.schema import Schema
-from nodes.kb_node.reasoner.tbox.split import check_compilable, is_inert, is_schema
-from nodes.kb_node.reasoner.terms import (
+from semmap.nodes.kb_node.reasoner.abox.abox import ABox
+from semmap.nodes.kb_node.reasoner.abox.abox_view import View
+from semmap.nodes.kb_node.reasoner.abox.columns import Columns
+from semmap.nodes.kb_node.reasoner.abox.retraction import Retraction
+from semmap.nodes.kb_node.reasoner.abox.saturation import Saturation
+from semmap.nodes.kb_node.reasoner.abox.snapshot import columns_of, fill
+from semmap.nodes.kb_node.reasoner.abox.store import COMPUTED
+from semmap.nodes.kb_node.reasoner.change import Change
+from semmap.nodes.kb_node.reasoner.explain.proof import Prover
+from semmap.nodes.kb_node.reasoner.explain.reasons import Clash
+from semmap.nodes.kb_node.reasoner.explain.schema_support import SchemaSupport
+from semmap.nodes.kb_node.reasoner.explain.support import Support
+from semmap.nodes.kb_node.reasoner.explain.words import Words
+from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
+from semmap.nodes.kb_node.reasoner.fastpaths.paths import FastPaths, Known, PlainPaths
+from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Alike
+from semmap.nodes.kb_node.reasoner.fastpaths.star_order import in_stars
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
+from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, NotCompilable
+from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
+from semmap.nodes.kb_node.reasoner.tbox.split import check_compilable, is_inert, is_schema
+from semmap.nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
     SAME_AS,
     TYPE,

@@ -20,8 +20,8 @@ from math import inf
 from typing import Any, Final
 from xml.parsers import expat
 
-from nodes.kb_node.reasoner.explanations import Term
-from nodes.kb_node.reasoner.terms import PREFIXES, iri, is_literal, literal, quoted
+from semmap.nodes.kb_node.reasoner.explanations import Term
+from semmap.nodes.kb_node.reasoner.terms import PREFIXES, iri, is_literal, literal, quoted
 
 Value = tuple[str, Hashable]
 """A primitive datatype's name, and the key of the value in it."""

@@ -8,18 +8,18 @@ from contextlib import contextmanager
 from itertools import chain
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.abox.columns import Columns
-from nodes.kb_node.reasoner.aside import Aside
-from nodes.kb_node.reasoner.change import Change
-from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
-from nodes.kb_node.reasoner.explain.words import Words
-from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
-from nodes.kb_node.reasoner.rules.facts import Facts
-from nodes.kb_node.reasoner.rules.general import GeneralEngine
-from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
-from nodes.kb_node.reasoner.tbox.profile import outside_rl
-from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.reasoner.terms import iri, is_literal, is_named
+from semmap.nodes.kb_node.reasoner.abox.columns import Columns
+from semmap.nodes.kb_node.reasoner.aside import Aside
+from semmap.nodes.kb_node.reasoner.change import Change
+from semmap.nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
+from semmap.nodes.kb_node.reasoner.explain.words import Words
+from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
+from semmap.nodes.kb_node.reasoner.rules.general import GeneralEngine
+from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from semmap.nodes.kb_node.reasoner.tbox.profile import outside_rl
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.nodes.kb_node.reasoner.terms import iri, is_literal, is_named
 
 _SUB_CLASS_OF = iri("rdfs:subClassOf")
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from msgspec import structs
 
-from nodes.kb_node.reasoner.explain.sentences import denial
-from nodes.kb_node.reasoner.explanations import Explanation, Triple
-from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS, is_literal
+from semmap.nodes.kb_node.reasoner.explain.sentences import denial
+from semmap.nodes.kb_node.reasoner.explanations import Explanation, Triple
+from semmap.nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS, is_literal
 
 
 def refute(reasoner: Reasoner, supposed: Triple, *, anew: bool = True) -> Explanation | None:

@@ -6,7 +6,7 @@ import re
 from functools import cache
 from typing import Final, NamedTuple
 
-from nodes.kb_node.reasoner.explanations import Term
+from semmap.nodes.kb_node.reasoner.explanations import Term
 
 PREFIXES: Final = {
     "rdf": "http://www.w3.org/1999/02/22-rdf-syntax-ns#",

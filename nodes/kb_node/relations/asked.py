@@ -6,18 +6,18 @@ import math
 from collections.abc import Callable, Mapping, Set
 from typing import Final
 
-from nodes.kb_node.relations.facts.beside import are_near, beside
-from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.arrangement import attached, between
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.measuring.viewing import View, on_side
-from nodes.kb_node.relations.reasons import stands_on_floor
-from nodes.kb_node.relations.selection import is_in, is_on
-from nodes.kb_node.relations.support import bearers, borne
-from schemas import errors
-from schemas.relations import RelationName
+from semmap.nodes.kb_node.relations.facts.beside import are_near, beside
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.arrangement import attached, between
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.viewing import View, on_side
+from semmap.nodes.kb_node.relations.reasons import stands_on_floor
+from semmap.nodes.kb_node.relations.selection import is_in, is_on
+from semmap.nodes.kb_node.relations.support import bearers, borne
+from semmap.schemas import errors
+from semmap.schemas.relations import RelationName
 
 _Measured = Callable[[Space, Solid, Solid, Set[Fact]], bool]
 

@@ -11,10 +11,10 @@ from collections import deque
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.space import Space
 
 
 class Bearer(NamedTuple):

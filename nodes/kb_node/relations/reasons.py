@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from nodes.geometry.polygons import distance
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.arrangement import attached, between, next_to
-from nodes.kb_node.relations.measuring.phrases import SIDES, height_over, metres, spoken, why
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.measuring.viewing import own_sides
-from schemas.relations import RelationName
+from semmap.nodes.geometry.polygons import distance
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.arrangement import attached, between, next_to
+from semmap.nodes.kb_node.relations.measuring.phrases import SIDES, height_over, metres, spoken, why
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.viewing import own_sides
+from semmap.schemas.relations import RelationName
 
 _OF_SIZES = frozenset(
     {"isOn", "isInside", "isAttachedTo", "isUnder", "isAbove", "touches", "isNear", "isNextTo"}

@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterable, Sequence, Set
 from functools import partial
 from typing import Final, NamedTuple
 
-from nodes.kb_node.relations.facts.beside import are_near
-from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.geometry.solids import Solid, solid_of
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.space import Space
-from schemas import errors, wording
-from schemas.entities import Entity, Pose, Size
-from schemas.relations import Where, position_in
+from semmap.nodes.kb_node.relations.facts.beside import are_near
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.schemas import errors, wording
+from semmap.schemas.entities import Entity, Pose, Size
+from semmap.schemas.relations import Where, position_in
 
 _POINT: Final[Size] = (1e-6, 1e-6, 1e-6)
 """The size of a position [m], which is to have none."""

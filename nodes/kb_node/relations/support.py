@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.arrangement import attachments, is_borne
-from nodes.kb_node.relations.measuring.phrases import height_over, metres
-from nodes.kb_node.relations.measuring.space import Found, Space
-from schemas.relations import Relation, RelationName
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.arrangement import attachments, is_borne
+from semmap.nodes.kb_node.relations.measuring.phrases import height_over, metres
+from semmap.nodes.kb_node.relations.measuring.space import Found, Space
+from semmap.schemas.relations import Relation, RelationName
 
 
 def bearers(space: Space, solid: Solid) -> set[Solid]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from schemas.entities import Entity
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.schemas.entities import Entity
 
 
 class Surroundings:

@@ -8,19 +8,19 @@ from itertools import combinations, islice
 
 from msgspec import structs
 
-from nodes.kb_node.relations.facts.beside import beside, is_apart
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.arrangement import attached, attachments, between
-from nodes.kb_node.relations.measuring.measures import Measure
-from nodes.kb_node.relations.measuring.phrases import SIDES, metres, spoken, why
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.measuring.viewing import View, own_sides, seen, sides
-from nodes.kb_node.relations.reasons import why_not
-from nodes.kb_node.relations.support import bearers, borne, on_nothing
-from schemas import errors
-from schemas.commands import Relations
-from schemas.relations import Relation, RelationName
+from semmap.nodes.kb_node.relations.facts.beside import beside, is_apart
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.arrangement import attached, attachments, between
+from semmap.nodes.kb_node.relations.measuring.measures import Measure
+from semmap.nodes.kb_node.relations.measuring.phrases import SIDES, metres, spoken, why
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.viewing import View, own_sides, seen, sides
+from semmap.nodes.kb_node.relations.reasons import why_not
+from semmap.nodes.kb_node.relations.support import bearers, borne, on_nothing
+from semmap.schemas import errors
+from semmap.schemas.commands import Relations
+from semmap.schemas.relations import Relation, RelationName
 
 _ABOUT_BETWEEN = 8
 """So many neighbours are looked at for what a thing is between."""

@@ -23,12 +23,12 @@ from typing import Any, Final
 
 from msgspec import msgpack
 
-from nodes.kb_node.sparql.protocol import Dismiss, Hire, Left, Outcome, Question, outcomes
-from nodes.kb_node.sparql.readers import cause_of_death
-from nodes.runtime.fair_queue import FairQueue
-from schemas import codec, errors
-from schemas.commands import Sparql
-from schemas.sparql import SparqlResult
+from semmap.nodes.kb_node.sparql.protocol import Dismiss, Hire, Left, Outcome, Question, outcomes
+from semmap.nodes.kb_node.sparql.readers import cause_of_death
+from semmap.nodes.runtime.fair_queue import FairQueue
+from semmap.schemas import codec, errors
+from semmap.schemas.commands import Sparql
+from semmap.schemas.sparql import SparqlResult
 
 LANES: Final = 6
 """How many queries are evaluated at once."""

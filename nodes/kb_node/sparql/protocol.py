@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from msgspec import Raw, Struct, msgpack
 
-from nodes.kb_node.beliefs import UNCHANGED, Believed
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from nodes.kb_node.sparql.triples.dataset import Delta
-from schemas import codec
-from schemas.commands import Renew, Watch
-from schemas.errors import ErrorMessage
-from schemas.explanations import Triple
-from schemas.sparql import RowsChanged
+from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.schemas import codec
+from semmap.schemas.commands import Renew, Watch
+from semmap.schemas.errors import ErrorMessage
+from semmap.schemas.explanations import Triple
+from semmap.schemas.sparql import RowsChanged
 
 NOTHING = Raw(msgpack.encode(None))
 

@@ -19,13 +19,13 @@ from typing import Final, NoReturn
 
 from msgspec import Raw, msgpack
 
-from nodes.kb_node.sparql.protocol import Outcome, Question, questions
-from nodes.kb_node.sparql.queries import text
-from nodes.kb_node.sparql.queries.evaluation import answer
-from nodes.kb_node.sparql.triples.dataset import Dataset, KeptDataset
-from nodes.kb_node.sparql.triples.kept import remove_clone
-from nodes.kb_node.sparql.triples.log import Log
-from schemas import errors
+from semmap.nodes.kb_node.sparql.protocol import Outcome, Question, questions
+from semmap.nodes.kb_node.sparql.queries import text
+from semmap.nodes.kb_node.sparql.queries.evaluation import answer
+from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, KeptDataset
+from semmap.nodes.kb_node.sparql.triples.kept import remove_clone
+from semmap.nodes.kb_node.sparql.triples.log import Log
+from semmap.schemas import errors
 
 MEMORY_BYTES: Final = 1 << 30
 """What a query may use beyond the triples."""

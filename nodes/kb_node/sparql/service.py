@@ -19,11 +19,11 @@ from typing import Any, overload
 
 from msgspec import msgpack
 
-from nodes.kb_node.beliefs import UNCHANGED, Believed
-from nodes.kb_node.relations.facts.derived import Derived
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.sparql.lanes import Lanes
-from nodes.kb_node.sparql.protocol import (
+from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.nodes.kb_node.relations.facts.derived import Derived
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.sparql.lanes import Lanes
+from semmap.nodes.kb_node.sparql.protocol import (
     Answered,
     Asked,
     Committed,
@@ -35,18 +35,18 @@ from nodes.kb_node.sparql.protocol import (
     Surrounded,
     from_worker,
 )
-from nodes.kb_node.sparql.queries.naming import may_name
-from nodes.kb_node.sparql.triples.dataset import Delta
-from nodes.kb_node.sparql.triples.large_map import Filled, LargeMap, delta_of
-from nodes.runtime.futures import settle
-from ontology import vocabulary as v
-from schemas import codec, errors
-from schemas.calls import Call, reply_type
-from schemas.commands import Renew, Sparql, Watch
-from schemas.commits import Commit
-from schemas.explanations import Triple
-from schemas.replies import Done
-from schemas.sparql import SparqlResult, Watching
+from semmap.nodes.kb_node.sparql.queries.naming import may_name
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.nodes.kb_node.sparql.triples.large_map import Filled, LargeMap, delta_of
+from semmap.nodes.runtime.futures import settle
+from semmap.ontology import vocabulary as v
+from semmap.schemas import codec, errors
+from semmap.schemas.calls import Call, reply_type
+from semmap.schemas.commands import Renew, Sparql, Watch
+from semmap.schemas.commits import Commit
+from semmap.schemas.explanations import Triple
+from semmap.schemas.replies import Done
+from semmap.schemas.sparql import SparqlResult, Watching
 
 log = logging.getLogger(__name__)
 
@@ -258,7 +258,7 @@ class _Worker:
         theirs = [there, *self._lanes.others]
         fds = [connection.fileno() for connection in theirs]
         self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "nodes.kb_node.sparql.worker", *map(str, fds)],
+            [sys.executable, "-P", "-m", "semmap.nodes.kb_node.sparql.worker", *map(str, fds)],
             pass_fds=fds,
             stdin=subprocess.DEVNULL,
         )

@@ -1,4 +1,4 @@
-"""The process that keeps the triples for SPARQL, beside the node: `python -m nodes.kb_node.sparql.worker`.
+"""The process that keeps the triples for SPARQL, beside the node: `python -m semmap.nodes.kb_node.sparql.worker`.
 
 A query cannot be interrupted while Oxigraph evaluates it, nor can its memory be bounded: only a process can
 be ended. Were that the one with the triples, a hanging query would cost loading them again. So this process
@@ -20,8 +20,8 @@ from typing import Any, Final
 
 from msgspec import msgpack, structs
 
-from nodes.kb_node.relations.facts.derived import Derived
-from nodes.kb_node.sparql.protocol import (
+from semmap.nodes.kb_node.relations.facts.derived import Derived
+from semmap.nodes.kb_node.sparql.protocol import (
     Answered,
     Asked,
     Committed,
@@ -36,16 +36,16 @@ from nodes.kb_node.sparql.protocol import (
     ToWorker,
     to_worker,
 )
-from nodes.kb_node.sparql.queries.evaluation import declared_in
-from nodes.kb_node.sparql.queries.text import query_prefixes
-from nodes.kb_node.sparql.readers import Reader
-from nodes.kb_node.sparql.standing_queries.lookout import Lookout
-from nodes.kb_node.sparql.triples.consequences import Consequences
-from nodes.kb_node.sparql.triples.dataset import Dataset, Delta, KeptDataset
-from nodes.kb_node.sparql.triples.log import Log
-from nodes.kb_node.sparql.triples.measured import Measured, Needs, needs_of
-from schemas import errors
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.sparql.queries.evaluation import declared_in
+from semmap.nodes.kb_node.sparql.queries.text import query_prefixes
+from semmap.nodes.kb_node.sparql.readers import Reader
+from semmap.nodes.kb_node.sparql.standing_queries.lookout import Lookout
+from semmap.nodes.kb_node.sparql.triples.consequences import Consequences
+from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta, KeptDataset
+from semmap.nodes.kb_node.sparql.triples.log import Log
+from semmap.nodes.kb_node.sparql.triples.measured import Measured, Needs, needs_of
+from semmap.schemas import errors
+from semmap.schemas.explanations import Triple
 
 BACKLOG: Final = 50_000
 """How many changed triples a reader may be behind."""
@@ -155,7 +155,7 @@ class Worker:
 
     def _needs(self, query: str) -> Needs:
         # rdflib's parser takes long to load, and few queries need it
-        from nodes.kb_node.sparql.queries.footprint import patterns_of
+        from semmap.nodes.kb_node.sparql.queries.footprint import patterns_of
 
         known = tuple(sorted(query_prefixes(declared_in(self._dataset)).items()))
         return needs_of(patterns_of(query, known), self._derived)

@@ -7,14 +7,14 @@ from collections.abc import Callable, Iterable, Mapping
 
 from msgspec import structs
 
-from nodes.kb_node.entities.property_table import STRUCTURAL
-from nodes.kb_node.entities.property_values import plain
-from nodes.kb_node.storage.journal import Journal
-from ontology import vocabulary as v
-from schemas.changes import Change, between, of_properties, removed
-from schemas.commits import Commit
-from schemas.entities import Entity, Stated
-from schemas.explanations import Term
+from semmap.nodes.kb_node.entities.property_table import STRUCTURAL
+from semmap.nodes.kb_node.entities.property_values import plain
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.ontology import vocabulary as v
+from semmap.schemas.changes import Change, between, of_properties, removed
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Entity, Stated
+from semmap.schemas.explanations import Term
 
 FEW = 20
 """Entities of a commit that are looked at."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sized
 from typing import Final
 
-from nodes.kb_node.storage.journal import Journal
-from schemas.commits import Commit
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.schemas.commits import Commit
 
 CHECKPOINT_EVERY: Final = 5000
 """Commits, in a quiet moment."""

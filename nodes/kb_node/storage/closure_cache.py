@@ -10,10 +10,10 @@ from pathlib import Path
 
 from msgspec import MsgspecError
 
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.reasoner.rules.facts import Facts, pack, unpack
-from nodes.kb_node.storage import conclusions_format
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts, pack, unpack
+from semmap.nodes.kb_node.storage import conclusions_format
+from semmap.schemas.explanations import Triple
 
 _SUFFIX = ".closure"
 _DIGEST_BYTES = 16

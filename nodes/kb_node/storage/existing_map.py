@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 
 
 def existing_map(data: Path) -> str | None:

@@ -10,20 +10,20 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.documents.tbox import tbox_validation
-from nodes.kb_node.entities import entity_reading
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.storage.changelog import Changelog
-from nodes.kb_node.storage.journal import Journal
-from schemas import errors, wording
-from schemas.changes import Change
-from schemas.commands import History
-from schemas.commits import Commit
-from schemas.entities import Entity, Provenance
-from schemas.moments import When, read_moment
-from schemas.replies import LoggedCommit, Sighting
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents.tbox import tbox_validation
+from semmap.nodes.kb_node.entities import entity_reading
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.storage.changelog import Changelog
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.schemas import errors, wording
+from semmap.schemas.changes import Change
+from semmap.schemas.commands import History
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Entity, Provenance
+from semmap.schemas.moments import When, read_moment
+from semmap.schemas.replies import LoggedCommit, Sighting
 
 
 class Past:

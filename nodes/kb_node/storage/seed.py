@@ -9,20 +9,20 @@ from datetime import datetime
 from pathlib import Path
 from types import MappingProxyType
 
-from nodes.kb_node.documents import abox_document, ontology_files, rdf
-from nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.triples.kept import forget
-from nodes.kb_node.storage import closure_cache
-from nodes.kb_node.storage.existing_map import existing_map
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.journal.sqlite_file import InUse
-from ontology import vocabulary as v
-from schemas import errors, wording
-from schemas.commits import Transaction
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.documents import abox_document, ontology_files, rdf
+from semmap.nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.sparql.triples.kept import forget
+from semmap.nodes.kb_node.storage import closure_cache
+from semmap.nodes.kb_node.storage.existing_map import existing_map
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.journal.sqlite_file import InUse
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors, wording
+from semmap.schemas.commits import Transaction
+from semmap.schemas.explanations import Triple
 
 KEPT = "kept"
 

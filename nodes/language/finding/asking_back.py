@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
 from typing import Final
 
-from nodes.language.finding.known import Item
-from nodes.language.finding.resolving import Resolver
+from semmap.nodes.language.finding.known import Item
+from semmap.nodes.language.finding.resolving import Resolver
 
 _MOST: Final = 5
 """Candidates that a question names."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from schemas.relations import RelationName
+from semmap.schemas.relations import RelationName
 
 Axis = Literal["across", "height", "volume", "tallness", "length", "distance", ""]
 """What an order goes by: from left to right, the height it is at, its size, how far it is."""

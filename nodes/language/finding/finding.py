@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from nodes.language.finding import reading
-from nodes.language.finding.description import Description
-from nodes.language.finding.known import Known
-from nodes.language.finding.parsing import parses
-from nodes.language.finding.reading import Reading
-from nodes.language.finding.resolving import Resolved, Resolver, Scope
-from nodes.language.finding.surroundings import Surroundings
-from nodes.language.lexicon.describing import LANGUAGES
-from schemas import errors
-from schemas.language import Outcome
+from semmap.nodes.language.finding import reading
+from semmap.nodes.language.finding.description import Description
+from semmap.nodes.language.finding.known import Known
+from semmap.nodes.language.finding.parsing import parses
+from semmap.nodes.language.finding.reading import Reading
+from semmap.nodes.language.finding.resolving import Resolved, Resolver, Scope
+from semmap.nodes.language.finding.surroundings import Surroundings
+from semmap.nodes.language.lexicon.describing import LANGUAGES
+from semmap.schemas import errors
+from semmap.schemas.language import Outcome
 
 MOST_WORDS: Final = 60
 """Of a description."""

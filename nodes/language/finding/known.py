@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from itertools import islice
 from typing import Final
 
-from nodes.language.lexicon import describing
-from nodes.language.lexicon.describing import LANGUAGES, TAGS, Describing, Language
-from nodes.language.vocabulary import spoken
+from semmap.nodes.language.lexicon import describing
+from semmap.nodes.language.lexicon.describing import LANGUAGES, TAGS, Describing, Language
+from semmap.nodes.language.vocabulary import spoken
 
 _PURPOSE: Final = ("da", "of", "di")
 """An Italian noun keeps its name before it says what it is for; before *of* comes what it is in both."""

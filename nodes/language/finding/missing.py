@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from nodes.language.finding.description import Quality, Related
-from nodes.language.finding.finding import Answer
-from nodes.language.finding.known import Item, Nouns
-from nodes.language.finding.resolving import Resolved, Resolver
-from schemas.happenings import KeptRelation
+from semmap.nodes.language.finding.description import Quality, Related
+from semmap.nodes.language.finding.finding import Answer
+from semmap.nodes.language.finding.known import Item, Nouns
+from semmap.nodes.language.finding.resolving import Resolved, Resolver
+from semmap.schemas.happenings import KeptRelation
 
 _MOST: Final = 3
 """Things of a kind, and others of each, whose pairs are looked for."""

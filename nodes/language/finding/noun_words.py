@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from nodes.language.finding.description import (
+from semmap.nodes.language.finding.description import (
     AnyOf,
     Axis,
     Description,
@@ -18,8 +18,8 @@ from nodes.language.finding.description import (
     State,
     Unknown,
 )
-from nodes.language.finding.reading import Reading
-from schemas import errors
+from semmap.nodes.language.finding.reading import Reading
+from semmap.schemas import errors
 
 _BOUNDS: Final = (
     *("relations", "relative", "where", "be", "have", "lack", "not", "except", "no", "and", "or", "of"),

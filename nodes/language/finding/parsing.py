@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import combinations
 from typing import Any, Final
 
-from nodes.language.finding.description import (
+from semmap.nodes.language.finding.description import (
     Affords,
     Among,
     AnyOf,
@@ -23,8 +23,8 @@ from nodes.language.finding.description import (
     State,
     Unknown,
 )
-from nodes.language.finding.noun_words import Draft, NounWords
-from nodes.language.finding.reading import Reading, forms
+from semmap.nodes.language.finding.noun_words import Draft, NounWords
+from semmap.nodes.language.finding.reading import Reading, forms
 
 _BEGINS: Final = (
     *("definite", "indefinite", "noun", "it", "one", "mine", "quality", "numbers", "sizes"),

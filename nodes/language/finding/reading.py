@@ -9,9 +9,9 @@ from typing import Any, Final
 from rapidfuzz import process
 from rapidfuzz.distance import OSA
 
-from nodes.language.finding.known import MOST_WORDS, Nouns
-from nodes.language.lexicon import describing
-from nodes.language.lexicon.describing import LANGUAGES
+from semmap.nodes.language.finding.known import MOST_WORDS, Nouns
+from semmap.nodes.language.lexicon import describing
+from semmap.nodes.language.lexicon.describing import LANGUAGES
 
 _UNKNOWN: Final = 3.0
 """What a word costs that nobody knows; one that is mended costs as much as it was changed."""

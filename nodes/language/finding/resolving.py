@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from nodes.language.finding.description import (
+from semmap.nodes.language.finding.description import (
     Affords,
     Among,
     AnyOf,
@@ -25,9 +25,9 @@ from nodes.language.finding.description import (
     State,
     Unknown,
 )
-from nodes.language.finding.known import Item, Known
-from nodes.language.finding.surroundings import Surroundings
-from nodes.language.lexicon.describing import Language
+from semmap.nodes.language.finding.known import Item, Known
+from semmap.nodes.language.finding.surroundings import Surroundings
+from semmap.nodes.language.lexicon.describing import Language
 
 _ALIKE: Final = 1.25
 """Sizes that differ by less are no reason to call one big and the other small."""

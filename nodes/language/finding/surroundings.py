@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from schemas.relations import RelationName
+from semmap.schemas.relations import RelationName
 
 
 class Surroundings(Protocol):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from nodes.language.finding import asking_back
-from nodes.language.finding.description import (
+from semmap.nodes.language.finding import asking_back
+from semmap.nodes.language.finding.description import (
     Description,
     Not,
     Order,
@@ -16,10 +16,10 @@ from nodes.language.finding.description import (
     State,
     Unknown,
 )
-from nodes.language.finding.finding import Answer
-from nodes.language.finding.resolving import Resolved, Resolver, Scope
-from nodes.language.nouns import counted, is_counted, listed
-from schemas.language import Candidate, Found
+from semmap.nodes.language.finding.finding import Answer
+from semmap.nodes.language.finding.resolving import Resolved, Resolver, Scope
+from semmap.nodes.language.nouns import counted, is_counted, listed
+from semmap.schemas.language import Candidate, Found
 
 _MOST: Final = 50
 """Candidates that are told of."""

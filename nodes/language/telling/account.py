@@ -10,9 +10,9 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from itertools import chain
 from typing import Final, NamedTuple
 
-from nodes.language import nouns
-from nodes.language.telling.inventory import Group, How, Inventory
-from nodes.language.telling.paragraphs import Paragraph, Piece, spoken_of, there_are
+from semmap.nodes.language import nouns
+from semmap.nodes.language.telling.inventory import Group, How, Inventory
+from semmap.nodes.language.telling.paragraphs import Paragraph, Piece, spoken_of, there_are
 
 _FEW: Final = 3
 """Troubles that are told before anything else."""

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, Literal
 
-from nodes.language import nouns
-from schemas import errors
+from semmap.nodes.language import nouns
+from semmap.schemas import errors
 
 How = Literal["on", "in", "round"]
 """How a thing is at another that bears or holds it, or that it stands round."""

@@ -7,8 +7,8 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from typing import Final
 
-from nodes.language import nouns
-from nodes.language.telling.inventory import Group, How
+from semmap.nodes.language import nouns
+from semmap.nodes.language.telling.inventory import Group, How
 
 _ON_AND_IN: Final[tuple[How, How]] = ("on", "in")
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from nodes.language.understanding.referents import ANYTHING
-from nodes.language.understanding.sentence import Sentence
+from semmap.nodes.language.understanding.referents import ANYTHING
+from semmap.nodes.language.understanding.sentence import Sentence
 
 Span = tuple[str, int, int]
 """A slot, and the indices of the first and the last word that fill it."""

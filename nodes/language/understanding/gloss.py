@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 from msgspec.structs import replace
 
-from nodes.language.words import PartOfSpeech
-from schemas.language import Argument, Grounded, Language, Understood
+from semmap.nodes.language.words import PartOfSpeech
+from semmap.schemas.language import Argument, Grounded, Language, Understood
 
 
 @dataclass(frozen=True, slots=True)

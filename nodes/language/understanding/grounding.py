@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from nodes.language.lexicon import Lexicon
-from nodes.language.phrases import Phrase
-from nodes.language.vocabulary import Vocabulary, spoken
-from nodes.language.words import Word, based
+from semmap.nodes.language.lexicon import Lexicon
+from semmap.nodes.language.phrases import Phrase
+from semmap.nodes.language.vocabulary import Vocabulary, spoken
+from semmap.nodes.language.words import Word, based
 
 _TELLING = ("noun", "adj", "pron", "num")
 

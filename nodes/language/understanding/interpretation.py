@@ -10,8 +10,8 @@ from typing import Final
 
 import pycrfsuite
 
-from nodes.language import languages, lexicon
-from nodes.language.understanding import (
+from semmap.nodes.language import languages, lexicon
+from semmap.nodes.language.understanding import (
     conjuncts,
     grounding,
     italian,
@@ -22,14 +22,14 @@ from nodes.language.understanding import (
     roles,
     slots,
 )
-from nodes.language.understanding.conjuncts import Span
-from nodes.language.understanding.gloss import Gloss
-from nodes.language.understanding.grounding import Scene, Thing, Things
-from nodes.language.understanding.referents import Referents, Resolve
-from nodes.language.understanding.sentence import Sentence, sentence
-from nodes.language.words import PartOfSpeech, split
-from schemas import errors
-from schemas.language import Argument, Frame, Grounded, Language, Understood
+from semmap.nodes.language.understanding.conjuncts import Span
+from semmap.nodes.language.understanding.gloss import Gloss
+from semmap.nodes.language.understanding.grounding import Scene, Thing, Things
+from semmap.nodes.language.understanding.referents import Referents, Resolve
+from semmap.nodes.language.understanding.sentence import Sentence, sentence
+from semmap.nodes.language.words import PartOfSpeech, split
+from semmap.schemas import errors
+from semmap.schemas.language import Argument, Frame, Grounded, Language, Understood
 
 _LEAST: Final = 0.05  # a frame less probable than this is not looked at
 _WEIGHT_OF_ROLES: Final = 0.5  # of the roles' log-probability against the frame's
@@ -142,7 +142,7 @@ class Interpreter:
 @functools.cache
 def shipped(language: str = "english") -> Interpreter:
     """The interpreter that comes with the package, learnt by `make train-language`."""
-    folder = resources.files("nodes.language") / "learnt"
+    folder = resources.files("semmap.nodes.language") / "learnt"
     return Interpreter(
         str(folder / f"{language}_frames.crfsuite"), str(folder / f"{language}_roles.crfsuite"), language
     )

@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
-from nodes.language.lexicon.italian import ARTICULATED, Italian, italian, singulars
-from nodes.language.understanding.gloss import Gloss, Glossed
-from nodes.language.understanding.grounding import Scene
-from nodes.language.vocabulary import spoken
-from nodes.language.words import PartOfSpeech, plain
+from semmap.nodes.language.lexicon.italian import ARTICULATED, Italian, italian, singulars
+from semmap.nodes.language.understanding.gloss import Gloss, Glossed
+from semmap.nodes.language.understanding.grounding import Scene
+from semmap.nodes.language.vocabulary import spoken
+from semmap.nodes.language.words import PartOfSpeech, plain
 
 _WORD: Final = re.compile(r"[^\W\d_]+'(?=\w)|po'|\d+(?:[.,]\d+)?|[^\W_]+(?:-[^\W_]+)*")
 _IS: Final = re.compile(r"(?<!\w)e'(?!\w)")  # è, as it is written where there is no such key

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from nodes.language.understanding.sentence import Sentence
-from schemas.language import Mood
+from semmap.nodes.language.understanding.sentence import Sentence
+from semmap.schemas.language import Mood
 
 _NOT_YET = ("adv", "conj", "neg")  # what may stand before the word that opens a question
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nodes.language.understanding.sentence import Sentence
+from semmap.nodes.language.understanding.sentence import Sentence
 
 _GOALS = ("to", "into", "onto", "towards")
 

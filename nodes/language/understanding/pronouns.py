@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from nodes.language.understanding.grounding import Scene
-from schemas.language import Argument, Frame
+from semmap.nodes.language.understanding.grounding import Scene
+from semmap.schemas.language import Argument, Frame
 
 _PRONOUNS: Final = ("it", "them", "they", "one")
 _SEVERAL: Final = ("them", "they")

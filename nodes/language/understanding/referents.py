@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence, Set
 from typing import Final
 
-from nodes.language.understanding import grounding
-from nodes.language.understanding.grounding import Thing, Things
-from nodes.language.understanding.sentence import Sentence
+from semmap.nodes.language.understanding import grounding
+from semmap.nodes.language.understanding.grounding import Thing, Things
+from semmap.nodes.language.understanding.sentence import Sentence
 
 Resolve = Callable[[str], tuple[str, ...]]
 """The names of the entities that a description fits, none where that cannot be said."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from nodes.language.understanding.sentence import Sentence
+from semmap.nodes.language.understanding.sentence import Sentence
 
 
 def features(s: Sentence, verb: int, frame: str, others: Sequence[int]) -> list[list[str]]:

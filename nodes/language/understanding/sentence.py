@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from nodes.language.lexicon import Lexicon
-from nodes.language.phrases import Phrase, phrases
-from nodes.language.understanding import grounding
-from nodes.language.understanding.grounding import Scene, Things
-from nodes.language.words import PartOfSpeech, Word, based, tag
+from semmap.nodes.language.lexicon import Lexicon
+from semmap.nodes.language.phrases import Phrase, phrases
+from semmap.nodes.language.understanding import grounding
+from semmap.nodes.language.understanding.grounding import Scene, Things
+from semmap.nodes.language.words import PartOfSpeech, Word, based, tag
 
 _MOST_PAIRS = 400  # of things, to be looked at for the nearest: a tenth of a millisecond
 _NEAR_M = 1.5  # of what is nearer, one says where it is by the other

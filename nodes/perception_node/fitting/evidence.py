@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from nodes.perception_node.fitting.model_surfaces import ModelSurface
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.views.boxes import Numbers
-from schemas import errors
+from semmap.nodes.perception_node.fitting.model_surfaces import ModelSurface
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.schemas import errors
 
 _FACING = 0.25
 """What is seen at a flatter angle than this (cosine) is left out: there depth is not to be relied on."""

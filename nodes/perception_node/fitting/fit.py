@@ -9,13 +9,13 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from nodes.perception_node.fitting.evidence import borne_out, not_seen_through
-from nodes.perception_node.fitting.model_surfaces import ModelSurface
-from nodes.perception_node.fitting.registration import registered
-from nodes.perception_node.fitting.starts import Start, off_by, starts, stretch
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.views.boxes import Numbers
-from schemas.entities import Pose, Quaternion, Size
+from semmap.nodes.perception_node.fitting.evidence import borne_out, not_seen_through
+from semmap.nodes.perception_node.fitting.model_surfaces import ModelSurface
+from semmap.nodes.perception_node.fitting.registration import registered
+from semmap.nodes.perception_node.fitting.starts import Start, off_by, starts, stretch
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.schemas.entities import Pose, Quaternion, Size
 
 MOST_POINTS = 400
 FEWEST_POINTS = 60

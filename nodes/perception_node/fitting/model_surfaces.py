@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from nodes.perception_node.views.boxes import Numbers
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.schemas.errors import BadFile
 
 SHIPPED = Path(__file__).with_name("model_surfaces.npz")
 

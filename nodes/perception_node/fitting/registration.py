@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from nodes.perception_node.fitting.starts import Start
-from nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.fitting.starts import Start
+from semmap.nodes.perception_node.views.boxes import Numbers
 
 _RINGS = (0.9, 1.4)
 _STEPS = 24

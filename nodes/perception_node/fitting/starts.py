@@ -9,9 +9,9 @@ from itertools import product
 
 import numpy as np
 
-from nodes.perception_node.fitting.model_surfaces import ModelSurface
-from nodes.perception_node.views.boxes import Numbers
-from schemas.entities import Pose, Size
+from semmap.nodes.perception_node.fitting.model_surfaces import ModelSurface
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.schemas.entities import Pose, Size
 
 _EIGHTH = math.pi / 4.0
 _LIES = 0.75

@@ -9,17 +9,17 @@ from dataclasses import replace
 import numpy as np
 from msgspec import structs
 
-from nodes.perception_node.fitting.fit import Fit, fitted
-from nodes.perception_node.fitting.model_surfaces import ClassSurfaces
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.pipeline import Look
-from nodes.perception_node.recognition.shipped_votes import UNKNOWN
-from nodes.perception_node.views.boxes import Numbers
-from nodes.perception_node.views.segmented_view import Sight
-from nodes.perception_node.views.segments import map_points
-from schemas import errors
-from schemas.entities import Pose, Size
-from schemas.perception import Observation
+from semmap.nodes.perception_node.fitting.fit import Fit, fitted
+from semmap.nodes.perception_node.fitting.model_surfaces import ClassSurfaces
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.pipeline import Look
+from semmap.nodes.perception_node.recognition.shipped_votes import UNKNOWN
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.views.segmented_view import Sight
+from semmap.nodes.perception_node.views.segments import map_points
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose, Size
+from semmap.schemas.perception import Observation
 
 _LONG = 1.3
 """What is so much longer than wide has a direction of its own, from which its model must not stray."""

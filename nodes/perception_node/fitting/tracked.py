@@ -8,18 +8,18 @@ from dataclasses import dataclass, replace
 
 from msgspec import structs
 
-from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.fitting.fit import Fit
-from nodes.perception_node.fitting.model_surfaces import ClassSurfaces
-from nodes.perception_node.fitting.things import along, fit_of, points_of, posed, refuted
-from nodes.perception_node.fitting.worker import Request
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.pipeline import Look
-from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
-from nodes.perception_node.tracking.fits import KnownFit
-from nodes.perception_node.tracking.tracks import Track, Tracks, slack_m
-from schemas.entities import Pose, distance_m
-from schemas.perception import Observation, Observations
+from semmap.nodes.perception_node.config import TrackingConfig
+from semmap.nodes.perception_node.fitting.fit import Fit
+from semmap.nodes.perception_node.fitting.model_surfaces import ClassSurfaces
+from semmap.nodes.perception_node.fitting.things import along, fit_of, points_of, posed, refuted
+from semmap.nodes.perception_node.fitting.worker import Request
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.pipeline import Look
+from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
+from semmap.nodes.perception_node.tracking.fits import KnownFit
+from semmap.nodes.perception_node.tracking.tracks import Track, Tracks, slack_m
+from semmap.schemas.entities import Pose, distance_m
+from semmap.schemas.perception import Observation, Observations
 
 _LONG = 1.3
 

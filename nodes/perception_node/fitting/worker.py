@@ -7,12 +7,12 @@ import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from nodes.perception_node.fitting.fit import Fit
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.pipeline import Look
-from schemas import errors
-from schemas.entities import Pose
-from schemas.perception import Observation
+from semmap.nodes.perception_node.fitting.fit import Fit
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.pipeline import Look
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose
+from semmap.schemas.perception import Observation
 
 log = logging.getLogger(__name__)
 

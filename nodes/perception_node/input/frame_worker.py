@@ -7,14 +7,14 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
-from nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
-from nodes.perception_node.input.frames import Frames, Pair, read_cloud, read_masks
-from nodes.perception_node.input.masks import Masks
-from nodes.perception_node.input.projection import thinning
-from nodes.perception_node.pipeline import Look
-from schemas.errors import BadRequest
-from schemas.perception import DetectedMasks
-from schemas.scenes import CameraFrame
+from semmap.nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
+from semmap.nodes.perception_node.input.frames import Frames, Pair, read_cloud, read_masks
+from semmap.nodes.perception_node.input.masks import Masks
+from semmap.nodes.perception_node.input.projection import thinning
+from semmap.nodes.perception_node.pipeline import Look
+from semmap.schemas.errors import BadRequest
+from semmap.schemas.perception import DetectedMasks
+from semmap.schemas.scenes import CameraFrame
 
 log = logging.getLogger(__name__)
 

@@ -13,12 +13,12 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud, Transform
-from nodes.perception_node.input.masks import Masks, of_image, of_runs
-from nodes.perception_node.input.projection import cloud_of, fits, is_pose, thinned, thinning
-from schemas.errors import BadRequest
-from schemas.perception import DetectedMasks
-from schemas.scenes import CameraFrame
+from semmap.nodes.perception_node.input.cloud import Cloud, Transform
+from semmap.nodes.perception_node.input.masks import Masks, of_image, of_runs
+from semmap.nodes.perception_node.input.projection import cloud_of, fits, is_pose, thinned, thinning
+from semmap.schemas.errors import BadRequest
+from semmap.schemas.perception import DetectedMasks
+from semmap.schemas.scenes import CameraFrame
 
 T = TypeVar("T", np.float32, np.uint8)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.perception import MaskImage, MaskRun
+from semmap.schemas.perception import MaskImage, MaskRun
 
 _MOST = 65_535
 """Things in one picture."""

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Cloud, Transform
+from semmap.nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Cloud, Transform
 
 MOST_PIXELS = 640 * 480 * 3 // 2
 """Of a picture with more, every second, third ... row and column is used."""

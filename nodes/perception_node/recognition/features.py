@@ -10,10 +10,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.recognition.outlines import outlines
-from nodes.perception_node.recognition.relief import reliefs
-from nodes.perception_node.views.boxes import Numbers, in_frame
-from nodes.perception_node.views.merged_thing import Thing
+from semmap.nodes.perception_node.recognition.outlines import outlines
+from semmap.nodes.perception_node.recognition.relief import reliefs
+from semmap.nodes.perception_node.views.boxes import Numbers, in_frame
+from semmap.nodes.perception_node.views.merged_thing import Thing
 
 SORTS = ("geometry", "shape", "colour", "outline", "relief")
 """The sorts of features, in the order of `features_of`."""

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Floats
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
-from nodes.perception_node.views.boxes import Numbers
-from nodes.perception_node.views.merged_thing import Thing
+from semmap.nodes.perception_node.input.cloud import Floats
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.views.merged_thing import Thing
 
 _BESIDE_M = 0.04
 _ABOVE_M = 0.2

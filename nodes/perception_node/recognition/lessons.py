@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nodes.perception_node.recognition.likeness import Likeness, views_of
-from nodes.perception_node.recognition.shipped_votes import Learnt
-from nodes.perception_node.views.boxes import Numbers
-from schemas.entities import Size
+from semmap.nodes.perception_node.recognition.likeness import Likeness, views_of
+from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.schemas.entities import Size
 
 _SUREST = 0.999
 _LEAST = 1e-3

@@ -15,10 +15,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Floats
-from nodes.perception_node.segmentation.trees import Trees
-from nodes.perception_node.views.boxes import Numbers
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.input.cloud import Floats
+from semmap.nodes.perception_node.segmentation.trees import Trees
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.schemas.errors import BadFile
 
 SHIPPED = Path(__file__).with_name("likeness.npz")
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.views.boxes import Numbers
 
 
 @dataclass(frozen=True)

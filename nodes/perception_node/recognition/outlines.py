@@ -11,8 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.views.boxes import Numbers
-from nodes.perception_node.views.merged_thing import Thing
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.views.merged_thing import Thing
 
 _LEVELS, _LENGTHS, _BANDS = 20, 10, 4
 WIDTH = _LEVELS + 2 * _LENGTHS + 3 * _BANDS

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.views.boxes import Numbers
 
 REACH = 6.0
 """Inputs farther from their mean than so many deviations are taken for that far."""

@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from nodes.perception_node.recognition.features import features_of
-from nodes.perception_node.recognition.joining import between, likely_one, near, worth_trying
-from nodes.perception_node.recognition.shipped_votes import Learnt
-from nodes.perception_node.recognition.vote import leaves
-from nodes.perception_node.views.boxes import Numbers
-from nodes.perception_node.views.merged_thing import Thing
+from semmap.nodes.perception_node.recognition.features import features_of
+from semmap.nodes.perception_node.recognition.joining import between, likely_one, near, worth_trying
+from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+from semmap.nodes.perception_node.recognition.vote import leaves
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.views.merged_thing import Thing
 
 _ROUNDS = 8
 _MOST_PAIRS = 16

@@ -8,16 +8,16 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
-from nodes.perception_node.recognition.sides import completed, side_features
-from nodes.perception_node.recognition.standing_alone import stand_alone
-from nodes.perception_node.recognition.told_names import Labels, told_class, with_names
-from nodes.perception_node.recognition.trimming import looked_at_again
-from nodes.perception_node.recognition.vote import answer, expected_sizes
-from nodes.perception_node.views.boxes import Box, Numbers
-from nodes.perception_node.views.merged_thing import Thing
-from schemas.entities import Pose, orientation_from_yaw
-from schemas.perception import Observation
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
+from semmap.nodes.perception_node.recognition.sides import completed, side_features
+from semmap.nodes.perception_node.recognition.standing_alone import stand_alone
+from semmap.nodes.perception_node.recognition.told_names import Labels, told_class, with_names
+from semmap.nodes.perception_node.recognition.trimming import looked_at_again
+from semmap.nodes.perception_node.recognition.vote import answer, expected_sizes
+from semmap.nodes.perception_node.views.boxes import Box, Numbers
+from semmap.nodes.perception_node.views.merged_thing import Thing
+from semmap.schemas.entities import Pose, orientation_from_yaw
+from semmap.schemas.perception import Observation
 
 _CANDIDATES = 5
 _CLUTTER = 0.7

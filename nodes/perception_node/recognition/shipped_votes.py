@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.recognition.features import SORTS
-from nodes.perception_node.recognition.novelty import Novelty
-from nodes.perception_node.recognition.perceptron import Perceptron
-from nodes.perception_node.segmentation.trees import Trees
-from nodes.perception_node.views.boxes import Numbers
-from schemas.entities import Size
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.recognition.features import SORTS
+from semmap.nodes.perception_node.recognition.novelty import Novelty
+from semmap.nodes.perception_node.recognition.perceptron import Perceptron
+from semmap.nodes.perception_node.segmentation.trees import Trees
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.schemas.entities import Size
+from semmap.schemas.errors import BadFile
 
 if TYPE_CHECKING:
-    from nodes.perception_node.recognition.lessons import Shown
+    from semmap.nodes.perception_node.recognition.lessons import Shown
 
 SHIPPED = Path(__file__).with_name("recognition.npz")
 

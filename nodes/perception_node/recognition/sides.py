@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from nodes.perception_node.recognition.perceptron import Perceptron
-from nodes.perception_node.views.boxes import Box, Numbers, in_frame
-from nodes.perception_node.views.merged_thing import Thing
+from semmap.nodes.perception_node.recognition.perceptron import Perceptron
+from semmap.nodes.perception_node.views.boxes import Box, Numbers, in_frame
+from semmap.nodes.perception_node.views.merged_thing import Thing
 
 SIZE_FEATURES = slice(-3, None)
 """The columns of the features that hold the expected size."""

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.recognition.joining import near
-from nodes.perception_node.views.boxes import Box, in_frame
-from nodes.perception_node.views.merged_thing import Thing
+from semmap.nodes.perception_node.recognition.joining import near
+from semmap.nodes.perception_node.views.boxes import Box, in_frame
+from semmap.nodes.perception_node.views.merged_thing import Thing
 
 _SMALLEST_M, _LARGEST_M = 0.025, 0.5
 """What such a thing measures at most: less is a scrap, more a piece of furniture or a wall."""

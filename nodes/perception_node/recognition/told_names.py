@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from nodes.perception_node.input.masks import Masks
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
-from nodes.perception_node.views.boxes import Numbers
-from nodes.perception_node.views.merged_thing import Thing
+from semmap.nodes.perception_node.input.masks import Masks
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.views.merged_thing import Thing
 
 _SUREST = 0.98
 _LEAST = 1e-4

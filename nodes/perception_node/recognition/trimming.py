@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from nodes.perception_node.recognition.features import features_of
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
-from nodes.perception_node.recognition.vote import leaves
-from nodes.perception_node.views.boxes import Numbers, best_yaw, box_around, in_frame
-from nodes.perception_node.views.merged_thing import Thing
+from semmap.nodes.perception_node.recognition.features import features_of
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
+from semmap.nodes.perception_node.recognition.vote import leaves
+from semmap.nodes.perception_node.views.boxes import Numbers, best_yaw, box_around, in_frame
+from semmap.nodes.perception_node.views.merged_thing import Thing
 
 _DOUBTFUL = 0.6
 _GAIN = 0.3

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from nodes.perception_node.recognition.features import SORTS
-from nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS, Learnt
-from nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.recognition.features import SORTS
+from semmap.nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS, Learnt
+from semmap.nodes.perception_node.views.boxes import Numbers
 
 _CLEAR = 0.85
 _SAY = 0.2

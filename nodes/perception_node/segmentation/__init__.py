@@ -1,6 +1,6 @@
 """Segmentation: dominant planes, and objects, also where they touch."""
 
-from nodes.perception_node.segmentation.planes import Plane
-from nodes.perception_node.segmentation.segment import Segmentation, segment
+from semmap.nodes.perception_node.segmentation.planes import Plane
+from semmap.nodes.perception_node.segmentation.segment import Segmentation, segment
 
 __all__ = ["Plane", "Segmentation", "segment"]

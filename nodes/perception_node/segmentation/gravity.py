@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from nodes.perception_node.input.cloud import Transform
-from nodes.perception_node.segmentation.planes import Plane, find_planes
-from nodes.perception_node.segmentation.working_picture import Floats
+from semmap.nodes.perception_node.input.cloud import Transform
+from semmap.nodes.perception_node.segmentation.planes import Plane, find_planes
+from semmap.nodes.perception_node.segmentation.working_picture import Floats
 
 _UP = 0.2
 _DOWN = 0.9

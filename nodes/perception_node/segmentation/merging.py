@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.segmentation.pairs import candidates
-from nodes.perception_node.segmentation.statistics import Indices, Statistics
+from semmap.nodes.perception_node.segmentation.pairs import candidates
+from semmap.nodes.perception_node.segmentation.statistics import Indices, Statistics
 
 Judge = Callable[[Statistics, Indices, Indices], NDArray[np.float32]]
 """How likely the pairs of patches (a, b) are one object: (N,)."""

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.segmentation import statistics as s
-from nodes.perception_node.segmentation.statistics import Indices, Statistics
+from semmap.nodes.perception_node.segmentation import statistics as s
+from semmap.nodes.perception_node.segmentation.statistics import Indices, Statistics
 
 NAMES = (
     *("log_small", "log_big", "ratio"),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.cloud import Cloud
 
 _WIDEST = 1280
 _MARGIN = 0.1  # of the extent, beyond what all but a few points take

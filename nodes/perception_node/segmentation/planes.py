@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from nodes.perception_node.input.cloud import Transform
-from nodes.perception_node.segmentation.plane_pieces import pieces_of
-from nodes.perception_node.segmentation.working_picture import Floats, Labels, Mask
+from semmap.nodes.perception_node.input.cloud import Transform
+from semmap.nodes.perception_node.segmentation.plane_pieces import pieces_of
+from semmap.nodes.perception_node.segmentation.working_picture import Floats, Labels, Mask
 
 Kind = Literal["floor", "wall", "support", "plane"]
 

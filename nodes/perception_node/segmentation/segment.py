@@ -7,16 +7,23 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.segmentation.merging import Judge, merge
-from nodes.perception_node.segmentation.normals import normals
-from nodes.perception_node.segmentation.patches import patches
-from nodes.perception_node.segmentation.picture import as_picture
-from nodes.perception_node.segmentation.planes import Plane, find_planes
-from nodes.perception_node.segmentation.shipped_trees import shipped
-from nodes.perception_node.segmentation.statistics import Statistics, Upright, statistics
-from nodes.perception_node.segmentation.thin_things import thin_things
-from nodes.perception_node.segmentation.working_picture import Floats, Grid, Labels, Mask, grid_of, spread
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.segmentation.merging import Judge, merge
+from semmap.nodes.perception_node.segmentation.normals import normals
+from semmap.nodes.perception_node.segmentation.patches import patches
+from semmap.nodes.perception_node.segmentation.picture import as_picture
+from semmap.nodes.perception_node.segmentation.planes import Plane, find_planes
+from semmap.nodes.perception_node.segmentation.shipped_trees import shipped
+from semmap.nodes.perception_node.segmentation.statistics import Statistics, Upright, statistics
+from semmap.nodes.perception_node.segmentation.thin_things import thin_things
+from semmap.nodes.perception_node.segmentation.working_picture import (
+    Floats,
+    Grid,
+    Labels,
+    Mask,
+    grid_of,
+    spread,
+)
 
 LOWEST_M, HIGHEST_M = 0.009, 0.5
 """What stands on a support lies this far above it."""

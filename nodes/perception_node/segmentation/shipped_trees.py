@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.segmentation.pairs import NAMES, features
-from nodes.perception_node.segmentation.statistics import Indices, Statistics
-from nodes.perception_node.segmentation.trees import Trees
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.segmentation.pairs import NAMES, features
+from semmap.nodes.perception_node.segmentation.statistics import Indices, Statistics
+from semmap.nodes.perception_node.segmentation.trees import Trees
+from semmap.schemas.errors import BadFile
 
 SHIPPED = Path(__file__).with_name("segmentation.npz")
 

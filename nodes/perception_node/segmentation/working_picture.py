@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.cloud import Cloud
 
 Floats = NDArray[np.float32]
 Labels = NDArray[np.int32]

@@ -8,9 +8,9 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
-from nodes.perception_node.tracking.costs import (
+from semmap.nodes.perception_node.config import TrackingConfig
+from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from semmap.nodes.perception_node.tracking.costs import (
     FORBIDDEN,
     Target,
     cost_anywhere,
@@ -18,11 +18,11 @@ from nodes.perception_node.tracking.costs import (
     cost_of_height,
     size_difference,
 )
-from nodes.perception_node.tracking.occupancy import Occupancy, OccupancyOf
-from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, share
-from nodes.perception_node.tracking.tracks import Track
-from schemas.entities import distance_m
-from schemas.perception import Observation
+from semmap.nodes.perception_node.tracking.occupancy import Occupancy, OccupancyOf
+from semmap.nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, share
+from semmap.nodes.perception_node.tracking.tracks import Track
+from semmap.schemas.entities import distance_m
+from semmap.schemas.perception import Observation
 
 A = TypeVar("A")
 B = TypeVar("B")

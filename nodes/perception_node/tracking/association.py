@@ -16,12 +16,12 @@ from typing import NamedTuple
 
 from msgspec import structs
 
-from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.tracking.assignment import Candidate, Matching, match
-from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
-from nodes.perception_node.tracking.costs import Target, is_rather_all_of_it
-from nodes.perception_node.tracking.legs import is_leg
-from nodes.perception_node.tracking.map_updates import (
+from semmap.nodes.perception_node.config import TrackingConfig
+from semmap.nodes.perception_node.tracking.assignment import Candidate, Matching, match
+from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
+from semmap.nodes.perception_node.tracking.costs import Target, is_rather_all_of_it
+from semmap.nodes.perception_node.tracking.legs import is_leg
+from semmap.nodes.perception_node.tracking.map_updates import (
     additions,
     has_moved,
     is_own,
@@ -30,14 +30,14 @@ from nodes.perception_node.tracking.map_updates import (
     update_of,
     with_load,
 )
-from nodes.perception_node.tracking.occupancy import OccupancyOf
-from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, left_behind, share
-from nodes.perception_node.tracking.tracks import Track, Tracks, slack_m
-from nodes.perception_node.tracking.votes import Votes
-from schemas import errors
-from schemas.commands import Add, Command
-from schemas.entities import Entity, Size, distance_m, free_name
-from schemas.perception import Observation
+from semmap.nodes.perception_node.tracking.occupancy import OccupancyOf
+from semmap.nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, left_behind, share
+from semmap.nodes.perception_node.tracking.tracks import Track, Tracks, slack_m
+from semmap.nodes.perception_node.tracking.votes import Votes
+from semmap.schemas import errors
+from semmap.schemas.commands import Add, Command
+from semmap.schemas.entities import Entity, Size, distance_m, free_name
+from semmap.schemas.perception import Observation
 
 _ANY_SIZE_M: Size = (0.1, 0.1, 0.1)
 _FORGOTTEN_AFTER = 3

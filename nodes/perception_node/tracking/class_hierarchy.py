@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from schemas.entities import ClassInfo, Size
+from semmap.schemas.entities import ClassInfo, Size
 
 ANYTHING = "Object"
 """The class of what is like nothing known."""

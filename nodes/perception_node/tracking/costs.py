@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
-from nodes.perception_node.tracking.fronts import is_front
-from nodes.perception_node.tracking.overlap import OrientedBox
-from schemas.entities import Pose, Size
-from schemas.perception import Observation
+from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
+from semmap.nodes.perception_node.tracking.fronts import is_front
+from semmap.nodes.perception_node.tracking.overlap import OrientedBox
+from semmap.schemas.entities import Pose, Size
+from semmap.schemas.perception import Observation
 
 FORBIDDEN = math.inf
 _NEARBY_M = 0.05

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from schemas.entities import Pose, Quaternion
+from semmap.schemas.entities import Pose, Quaternion
 
 _TURNED_RAD = math.radians(8.0)
 """A fitted yaw that differs from the map's by more is told."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from nodes.perception_node.tracking.overlap import OrientedBox, share
+from semmap.nodes.perception_node.tracking.overlap import OrientedBox, share
 
 _FLAT = 0.75
 """A front is less deep than this share of its width."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from nodes.perception_node.tracking.overlap import OrientedBox
+from semmap.nodes.perception_node.tracking.overlap import OrientedBox
 
 _FLOOR_M = 0.06
 _SLENDER_M = 0.1

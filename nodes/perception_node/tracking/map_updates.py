@@ -8,14 +8,14 @@ from typing import Any
 
 from msgspec import structs
 
-from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
-from nodes.perception_node.tracking.fronts import is_front
-from nodes.perception_node.tracking.overlap import OrientedBox
-from nodes.perception_node.tracking.tracks import Track, slack_m, turn_between
-from schemas.commands import Add, Command, Remove, Update
-from schemas.entities import Entity, Size, distance_m, free_name, rounded
-from schemas.perception import DISPLACED, MISSING
+from semmap.nodes.perception_node.config import TrackingConfig
+from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
+from semmap.nodes.perception_node.tracking.fronts import is_front
+from semmap.nodes.perception_node.tracking.overlap import OrientedBox
+from semmap.nodes.perception_node.tracking.tracks import Track, slack_m, turn_between
+from semmap.schemas.commands import Add, Command, Remove, Update
+from semmap.schemas.entities import Entity, Size, distance_m, free_name, rounded
+from semmap.schemas.perception import DISPLACED, MISSING
 
 AGENT = "perception_node"
 

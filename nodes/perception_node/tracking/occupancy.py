@@ -12,9 +12,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud, Transform
-from schemas import errors
-from schemas.entities import Pose, Size
+from semmap.nodes.perception_node.input.cloud import Cloud, Transform
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose, Size
 
 Occupancy = Literal["free", "occupied", "unknown"]
 """`free`: one looks through where the thing should be; `occupied`: there is something."""

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from schemas.entities import Pose, Size
+from semmap.schemas.entities import Pose, Size
 
 _GRID = np.stack(
     np.meshgrid(*[(np.arange(n) + 0.5) / n - 0.5 for n in (6, 6, 4)], indexing="ij"), axis=-1

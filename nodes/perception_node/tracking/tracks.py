@@ -8,15 +8,15 @@ from dataclasses import dataclass, field, replace
 
 from msgspec import structs
 
-from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.tracking.class_hierarchy import ANYTHING
-from nodes.perception_node.tracking.fits import KnownFit
-from nodes.perception_node.tracking.fronts import is_front
-from nodes.perception_node.tracking.occupancy import Occupancy
-from nodes.perception_node.tracking.overlap import OrientedBox, share
-from nodes.perception_node.tracking.votes import Votes
-from schemas.entities import Pose, Size, Vector, distance_m, orientation_from_yaw
-from schemas.perception import Observation
+from semmap.nodes.perception_node.config import TrackingConfig
+from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING
+from semmap.nodes.perception_node.tracking.fits import KnownFit
+from semmap.nodes.perception_node.tracking.fronts import is_front
+from semmap.nodes.perception_node.tracking.occupancy import Occupancy
+from semmap.nodes.perception_node.tracking.overlap import OrientedBox, share
+from semmap.nodes.perception_node.tracking.votes import Votes
+from semmap.schemas.entities import Pose, Size, Vector, distance_m, orientation_from_yaw
+from semmap.schemas.perception import Observation
 
 _RELATIVE = 0.05
 """The box of a big thing is known to this share of its size."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
+from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
 
 _SURE = 0.4
 """A class that has this much of the votes is believed."""

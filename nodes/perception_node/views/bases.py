@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from nodes.perception_node.views.boxes import Numbers
-from nodes.perception_node.views.merged_thing import Thing
-from nodes.perception_node.views.supports import Support
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.views.merged_thing import Thing
+from semmap.nodes.perception_node.views.supports import Support
 
 _LIFTED_M = 0.1
 """Only what would stand this far above its support is asked about."""

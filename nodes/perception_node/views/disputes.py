@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from nodes.perception_node.views.fusion import shown_by_others
-from nodes.perception_node.views.segmented_view import Sight, labelled
-from nodes.perception_node.views.segments import Segment, in_map
+from semmap.nodes.perception_node.views.fusion import shown_by_others
+from semmap.nodes.perception_node.views.segmented_view import Sight, labelled
+from semmap.nodes.perception_node.views.segments import Segment, in_map
 
 _FEWEST = 40
 

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from nodes.perception_node.input.cloud import Floats
-from nodes.perception_node.views.boxes import Numbers
-from nodes.perception_node.views.furniture_planes import EVERY
-from nodes.perception_node.views.merged_thing import Thing
-from nodes.perception_node.views.segmented_view import Sight
-from nodes.perception_node.views.segments import in_map
-from nodes.perception_node.views.supports import Support
+from semmap.nodes.perception_node.input.cloud import Floats
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.views.furniture_planes import EVERY
+from semmap.nodes.perception_node.views.merged_thing import Thing
+from semmap.nodes.perception_node.views.segmented_view import Sight
+from semmap.nodes.perception_node.views.segments import in_map
+from semmap.nodes.perception_node.views.supports import Support
 
 _LIFTED_M = 0.1
 """Only what would stand this far above its support is asked about."""

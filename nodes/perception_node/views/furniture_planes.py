@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from nodes.perception_node.input.cloud import Floats
-from nodes.perception_node.segmentation import Segmentation
-from nodes.perception_node.views.segments import Segment
+from semmap.nodes.perception_node.input.cloud import Floats
+from semmap.nodes.perception_node.segmentation import Segmentation
+from semmap.nodes.perception_node.views.segments import Segment
 
 _ROOM_M = 2.2
 """A wall is higher or wider, as far as it is seen."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from nodes.perception_node.views.segmented_view import Sight
+from semmap.nodes.perception_node.views.segmented_view import Sight
 
 _PROBES = 300
 _SAME_SHARE = 0.5

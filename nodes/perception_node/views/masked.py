@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from nodes.perception_node.input.masks import Masks, Said
-from nodes.perception_node.views.segmented_view import Sight, labelled
+from semmap.nodes.perception_node.input.masks import Masks, Said
+from semmap.nodes.perception_node.views.segmented_view import Sight, labelled
 
 _GAP_M, _GAP_SHARE = 0.015, 0.012
 """Neighbouring pixels are of one surface if their depths differ by less: metres, and a share of the depth."""

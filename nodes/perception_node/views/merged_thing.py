@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from nodes.perception_node.input.cloud import Floats
-from nodes.perception_node.views.boxes import Box, Numbers, best_yaw, box_around
-from nodes.perception_node.views.segments import Segment
-from nodes.perception_node.views.supports import Support, height_below
+from semmap.nodes.perception_node.input.cloud import Floats
+from semmap.nodes.perception_node.views.boxes import Box, Numbers, best_yaw, box_around
+from semmap.nodes.perception_node.views.segments import Segment
+from semmap.nodes.perception_node.views.supports import Support, height_below
 
 _CELLS_ALONG, _MOST_CELLS = 40, 150
 _CELL_M = (0.004, 0.02)

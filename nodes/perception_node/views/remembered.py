@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from nodes.perception_node.input.cloud import Cloud, Transform
-from nodes.perception_node.views.segmented_view import Sight
-from nodes.perception_node.views.segments import Segment
-from schemas import errors
+from semmap.nodes.perception_node.input.cloud import Cloud, Transform
+from semmap.nodes.perception_node.views.segmented_view import Sight
+from semmap.nodes.perception_node.views.segments import Segment
+from semmap.schemas import errors
 
 MOST_SEGMENTS = 100
 """So many are remembered at most, those that were seen last."""

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud, Floats
-from nodes.perception_node.segmentation import Plane, Segmentation, segment
-from nodes.perception_node.segmentation.gravity import level_plane, room_pose, standing_on
-from nodes.perception_node.segmentation.picture import as_picture
-from nodes.perception_node.segmentation.working_picture import grid_of
-from nodes.perception_node.views.furniture_planes import EVERY, with_furniture
-from nodes.perception_node.views.segments import Segment, cut_out, in_map
-from nodes.perception_node.views.supports import Support, support_of
+from semmap.nodes.perception_node.input.cloud import Cloud, Floats
+from semmap.nodes.perception_node.segmentation import Plane, Segmentation, segment
+from semmap.nodes.perception_node.segmentation.gravity import level_plane, room_pose, standing_on
+from semmap.nodes.perception_node.segmentation.picture import as_picture
+from semmap.nodes.perception_node.segmentation.working_picture import grid_of
+from semmap.nodes.perception_node.views.furniture_planes import EVERY, with_furniture
+from semmap.nodes.perception_node.views.segments import Segment, cut_out, in_map
+from semmap.nodes.perception_node.views.supports import Support, support_of
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud, Floats, Transform
-from nodes.perception_node.input.masks import Said
+from semmap.nodes.perception_node.input.cloud import Cloud, Floats, Transform
+from semmap.nodes.perception_node.input.masks import Said
 
 MOST_POINTS = 3000
 """A segment of more points is thinned: what is learnt from it does not get better with more."""

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from nodes.perception_node.input.cloud import Floats
-from nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.input.cloud import Floats
+from semmap.nodes.perception_node.views.boxes import Numbers
 
 _FLOOR_M = 0.06
 """What is no higher is the floor, which goes on where nobody sees it."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import rerun.blueprint as rrb
 
-from nodes.recorder.drawing.perception_archetypes import BOXES, camera_path
-from schemas.entities import Pose, Vector
+from semmap.nodes.recorder.drawing.perception_archetypes import BOXES, camera_path
+from semmap.schemas.entities import Pose, Vector
 
 _BACKGROUND = (24, 26, 30)
 _LOG_COLUMNS = rrb.TextLogColumns(

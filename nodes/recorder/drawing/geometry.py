@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from nodes.drawing.figures import Figure
-from nodes.drawing.palette import GREY, colour_of
-from nodes.drawing.sheets import triangles_of
-from schemas.polygons import Polygon
-from schemas.scenes import Surface
+from semmap.nodes.drawing.figures import Figure
+from semmap.nodes.drawing.palette import GREY, colour_of
+from semmap.nodes.drawing.sheets import triangles_of
+from semmap.schemas.polygons import Polygon
+from semmap.schemas.scenes import Surface
 
 _GHOST_ALPHA = 90
 _SHEET_ALPHA = 36

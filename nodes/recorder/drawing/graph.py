@@ -7,9 +7,9 @@ from typing import Final
 
 import rerun as rr
 
-from nodes.drawing.neighbourhood import Knot, Link, Neighbourhood, around, by_place
-from nodes.drawing.palette import GREY, colour_of
-from schemas.entities import Entity
+from semmap.nodes.drawing.neighbourhood import Knot, Link, Neighbourhood, around, by_place
+from semmap.nodes.drawing.palette import GREY, colour_of
+from semmap.schemas.entities import Entity
 
 MANY: Final = 12
 """A commit that touches more entities is shown by places, with the number of things in each."""

@@ -8,10 +8,10 @@ import numpy as np
 import rerun as rr
 from PIL import Image
 
-from nodes.drawing.palette import GREY, colour_of
-from schemas.entities import Pose
-from schemas.perception import Observation, Observations, SegmentedCloud
-from schemas.scenes import CameraFrame
+from semmap.nodes.drawing.palette import GREY, colour_of
+from semmap.schemas.entities import Pose
+from semmap.schemas.perception import Observation, Observations, SegmentedCloud
+from semmap.schemas.scenes import CameraFrame
 
 BOXES = "map/perception/boxes"
 CLOUD = "map/perception/cloud"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from nodes.drawing.figures import Figure, figure_of, pose_of, still
-from nodes.drawing.neighbourhood import Neighbourhood
-from nodes.drawing.surfaces import SurfaceCache
-from nodes.recorder.recording import Recording
-from schemas.entities import Entity, Pose
-from schemas.scenes import Body
+from semmap.nodes.drawing.figures import Figure, figure_of, pose_of, still
+from semmap.nodes.drawing.neighbourhood import Neighbourhood
+from semmap.nodes.drawing.surfaces import SurfaceCache
+from semmap.nodes.recorder.recording import Recording
+from semmap.schemas.entities import Entity, Pose
+from semmap.schemas.scenes import Body
 
 Drawn = tuple[Figure, Pose]
 

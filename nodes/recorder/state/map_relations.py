@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from ontology import vocabulary as v
-from schemas.commits import Commit, PlaceChanges, Star
-from schemas.entities import Entity
-from schemas.explanations import Term, Triple
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Commit, PlaceChanges, Star
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Term, Triple
 
 Relation = tuple[str, str]
 """A property and the name of the entity that it leads to."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from nodes.sim_node.models.parts import Floats, Part, Shape, rotation_matrix
-from ontology.model_shapes import ConvexPart, Corner
-from schemas import errors
+from semmap.nodes.sim_node.models.parts import Floats, Part, Shape, rotation_matrix
+from semmap.ontology.model_shapes import ConvexPart, Corner
+from semmap.schemas import errors
 
 
 def convex_part(part: Part) -> ConvexPart:

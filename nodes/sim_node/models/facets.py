@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.models.library import Model
-from nodes.sim_node.models.parts import Floats, Joint, Part, Role, Shape, rotation_matrix
-from schemas import errors
-from schemas.scenes import Leaf, Surface
+from semmap.nodes.sim_node.models.library import Model
+from semmap.nodes.sim_node.models.parts import Floats, Joint, Part, Role, Shape, rotation_matrix
+from semmap.schemas import errors
+from semmap.schemas.scenes import Leaf, Surface
 
 _SLICES = 14
 _RINGS = 7

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from nodes.sim_node.models.parts import (
+from semmap.nodes.sim_node.models.parts import (
     Colour,
     Part,
     Parts,

@@ -8,9 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from nodes.sim_node.models.forms import shifted
-from nodes.sim_node.models.model_table import ModelKind
-from nodes.sim_node.models.parts import (
+from semmap.nodes.sim_node.models.forms import shifted
+from semmap.nodes.sim_node.models.model_table import ModelKind
+from semmap.nodes.sim_node.models.parts import (
     Inertial,
     Joint,
     Part,
@@ -22,7 +22,7 @@ from nodes.sim_node.models.parts import (
     inertial,
     quarter_turned,
 )
-from nodes.sim_node.models.variety_table import KINDS
+from semmap.nodes.sim_node.models.variety_table import KINDS
 
 FALLBACK_M: Vec3 = (0.3, 0.3, 0.3)
 """The size of a box for a class without a model and an entity without a size."""

@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from nodes.sim_node.models.library import DENSITY, ModelError
-from nodes.sim_node.models.parts import Colour, Floats, Joint, Part, Role, Shape, Vec3, bounds, mesh
-from nodes.sim_node.physics.ends import Ends
-from schemas import wording
+from semmap.nodes.sim_node.models.library import DENSITY, ModelError
+from semmap.nodes.sim_node.models.parts import Colour, Floats, Joint, Part, Role, Shape, Vec3, bounds, mesh
+from semmap.nodes.sim_node.physics.ends import Ends
+from semmap.schemas import wording
 
 _SHAPES = {
     int(mujoco.mjtGeom.mjGEOM_BOX): Shape.BOX,

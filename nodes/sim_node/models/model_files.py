@@ -11,11 +11,21 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from nodes.sim_node.bodies import Floats
-from nodes.sim_node.models.library import DENSITY, Model, ModelError, assemble, check_size
-from nodes.sim_node.models.mjcf_files import MjcfModel, read_mjcf
-from nodes.sim_node.models.parts import Colour, Joint, Part, Role, Shape, Vec3, bounds, mesh, rotation_matrix
-from nodes.sim_node.physics import build
+from semmap.nodes.sim_node.bodies import Floats
+from semmap.nodes.sim_node.models.library import DENSITY, Model, ModelError, assemble, check_size
+from semmap.nodes.sim_node.models.mjcf_files import MjcfModel, read_mjcf
+from semmap.nodes.sim_node.models.parts import (
+    Colour,
+    Joint,
+    Part,
+    Role,
+    Shape,
+    Vec3,
+    bounds,
+    mesh,
+    rotation_matrix,
+)
+from semmap.nodes.sim_node.physics import build
 
 MESHES = (".obj", ".stl", ".glb")
 SUFFIXES = (".xml", *MESHES)

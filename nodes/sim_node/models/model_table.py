@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from nodes.sim_node.models.catalogue import (
+from semmap.nodes.sim_node.models.catalogue import (
     appliances,
     belongings,
     computers,
@@ -27,7 +27,7 @@ from nodes.sim_node.models.catalogue import (
     toiletries,
     tools,
 )
-from nodes.sim_node.models.parts import Colour, Parts, Vec3
+from semmap.nodes.sim_node.models.parts import Colour, Parts, Vec3
 
 
 class ModelKind(NamedTuple):

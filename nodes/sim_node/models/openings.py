@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from nodes.sim_node.models.forms import WALL_M, shade, shifted
-from nodes.sim_node.models.parts import Colour, Joint, Part, Parts, Vec3, box, moving
+from semmap.nodes.sim_node.models.forms import WALL_M, shade, shifted
+from semmap.nodes.sim_node.models.parts import Colour, Joint, Part, Parts, Vec3, box, moving
 
 WIDE = math.radians(100.0)
 """How far a door opens [rad]."""

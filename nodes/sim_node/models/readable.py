@@ -9,7 +9,7 @@ import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from nodes.sim_node.models.library import ModelError
+from semmap.nodes.sim_node.models.library import ModelError
 
 _FOLDERS = ("meshdir", "texturedir", "assetdir")
 _DEEPEST = 20

@@ -1,4 +1,4 @@
-"""A contact sheet of all models: `python -m nodes.sim_node.models.sheet docs/models.png`."""
+"""A contact sheet of all models: `python -m semmap.nodes.sim_node.models.sheet docs/models.png`."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from pathlib import Path
 import mujoco
 from PIL import Image, ImageDraw, ImageFont
 
-from nodes.sim_node.models.library import Model, build
-from nodes.sim_node.models.parts import Part, bounds, moved
-from nodes.sim_node.models.variety_table import KINDS
-from nodes.sim_node.physics.build import add_part
-from nodes.sim_node.vision.raycast import raycast
-from nodes.sim_node.vision.view import FROM_THE_FRONT, overview
+from semmap.nodes.sim_node.models.library import Model, build
+from semmap.nodes.sim_node.models.parts import Part, bounds, moved
+from semmap.nodes.sim_node.models.variety_table import KINDS
+from semmap.nodes.sim_node.physics.build import add_part
+from semmap.nodes.sim_node.vision.raycast import raycast
+from semmap.nodes.sim_node.vision.view import FROM_THE_FRONT, overview
 
 _CELL, _LABEL, _COLUMNS, _FINE = 150, 18, 13, 2
 _PAPER, _INK = (242, 242, 240), (40, 40, 44)

@@ -6,12 +6,12 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from nodes.sim_node.models.library import Model, ModelError
-from nodes.sim_node.models.library import build as built_in
-from nodes.sim_node.models.model_files import MESHES, SUFFIXES, read_model
-from nodes.sim_node.models.parts import Vec3
-from nodes.sim_node.models.readable import require_readable, require_references
-from schemas.errors import did_you_mean
+from semmap.nodes.sim_node.models.library import Model, ModelError
+from semmap.nodes.sim_node.models.library import build as built_in
+from semmap.nodes.sim_node.models.model_files import MESHES, SUFFIXES, read_model
+from semmap.nodes.sim_node.models.parts import Vec3
+from semmap.nodes.sim_node.models.readable import require_readable, require_references
+from semmap.schemas.errors import did_you_mean
 
 
 @dataclass(frozen=True)

@@ -18,11 +18,11 @@ from msgspec import structs
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from nodes.sim_node.models.convex_parts import convex_part
-from nodes.sim_node.models.library import Model
-from nodes.sim_node.models.parts import Floats, Part, Role, Shape, rotation_matrix
-from ontology.model_shapes import Interior, LeafShape, ModelShape, Surface
-from schemas import errors
+from semmap.nodes.sim_node.models.convex_parts import convex_part
+from semmap.nodes.sim_node.models.library import Model
+from semmap.nodes.sim_node.models.parts import Floats, Part, Role, Shape, rotation_matrix
+from semmap.ontology.model_shapes import Interior, LeafShape, ModelShape, Surface
+from semmap.schemas import errors
 
 CELLS = 64
 """Cells along the longer side of the footprint."""

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from nodes.sim_node.models.catalogue import other_forms, tableware
-from nodes.sim_node.models.model_table import MODELS, ModelKind
+from semmap.nodes.sim_node.models.catalogue import other_forms, tableware
+from semmap.nodes.sim_node.models.model_table import MODELS, ModelKind
 
 
 class Variety(NamedTuple):

@@ -9,10 +9,10 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.models.facets import facets
-from nodes.sim_node.models.parts import Floats, Mesh, Part, Shape
-from nodes.sim_node.physics.build import FELT_GROUP
-from schemas.scenes import Surface
+from semmap.nodes.sim_node.models.facets import facets
+from semmap.nodes.sim_node.models.parts import Floats, Mesh, Part, Shape
+from semmap.nodes.sim_node.physics.build import FELT_GROUP
+from semmap.schemas.scenes import Surface
 
 _SHAPES = {
     mujoco.mjtGeom.mjGEOM_BOX: Shape.BOX,

@@ -10,13 +10,13 @@ from pathlib import Path
 import msgspec
 from msgspec import structs
 
-from nodes.sim_node.models.library import ModelError, build
-from nodes.sim_node.models.model_files import SUFFIXES
-from nodes.sim_node.models.sources import Models, is_one_of
-from nodes.sim_node.models.spaces import shape_of
-from nodes.sim_node.models.variety_table import KINDS, VARIETIES
-from ontology import MODEL_SHAPES_JSON
-from ontology.model_shapes import ModelShape
+from semmap.nodes.sim_node.models.library import ModelError, build
+from semmap.nodes.sim_node.models.model_files import SUFFIXES
+from semmap.nodes.sim_node.models.sources import Models, is_one_of
+from semmap.nodes.sim_node.models.spaces import shape_of
+from semmap.nodes.sim_node.models.variety_table import KINDS, VARIETIES
+from semmap.ontology import MODEL_SHAPES_JSON
+from semmap.ontology.model_shapes import ModelShape
 
 _DIGITS = 4
 

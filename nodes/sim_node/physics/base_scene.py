@@ -14,13 +14,13 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
-from nodes.sim_node.physics.build import FELT_GROUP, IMPEDANCE
-from nodes.sim_node.physics.ends import CLOSED_TEXT, ENDS, OFF_TEXT, Ends, said, tied
-from nodes.sim_node.vision.view import OPTICAL, View, look_at
-from schemas.entities import NAME_PATTERN
-from schemas.errors import BadFile
-from schemas.joints import Joint
+from semmap.nodes.sim_node.bodies import BodyRecord, Floats, pose_of
+from semmap.nodes.sim_node.physics.build import FELT_GROUP, IMPEDANCE
+from semmap.nodes.sim_node.physics.ends import CLOSED_TEXT, ENDS, OFF_TEXT, Ends, said, tied
+from semmap.nodes.sim_node.vision.view import OPTICAL, View, look_at
+from semmap.schemas.entities import NAME_PATTERN
+from semmap.schemas.errors import BadFile
+from semmap.schemas.joints import Joint
 
 # else MuJoCo writes a file into the working directory
 mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)

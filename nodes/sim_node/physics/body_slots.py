@@ -13,11 +13,11 @@ from functools import lru_cache
 import mujoco
 import numpy as np
 
-from nodes.sim_node.bodies import BodyRecord, Floats, frame_of
-from nodes.sim_node.models.library import Model
-from nodes.sim_node.models.parts import rotation_matrix
-from nodes.sim_node.physics import build, sleep
-from schemas.entities import Pose
+from semmap.nodes.sim_node.bodies import BodyRecord, Floats, frame_of
+from semmap.nodes.sim_node.models.library import Model
+from semmap.nodes.sim_node.models.parts import rotation_matrix
+from semmap.nodes.sim_node.physics import build, sleep
+from semmap.schemas.entities import Pose
 
 _BODY = ("mass", "inertia", "contype", "conaffinity", "sameframe")
 _DOF = ("M0", "invweight0", "length", "damping")

@@ -10,10 +10,10 @@ from typing import TypeVar
 
 import mujoco
 
-from nodes.sim_node.bodies import BodyRecord, frame_of
-from nodes.sim_node.models.library import Leaf, Model
-from nodes.sim_node.models.parts import Mesh, Part, Role, Shape, Vec3
-from schemas.entities import Pose
+from semmap.nodes.sim_node.bodies import BodyRecord, frame_of
+from semmap.nodes.sim_node.models.library import Leaf, Model
+from semmap.nodes.sim_node.models.parts import Mesh, Part, Role, Shape, Vec3
+from semmap.schemas.entities import Pose
 
 Made = TypeVar("Made")
 

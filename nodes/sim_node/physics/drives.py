@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import mujoco
 
-from nodes.sim_node.bodies import BodyIndex
+from semmap.nodes.sim_node.bodies import BodyIndex
 
 STEPS_A_PUSH = 5
 """So often is the force of a drive worked out anew: every 10 ms."""

@@ -8,16 +8,16 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_of
-from nodes.sim_node.models.library import Model
-from nodes.sim_node.physics import base_scene, body_slots, build, grips, sleep
-from nodes.sim_node.physics.body_slots import Berth
-from nodes.sim_node.physics.drives import STEPS_A_PUSH, Drives
-from nodes.sim_node.physics.rest import JointWatch, RestWatch
-from nodes.sim_node.placement.obstacles import Stage
-from nodes.sim_node.robots.courses import Courses
-from nodes.sim_node.vision.view import View
-from schemas.entities import Pose, compose
+from semmap.nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_of
+from semmap.nodes.sim_node.models.library import Model
+from semmap.nodes.sim_node.physics import base_scene, body_slots, build, grips, sleep
+from semmap.nodes.sim_node.physics.body_slots import Berth
+from semmap.nodes.sim_node.physics.drives import STEPS_A_PUSH, Drives
+from semmap.nodes.sim_node.physics.rest import JointWatch, RestWatch
+from semmap.nodes.sim_node.placement.obstacles import Stage
+from semmap.nodes.sim_node.robots.courses import Courses
+from semmap.nodes.sim_node.vision.view import View
+from semmap.schemas.entities import Pose, compose
 
 _STEPS_A_LOOK = 25
 

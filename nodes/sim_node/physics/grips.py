@@ -9,8 +9,8 @@ from collections.abc import Iterable, Mapping
 
 import mujoco
 
-from nodes.sim_node.bodies import BodyRecord, frame_of
-from schemas.entities import Pose
+from semmap.nodes.sim_node.bodies import BodyRecord, frame_of
+from semmap.schemas.entities import Pose
 
 _STIFF = (0.008, 1.0)
 """Time constant [s] and damping of a weld (`solref`)."""

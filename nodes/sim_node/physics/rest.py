@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.bodies import Floats, Ints
+from semmap.nodes.sim_node.bodies import Floats, Ints
 
 STILL_M = 0.001
 STILL_RAD = 0.005

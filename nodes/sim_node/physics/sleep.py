@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.bodies import Ints
+from semmap.nodes.sim_node.bodies import Ints
 
 _AWAKE = -(1 + mujoco.mjMINAWAKE)
 _READY = -1

@@ -9,8 +9,8 @@ import mujoco
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from nodes.sim_node.bodies import Floats
-from schemas.plans import Outline
+from semmap.nodes.sim_node.bodies import Floats
+from semmap.schemas.plans import Outline
 
 _PASSED_OVER: Final = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
 _ROUND: Final = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_CYLINDER))

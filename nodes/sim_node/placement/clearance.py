@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from nodes.sim_node.placement.obstacles import CLEARANCE_M, GROUND, Stage
+from semmap.nodes.sim_node.placement.obstacles import CLEARANCE_M, GROUND, Stage
 
 
 @dataclass(frozen=True)

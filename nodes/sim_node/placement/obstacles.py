@@ -5,7 +5,7 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, Ints
+from semmap.nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, Ints
 
 TOLERANCE_M = 0.004
 """Overlap this shallow is left to the contact forces."""

@@ -6,11 +6,11 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import numpy as np
 
-from nodes.sim_node.bodies import pose_of
-from nodes.sim_node.orders import Newcomer
-from nodes.sim_node.physics.engine import Engine
-from nodes.sim_node.placement.clearance import place
-from schemas.entities import Pose
+from semmap.nodes.sim_node.bodies import pose_of
+from semmap.nodes.sim_node.orders import Newcomer
+from semmap.nodes.sim_node.physics.engine import Engine
+from semmap.nodes.sim_node.placement.clearance import place
+from semmap.schemas.entities import Pose
 
 _NEAR_M = 0.02
 

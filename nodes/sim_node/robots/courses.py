@@ -10,8 +10,8 @@ from typing import Final, Literal
 import mujoco
 import numpy as np
 
-from nodes.sim_node.bodies import BodyIndex
-from schemas.scenes import UPRIGHT
+from semmap.nodes.sim_node.bodies import BodyIndex
+from semmap.schemas.scenes import UPRIGHT
 
 Outcome = Literal["there", "blocked", "fallen", "stopped"]
 ACTUATORS: Final = ("drive_x", "drive_y", "drive_yaw")

@@ -8,9 +8,9 @@ from typing import Final
 
 import mujoco
 
-from nodes.sim_node.config import RobotConfig
-from nodes.sim_node.physics import base_scene
-from schemas.errors import BadFile
+from semmap.nodes.sim_node.config import RobotConfig
+from semmap.nodes.sim_node.physics import base_scene
+from semmap.schemas.errors import BadFile
 
 SHIPPED: Final = {"porter": Path(__file__).with_name("porter.xml")}
 """Those that come with semmap, by the word for them."""

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from nodes.sim_node.bodies import Floats
-from nodes.sim_node.vision.labels import projected, written
-from nodes.sim_node.vision.offscreen import MAX_PIXELS, Offscreen, open_gl
-from nodes.sim_node.vision.raycast import raycast
-from nodes.sim_node.vision.view import View, camera_view
+from semmap.nodes.sim_node.bodies import Floats
+from semmap.nodes.sim_node.vision.labels import projected, written
+from semmap.nodes.sim_node.vision.offscreen import MAX_PIXELS, Offscreen, open_gl
+from semmap.nodes.sim_node.vision.raycast import raycast
+from semmap.nodes.sim_node.vision.view import View, camera_view
 
 
 @dataclass(frozen=True)

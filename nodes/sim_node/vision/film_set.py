@@ -10,17 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from nodes.sim_node import orders
-from nodes.sim_node.bodies import Floats
-from nodes.sim_node.models.sources import Models
-from nodes.sim_node.physics import base_scene
-from nodes.sim_node.physics.engine import Engine
-from nodes.sim_node.vision.camera import Eye
-from nodes.sim_node.vision.labels import projected, written
-from nodes.sim_node.vision.view import FROM_ABOVE, View, bulk, camera_view, overview
-from nodes.sim_node.world_file import is_scene
-from schemas.entities import Pose, Vector
-from schemas.scenes import BodyOrder
+from semmap.nodes.sim_node import orders
+from semmap.nodes.sim_node.bodies import Floats
+from semmap.nodes.sim_node.models.sources import Models
+from semmap.nodes.sim_node.physics import base_scene
+from semmap.nodes.sim_node.physics.engine import Engine
+from semmap.nodes.sim_node.vision.camera import Eye
+from semmap.nodes.sim_node.vision.labels import projected, written
+from semmap.nodes.sim_node.vision.view import FROM_ABOVE, View, bulk, camera_view, overview
+from semmap.nodes.sim_node.world_file import is_scene
+from semmap.schemas.entities import Pose, Vector
+from semmap.schemas.scenes import BodyOrder
 
 Rgb = NDArray[np.uint8]
 

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from nodes.sim_node.bodies import Floats
-from nodes.sim_node.vision.view import View
+from semmap.nodes.sim_node.bodies import Floats
+from semmap.nodes.sim_node.vision.view import View
 
 Box = tuple[float, float, float, float]
 

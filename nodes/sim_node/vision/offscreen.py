@@ -12,8 +12,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.physics.build import FELT_GROUP
-from nodes.sim_node.vision.view import View
+from semmap.nodes.sim_node.physics.build import FELT_GROUP
+from semmap.nodes.sim_node.vision.view import View
 
 _NEAR_M, _FAR_M = 0.05, 200.0
 MAX_PIXELS = (2560, 1440)

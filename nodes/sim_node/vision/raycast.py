@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.bodies import Floats
-from nodes.sim_node.physics.build import FELT_GROUP
-from nodes.sim_node.vision.view import View, pixel_rays
+from semmap.nodes.sim_node.bodies import Floats
+from semmap.nodes.sim_node.physics.build import FELT_GROUP
+from semmap.nodes.sim_node.vision.view import View, pixel_rays
 
 _SKY_LOW, _SKY_HIGH = np.array([0.90, 0.93, 0.96]), np.array([0.60, 0.74, 0.88])
 _LIGHT_M = np.array([-3.0, -5.0, 12.0])  # from the middle of what is seen

@@ -13,12 +13,12 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.bodies import Floats
-from nodes.sim_node.config import CameraConfig
-from nodes.sim_node.vision.camera import Eye, picture_png
-from nodes.sim_node.vision.noise import kinect_noise
-from nodes.sim_node.vision.view import View, camera_names, camera_view
-from schemas.scenes import CameraFrame, Picture
+from semmap.nodes.sim_node.bodies import Floats
+from semmap.nodes.sim_node.config import CameraConfig
+from semmap.nodes.sim_node.vision.camera import Eye, picture_png
+from semmap.nodes.sim_node.vision.noise import kinect_noise
+from semmap.nodes.sim_node.vision.view import View, camera_names, camera_view
+from semmap.schemas.scenes import CameraFrame, Picture
 
 Plane = tuple[CameraFrame, NDArray[np.generic]]
 

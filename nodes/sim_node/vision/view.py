@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from nodes.sim_node.bodies import Floats, pose_of
-from schemas.entities import Pose
-from schemas.errors import BadRequest
+from semmap.nodes.sim_node.bodies import Floats, pose_of
+from semmap.schemas.entities import Pose
+from semmap.schemas.errors import BadRequest
 
 OPTICAL = np.diag([1.0, -1.0, -1.0])  # MuJoCo's cameras look along -z with y up
 

@@ -1,4 +1,4 @@
-"""Learn to understand commands: `python -m nodes.training.language FOLDER`, FOLDER with HuRIC's files."""
+"""Learn to understand commands: `python -m semmap.nodes.training.language FOLDER`, FOLDER with HuRIC's files."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from importlib import resources
 from pathlib import Path
 from typing import Final
 
-from nodes.training.language import corpus, made
-from nodes.training.language.household import household
-from nodes.training.language.learning import learn
+from semmap.nodes.training.language import corpus, made
+from semmap.nodes.training.language.household import household
+from semmap.nodes.training.language.learning import learn
 
 TIMES_MADE: Final = 2  # how often each pattern of ours is drawn
 
 
 def main() -> None:
-    """Write what is learnt to where `nodes.language` looks for it."""
+    """Write what is learnt to where `semmap.nodes.language` looks for it."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path, help="the corpus: a folder of .hrc files")
     folder = parser.parse_args().folder
     known = household()
     examples = [*corpus.read(folder), *made.examples(TIMES_MADE, known)]
-    target = Path(str(resources.files("nodes.language"))) / "learnt"
+    target = Path(str(resources.files("semmap.nodes.language"))) / "learnt"
     target.mkdir(exist_ok=True)
     learn(examples, known, target / "english_frames.crfsuite", target / "english_roles.crfsuite")
     print(f"learnt from {len(examples)} commands: {target}")

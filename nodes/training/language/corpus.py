@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from nodes.language.understanding.grounding import Thing
+from semmap.nodes.language.understanding.grounding import Thing
 
 
 class Role(NamedTuple):

@@ -9,8 +9,8 @@ from importlib import resources
 import rdflib
 from rdflib.namespace import OWL, RDF, RDFS
 
-from nodes.language import lexicon
-from nodes.language.vocabulary import Vocabulary, vocabulary
+from semmap.nodes.language import lexicon
+from semmap.nodes.language.vocabulary import Vocabulary, vocabulary
 
 
 @functools.cache

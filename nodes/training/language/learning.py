@@ -1,4 +1,4 @@
-"""Fitting the two taggers of `nodes.language` to examples: linear-chain conditional random fields."""
+"""Fitting the two taggers of `semmap.nodes.language` to examples: linear-chain conditional random fields."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Final
 
 import pycrfsuite
 
-from nodes.language import lexicon
-from nodes.language.understanding import grounding, predicates, roles, slots
-from nodes.language.understanding.interpretation import Seen
-from nodes.language.understanding.sentence import Sentence, sentence
-from nodes.language.vocabulary import Vocabulary
-from nodes.training.language.corpus import Example, Filled
+from semmap.nodes.language import lexicon
+from semmap.nodes.language.understanding import grounding, predicates, roles, slots
+from semmap.nodes.language.understanding.interpretation import Seen
+from semmap.nodes.language.understanding.sentence import Sentence, sentence
+from semmap.nodes.language.vocabulary import Vocabulary
+from semmap.nodes.training.language.corpus import Example, Filled
 
 _PARAMETERS: Final = {"c1": 0.05, "c2": 0.05, "max_iterations": 80, "feature.possible_transitions": True}
 

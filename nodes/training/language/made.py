@@ -8,10 +8,10 @@ import tomllib
 from importlib import resources
 from typing import Final, NamedTuple
 
-from nodes.language import lexicon
-from nodes.language.understanding.grounding import Thing
-from nodes.language.vocabulary import Vocabulary
-from nodes.training.language.corpus import Example, Filled, Role
+from semmap.nodes.language import lexicon
+from semmap.nodes.language.understanding.grounding import Thing
+from semmap.nodes.language.vocabulary import Vocabulary
+from semmap.nodes.training.language.corpus import Example, Filled, Role
 
 _ITEM: Final = re.compile(r"\((\S+) ([^()]*)\)|(\S+)")
 _DRAWN: Final = re.compile(r"\{(far_)?([\w:]+)\}")

@@ -1,1 +1,1 @@
-"""The trainers of recognition: `python -m nodes.training.recognition`."""
+"""The trainers of recognition: `python -m semmap.nodes.training.recognition`."""

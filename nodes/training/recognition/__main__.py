@@ -1,4 +1,4 @@
-"""Learn to recognise things from renderings of the model library: `python -m nodes.training.recognition`."""
+"""Learn to recognise things from renderings of the model library: `python -m semmap.nodes.training.recognition`."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from nodes.perception_node.recognition.features import SORTS
-from nodes.perception_node.recognition.perceptron import Perceptron
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, SHIPPED, UNKNOWN, Learnt, save
-from nodes.perception_node.recognition.sides import SIZE_FEATURES
-from nodes.perception_node.recognition.vote import ballots, expected_sizes, pool, shown_to_voters, vote
-from nodes.sim_node.models.model_table import MODELS
-from nodes.training.recognition.fitting import Numbers, classifier, regressor
-from nodes.training.recognition.gathering import Gathered, gather
-from nodes.training.recognition.gradient_descent import Recipe
-from nodes.training.recognition.learn_familiar import learn_familiar
-from nodes.training.recognition.learn_joining import learn_joining
-from nodes.training.recognition.learn_novelty import Told, learn_novelty
-from nodes.training.recognition.natural_colours import unnatural
-from nodes.training.recognition.samples import NOTHING, Samples
-from nodes.training.scenes.families.table import FAMILIES
-from nodes.training.scenes.simulated_scenes import STRANGE, foreign_class
-from nodes.training.segmentation.fit import trees_of
-from nodes.training.taxonomy import class_of_models, hierarchy
+from semmap.nodes.perception_node.recognition.features import SORTS
+from semmap.nodes.perception_node.recognition.perceptron import Perceptron
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, SHIPPED, UNKNOWN, Learnt, save
+from semmap.nodes.perception_node.recognition.sides import SIZE_FEATURES
+from semmap.nodes.perception_node.recognition.vote import ballots, expected_sizes, pool, shown_to_voters, vote
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.training.recognition.fitting import Numbers, classifier, regressor
+from semmap.nodes.training.recognition.gathering import Gathered, gather
+from semmap.nodes.training.recognition.gradient_descent import Recipe
+from semmap.nodes.training.recognition.learn_familiar import learn_familiar
+from semmap.nodes.training.recognition.learn_joining import learn_joining
+from semmap.nodes.training.recognition.learn_novelty import Told, learn_novelty
+from semmap.nodes.training.recognition.natural_colours import unnatural
+from semmap.nodes.training.recognition.samples import NOTHING, Samples
+from semmap.nodes.training.scenes.families.table import FAMILIES
+from semmap.nodes.training.scenes.simulated_scenes import STRANGE, foreign_class
+from semmap.nodes.training.segmentation.fit import trees_of
+from semmap.nodes.training.taxonomy import class_of_models, hierarchy
 
 SURE = 0.48
 _HELD_OUT = 5

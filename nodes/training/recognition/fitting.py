@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.recognition.perceptron import REACH, Perceptron
-from nodes.training.recognition.gradient_descent import Floats, Recipe, Slope, descend
+from semmap.nodes.perception_node.recognition.perceptron import REACH, Perceptron
+from semmap.nodes.training.recognition.gradient_descent import Floats, Recipe, Slope, descend
 
 Numbers = NDArray[np.float64]
 _NEVER_SEEN = -12.0

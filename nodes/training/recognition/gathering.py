@@ -13,11 +13,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from nodes.training.recognition.neighbour_pairs import Pairs, pairs_of
-from nodes.training.recognition.samples import Samples, samples_of
-from nodes.training.scenes.arranging import Scene, heaps, own_scenes, training_scenes
-from nodes.training.scenes.foreign_things import ForeignThing, foreign_things
-from nodes.training.scenes.simulated_scenes import Item, Shot, Stage
+from semmap.nodes.training.recognition.neighbour_pairs import Pairs, pairs_of
+from semmap.nodes.training.recognition.samples import Samples, samples_of
+from semmap.nodes.training.scenes.arranging import Scene, heaps, own_scenes, training_scenes
+from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
+from semmap.nodes.training.scenes.simulated_scenes import Item, Shot, Stage
 
 _SCENES, _HEAPS = 150, 40  # a part, at most
 _COLOURLESS = 0.06  # of the scenes are seen without colours

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.recognition.perceptron import Perceptron
-from nodes.training.recognition.fitting import Numbers, classifier
-from nodes.training.recognition.gradient_descent import Recipe
-from nodes.training.recognition.learn_novelty import far_off
+from semmap.nodes.perception_node.recognition.perceptron import Perceptron
+from semmap.nodes.training.recognition.fitting import Numbers, classifier
+from semmap.nodes.training.recognition.gradient_descent import Recipe
+from semmap.nodes.training.recognition.learn_novelty import far_off
 
 _FAR = 0.05
 """How many things such as there are none come to all that there are: they are none of our models."""

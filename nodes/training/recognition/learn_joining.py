@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from nodes.perception_node.recognition.features import SORTS
-from nodes.perception_node.recognition.joining import signs, worth_trying
-from nodes.perception_node.recognition.shipped_votes import Learnt
-from nodes.perception_node.recognition.vote import leaves
-from nodes.perception_node.segmentation.trees import Trees
-from nodes.training.recognition.neighbour_pairs import Pairs
-from nodes.training.segmentation.examples import Rows
-from nodes.training.segmentation.fit import fit
+from semmap.nodes.perception_node.recognition.features import SORTS
+from semmap.nodes.perception_node.recognition.joining import signs, worth_trying
+from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+from semmap.nodes.perception_node.recognition.vote import leaves
+from semmap.nodes.perception_node.segmentation.trees import Trees
+from semmap.nodes.training.recognition.neighbour_pairs import Pairs
+from semmap.nodes.training.segmentation.examples import Rows
+from semmap.nodes.training.segmentation.fit import fit
 
 _TREES = 100
 

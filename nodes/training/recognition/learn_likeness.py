@@ -1,4 +1,4 @@
-"""Learn whether two views show the same thing: `python -m nodes.training.recognition.learn_likeness`.
+"""Learn whether two views show the same thing: `python -m semmap.nodes.training.recognition.learn_likeness`.
 
 What is shown later is none of these things, so neither are foreign ones learnt from: they measure.
 """
@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.recognition.likeness import SHIPPED, WIDTH, Likeness, save, signs
-from nodes.training.recognition.gathering import read_things
-from nodes.training.recognition.samples import NOTHING, Samples
-from nodes.training.scenes.simulated_scenes import foreign_class
-from nodes.training.segmentation.examples import Rows
-from nodes.training.segmentation.fit import fit
+from semmap.nodes.perception_node.recognition.likeness import SHIPPED, WIDTH, Likeness, save, signs
+from semmap.nodes.training.recognition.gathering import read_things
+from semmap.nodes.training.recognition.samples import NOTHING, Samples
+from semmap.nodes.training.scenes.simulated_scenes import foreign_class
+from semmap.nodes.training.segmentation.examples import Rows
+from semmap.nodes.training.segmentation.fit import fit
 
 _TREES = 150
 _LARGEST_M = 0.6
@@ -101,8 +101,10 @@ def _things(samples: Samples) -> Indices:
 
 def main() -> None:
     """Learn from what recognition learns from, and write what ships."""
-    parser = argparse.ArgumentParser(prog="python -m nodes.training.recognition.learn_likeness")
-    parser.add_argument("--parts", type=Path, required=True, help="samples of nodes.training.recognition")
+    parser = argparse.ArgumentParser(prog="python -m semmap.nodes.training.recognition.learn_likeness")
+    parser.add_argument(
+        "--parts", type=Path, required=True, help="samples of semmap.nodes.training.recognition"
+    )
     parser.add_argument("--kept", type=int, default=4000, help="views that are compared with others")
     parser.add_argument("--out", type=Path, default=SHIPPED)
     options = parser.parse_args()

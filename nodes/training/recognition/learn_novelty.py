@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from sklearn.discriminant_analysis import LinearDiscriminantAnalysis
 from sklearn.linear_model import LogisticRegression
 
-from nodes.perception_node.recognition.novelty import Novelty, signs
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN
-from nodes.perception_node.recognition.vote import answer, ballots, pool, shown_to_voters
-from nodes.training.recognition.fitting import Numbers, classifier
-from nodes.training.recognition.gradient_descent import Recipe
+from semmap.nodes.perception_node.recognition.novelty import Novelty, signs
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN
+from semmap.nodes.perception_node.recognition.vote import answer, ballots, pool, shown_to_voters
+from semmap.nodes.training.recognition.fitting import Numbers, classifier
+from semmap.nodes.training.recognition.gradient_descent import Recipe
 
 _FOLDS = 4
 _LEFT_OUT = 0.12

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from nodes.perception_node.recognition.features import MEAN_COLOUR
-from nodes.training.recognition.samples import Samples
-from nodes.training.scenes.drawing_lots import COLOURED
+from semmap.nodes.perception_node.recognition.features import MEAN_COLOUR
+from semmap.nodes.training.recognition.samples import Samples
+from semmap.nodes.training.scenes.drawing_lots import COLOURED
 
 _NEAR = 0.03
 """How far its shares of red, green and blue may be from those of any of its like, as they are."""

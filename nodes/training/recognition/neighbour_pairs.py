@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from nodes.perception_node.pipeline import Parts, parts_in
-from nodes.perception_node.recognition.features import SORTS, features_of
-from nodes.perception_node.recognition.joining import between, near
-from nodes.perception_node.views.segmented_view import see
-from nodes.training.recognition.array_tables import Table
-from nodes.training.recognition.samples import NOTHING, shared_pixels, view_sets
-from nodes.training.scenes.simulated_scenes import Item, Shot
+from semmap.nodes.perception_node.pipeline import Parts, parts_in
+from semmap.nodes.perception_node.recognition.features import SORTS, features_of
+from semmap.nodes.perception_node.recognition.joining import between, near
+from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.training.recognition.array_tables import Table
+from semmap.nodes.training.recognition.samples import NOTHING, shared_pixels, view_sets
+from semmap.nodes.training.scenes.simulated_scenes import Item, Shot
 
 _JOINED = 0.5
 

@@ -9,21 +9,21 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.pipeline import Parts, parts_in
-from nodes.perception_node.recognition.features import SORTS, features_of
-from nodes.perception_node.recognition.sides import shifts, side_features
-from nodes.perception_node.segmentation.segment import LOWEST_M
-from nodes.perception_node.views.boxes import Box
-from nodes.perception_node.views.merged_thing import Thing
-from nodes.perception_node.views.segmented_view import Sight, labelled, see
-from nodes.perception_node.views.segments import map_points
-from nodes.perception_node.views.supports import Support
-from nodes.sim_node.models.parts import about, bounds, rotation_matrix
-from nodes.sim_node.models.parts import product as rotated
-from nodes.training.recognition.array_tables import Table
-from nodes.training.scenes.simulated_scenes import Item, Shot, tinted
-from schemas.scenes import Body
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.pipeline import Parts, parts_in
+from semmap.nodes.perception_node.recognition.features import SORTS, features_of
+from semmap.nodes.perception_node.recognition.sides import shifts, side_features
+from semmap.nodes.perception_node.segmentation.segment import LOWEST_M
+from semmap.nodes.perception_node.views.boxes import Box
+from semmap.nodes.perception_node.views.merged_thing import Thing
+from semmap.nodes.perception_node.views.segmented_view import Sight, labelled, see
+from semmap.nodes.perception_node.views.segments import map_points
+from semmap.nodes.perception_node.views.supports import Support
+from semmap.nodes.sim_node.models.parts import about, bounds, rotation_matrix
+from semmap.nodes.sim_node.models.parts import product as rotated
+from semmap.nodes.training.recognition.array_tables import Table
+from semmap.nodes.training.scenes.simulated_scenes import Item, Shot, tinted
+from semmap.schemas.scenes import Body
 
 _PURE, _WHOLE = 0.7, 0.5
 _FEWEST = 40

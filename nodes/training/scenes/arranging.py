@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.parts import Vec3
-from nodes.sim_node.vision.view import View, look_at
-from nodes.training.scenes.drawing_lots import LARGE, SMALL, own_things, small_things, varied_colour
-from nodes.training.scenes.foreign_things import ForeignThing
-from nodes.training.scenes.placements import Rectangle, spread
-from nodes.training.scenes.simulated_scenes import Item
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.models.parts import Vec3
+from semmap.nodes.sim_node.vision.view import View, look_at
+from semmap.nodes.training.scenes.drawing_lots import LARGE, SMALL, own_things, small_things, varied_colour
+from semmap.nodes.training.scenes.foreign_things import ForeignThing
+from semmap.nodes.training.scenes.placements import Rectangle, spread
+from semmap.nodes.training.scenes.simulated_scenes import Item
 
 _HEAPED = 0.8
 _DISTANCES_M = (0.8, 2.2)

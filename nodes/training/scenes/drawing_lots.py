@@ -7,14 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.parts import Colour, Parts, Vec3
-from nodes.training.scenes.families.table import FAMILIES, drawn
-from nodes.training.scenes.foreign_things import ForeignThing, parts_of, texture_of
-from nodes.training.scenes.paint import Paint, any_paint
-from nodes.training.scenes.simulated_scenes import STRANGE, Item, foreign_label
-from nodes.training.scenes.strange_things import size_of, strange_parts
-from nodes.training.scenes.varieties import VARIETIES, Form, any_size, is_like_another
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.models.parts import Colour, Parts, Vec3
+from semmap.nodes.training.scenes.families.table import FAMILIES, drawn
+from semmap.nodes.training.scenes.foreign_things import ForeignThing, parts_of, texture_of
+from semmap.nodes.training.scenes.paint import Paint, any_paint
+from semmap.nodes.training.scenes.simulated_scenes import STRANGE, Item, foreign_label
+from semmap.nodes.training.scenes.strange_things import size_of, strange_parts
+from semmap.nodes.training.scenes.varieties import VARIETIES, Form, any_size, is_like_another
 
 _HANGING = (
     "air_conditioning blinds board boiler curtain door extractor_hood fences handle heating jacket_hook light"

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from nodes.sim_node.models.model_files import keyed, read_model, stretched
-from nodes.sim_node.models.parts import Colour, Part, Parts, Vec3
-from nodes.training.scenes.paint import Pattern, printed_on
+from semmap.nodes.sim_node.models.model_files import keyed, read_model, stretched
+from semmap.nodes.sim_node.models.parts import Colour, Part, Parts, Vec3
+from semmap.nodes.training.scenes.paint import Pattern, printed_on
 
 _LEARN = "train"
 

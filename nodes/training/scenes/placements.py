@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.models.parts import Vec3
+from semmap.nodes.sim_node.models.parts import Vec3
 
 _PUSHED = 0.6  # of the crowded tables have their things pushed together until they touch
 _SQUARE = 0.6  # of these have all things in the directions of one grid

@@ -11,19 +11,19 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.projection import cloud_of
-from nodes.sim_node.models.library import Model, assemble
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.parts import Colour, Vec3, rotation_matrix
-from nodes.sim_node.vision.camera import Eye
-from nodes.sim_node.vision.noise import kinect_noise
-from nodes.sim_node.vision.view import View
-from nodes.sim_node.world import World
-from nodes.training.scenes.paint import Paint, painted
-from nodes.training.scenes.varieties import Form
-from schemas.entities import Pose, orientation_from_yaw
-from schemas.scenes import Body, BodyOrder
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.projection import cloud_of
+from semmap.nodes.sim_node.models.library import Model, assemble
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.models.parts import Colour, Vec3, rotation_matrix
+from semmap.nodes.sim_node.vision.camera import Eye
+from semmap.nodes.sim_node.vision.noise import kinect_noise
+from semmap.nodes.sim_node.vision.view import View
+from semmap.nodes.sim_node.world import World
+from semmap.nodes.training.scenes.paint import Paint, painted
+from semmap.nodes.training.scenes.varieties import Form
+from semmap.schemas.entities import Pose, orientation_from_yaw
+from semmap.schemas.scenes import Body, BodyOrder
 
 STRANGE = "strange"
 _FOREIGN = "@"

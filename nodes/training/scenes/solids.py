@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.models.parts import Colour, Floats, Part, about, mesh, rotation_matrix
+from semmap.nodes.sim_node.models.parts import Colour, Floats, Part, about, mesh, rotation_matrix
 
 _SLICES, _ROUND = 20, 9
 _LEAST_M = 2e-4

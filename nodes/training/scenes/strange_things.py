@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from nodes.sim_node.models.forms import shifted
-from nodes.sim_node.models.model_files import keyed
-from nodes.sim_node.models.parts import (
+from semmap.nodes.sim_node.models.forms import shifted
+from semmap.nodes.sim_node.models.model_files import keyed
+from semmap.nodes.sim_node.models.parts import (
     Colour,
     Part,
     Parts,
@@ -26,8 +26,8 @@ from nodes.sim_node.models.parts import (
     pill,
     rod,
 )
-from nodes.sim_node.models.parts import product as rotated
-from nodes.training.scenes.solids import Solid, full, lathe, smooth, tube
+from semmap.nodes.sim_node.models.parts import product as rotated
+from semmap.nodes.training.scenes.solids import Solid, full, lathe, smooth, tube
 
 _SMALLEST_M, _LARGEST_M = 0.035, 0.32
 _MOST_PARTS = 5

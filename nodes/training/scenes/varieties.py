@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nodes.sim_node.models.catalogue.other_forms import (
+from semmap.nodes.sim_node.models.catalogue.other_forms import (
     drink_can,
     flat_bottle,
     skillet,
@@ -20,9 +20,9 @@ from nodes.sim_node.models.catalogue.other_forms import (
     tumbler,
     wine_glass,
 )
-from nodes.sim_node.models.forms import shade, slab
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.parts import Colour, Parts, Vec3, box, seen
+from semmap.nodes.sim_node.models.forms import shade, slab
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.models.parts import Colour, Parts, Vec3, box, seen
 
 Form = Callable[[float, float, float, Colour], Parts]
 """Builds a thing of given depth, width and height [m]."""

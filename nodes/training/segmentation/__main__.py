@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from nodes.perception_node.segmentation.shipped_trees import SHIPPED, MergeModel, save
-from nodes.training.segmentation.recorded_scenes import read_scenes
-from nodes.training.segmentation.teach import learn, lessons, made_up
+from semmap.nodes.perception_node.segmentation.shipped_trees import SHIPPED, MergeModel, save
+from semmap.nodes.training.segmentation.recorded_scenes import read_scenes
+from semmap.nodes.training.segmentation.teach import learn, lessons, made_up
 
 
 def main() -> None:
     """Render, learn, and write what ships."""
-    parser = argparse.ArgumentParser(prog="python -m nodes.training.segmentation", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m semmap.nodes.training.segmentation", description=__doc__)
     parser.add_argument("--piles", type=int, default=500, help="rendered scenes")
     parser.add_argument("--recorded", type=Path, metavar="DIR", help="PCD files with a field label")
     parser.add_argument("--seed", type=int, default=1)

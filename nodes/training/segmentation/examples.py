@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.segmentation.merging import merge
-from nodes.perception_node.segmentation.pairs import NAMES, features
-from nodes.perception_node.segmentation.segment import taken_apart
-from nodes.perception_node.segmentation.statistics import Indices, Statistics
-from nodes.perception_node.segmentation.working_picture import spread
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.segmentation.merging import merge
+from semmap.nodes.perception_node.segmentation.pairs import NAMES, features
+from semmap.nodes.perception_node.segmentation.segment import taken_apart
+from semmap.nodes.perception_node.segmentation.statistics import Indices, Statistics
+from semmap.nodes.perception_node.segmentation.working_picture import spread
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from nodes.perception_node.segmentation.trees import LEAVES, Trees
-from nodes.training.segmentation.examples import Rows
+from semmap.nodes.perception_node.segmentation.trees import LEAVES, Trees
+from semmap.nodes.training.segmentation.examples import Rows
 
 TREES = 150
 

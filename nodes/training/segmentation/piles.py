@@ -10,16 +10,16 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.projection import cloud_of
-from nodes.sim_node.models.library import Model, assemble
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.parts import ALONG_X, Colour, Vec3, box, rod
-from nodes.sim_node.vision.camera import Eye
-from nodes.sim_node.vision.noise import kinect_noise
-from nodes.sim_node.vision.view import View, look_at
-from nodes.training.segmentation.shadow import shadowed
-from nodes.training.segmentation.tabletop import Tabletop
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.projection import cloud_of
+from semmap.nodes.sim_node.models.library import Model, assemble
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.models.parts import ALONG_X, Colour, Vec3, box, rod
+from semmap.nodes.sim_node.vision.camera import Eye
+from semmap.nodes.sim_node.vision.noise import kinect_noise
+from semmap.nodes.sim_node.vision.view import View, look_at
+from semmap.nodes.training.segmentation.shadow import shadowed
+from semmap.nodes.training.segmentation.tabletop import Tabletop
 
 _BIGGEST_M, _SMALLEST_M = 0.52, 0.03
 _KINDS = tuple(

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.files import pcd
-from nodes.perception_node.input.files.columns import cloud_of
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.files import pcd
+from semmap.nodes.perception_node.input.files.columns import cloud_of
 
 _FIRST_OBJECT = 20  # below: what is invalid, and the table; from here on ten numbers an object, for its parts
 _PARTS = 10

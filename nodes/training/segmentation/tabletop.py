@@ -10,8 +10,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.models.library import Model
-from nodes.sim_node.physics.build import add_part
+from semmap.nodes.sim_node.models.library import Model
+from semmap.nodes.sim_node.physics.build import add_part
 
 _HIGHEST_M = 0.42  # of a tower
 _PARKED_M = 20.0

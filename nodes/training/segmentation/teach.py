@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nodes.perception_node.segmentation.trees import Trees
-from nodes.sim_node.vision.camera import Eye
-from nodes.training.segmentation.examples import Example, Rows, example, joined, own_way, right_way
-from nodes.training.segmentation.fit import fit
-from nodes.training.segmentation.piles import pile
-from nodes.training.segmentation.recorded_scenes import Scene, mirrored
+from semmap.nodes.perception_node.segmentation.trees import Trees
+from semmap.nodes.sim_node.vision.camera import Eye
+from semmap.nodes.training.segmentation.examples import Example, Rows, example, joined, own_way, right_way
+from semmap.nodes.training.segmentation.fit import fit
+from semmap.nodes.training.segmentation.piles import pile
+from semmap.nodes.training.segmentation.recorded_scenes import Scene, mirrored
 
 _MADE_ROWS = 40_000
 _RECORDED_WEIGHT = 2.0

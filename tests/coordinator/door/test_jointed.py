@@ -2,9 +2,9 @@
 
 import pytest
 
-from schemas import commands as c
-from schemas import errors
-from schemas.joints import Joint
+from semmap.schemas import commands as c
+from semmap.schemas import errors
+from semmap.schemas.joints import Joint
 from tests.coordinator.scene.test_opening import HINGE, SWITCH, body
 
 BALL = Joint(name="neck1", kind="ball")

@@ -9,7 +9,7 @@ import threading
 
 import pytest
 
-from schemas import errors
+from semmap.schemas import errors
 from tests.conftest import PATIENCE_S, running, until
 
 

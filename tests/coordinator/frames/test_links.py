@@ -7,10 +7,10 @@ import math
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.frames.links import EntityLinks, camera_links
-from nodes.coordinator.frames.tree import Link
-from schemas.entities import Live, Pose, orientation_from_yaw
-from schemas.scenes import CameraPose
+from semmap.nodes.coordinator.frames.links import EntityLinks, camera_links
+from semmap.nodes.coordinator.frames.tree import Link
+from semmap.schemas.entities import Live, Pose, orientation_from_yaw
+from semmap.schemas.scenes import CameraPose
 from tests.coordinator.scene.test_reconcile import at, body, entity
 
 

@@ -6,10 +6,10 @@ import math
 
 import pytest
 
-from nodes.coordinator.frames.placing import into_map, require_placing
-from schemas import errors
-from schemas.commands import Add, Drive, Get, List, Move, Update
-from schemas.entities import Pose, orientation_from_yaw
+from semmap.nodes.coordinator.frames.placing import into_map, require_placing
+from semmap.schemas import errors
+from semmap.schemas.commands import Add, Drive, Get, List, Move, Update
+from semmap.schemas.entities import Pose, orientation_from_yaw
 
 TURNED = Pose(position_m=(2.0, 1.0, 0.5), orientation_wxyz=orientation_from_yaw(math.pi / 2))
 LYING = Pose(position_m=(0.0, 0.0, 1.0), orientation_wxyz=(math.sqrt(0.5), 0.0, math.sqrt(0.5), 0.0))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from nodes.coordinator.frames.published import Published
-from schemas.frames import FramePose
+from semmap.nodes.coordinator.frames.published import Published
+from semmap.schemas.frames import FramePose
 
 
 def say(published, name, parent, now_s=0.0, *, taken=(), stamp_ns=1, **fields):

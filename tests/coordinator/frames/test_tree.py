@@ -8,9 +8,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.coordinator.frames.tree import ORIGIN, Link, Tree, seen_from
-from schemas import errors
-from schemas.entities import Pose, angle_rad, compose, distance_m, inverse, orientation_from_yaw, relative
+from semmap.nodes.coordinator.frames.tree import ORIGIN, Link, Tree, seen_from
+from semmap.schemas import errors
+from semmap.schemas.entities import (
+    Pose,
+    angle_rad,
+    compose,
+    distance_m,
+    inverse,
+    orientation_from_yaw,
+    relative,
+)
 
 _METRES = st.floats(-100.0, 100.0)
 _PARTS = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(lambda q: math.hypot(*q) > 0.1)

@@ -7,8 +7,8 @@ import signal
 
 import pytest
 
-from schemas import errors, keys
-from schemas.entities import orientation_from_yaw
+from semmap.schemas import errors, keys
+from semmap.schemas.entities import orientation_from_yaw
 from tests.conftest import until
 
 

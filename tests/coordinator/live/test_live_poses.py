@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.config import LiveRules, Thresholds
-from nodes.coordinator.live.live_poses import LivePoses
-from schemas import errors
-from schemas.entities import Entity, Pose
+from semmap.nodes.coordinator.config import LiveRules, Thresholds
+from semmap.nodes.coordinator.live.live_poses import LivePoses
+from semmap.schemas import errors
+from semmap.schemas.entities import Entity, Pose
 from tests.coordinator.scene.test_reconcile import at, entity
 
 SECOND = 1_000_000_000

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from nodes.coordinator.live.rest import STILL_S, Rest
-from schemas.entities import Pose, orientation_from_yaw
+from semmap.nodes.coordinator.live.rest import STILL_S, Rest
+from semmap.schemas.entities import Pose, orientation_from_yaw
 
 
 def at(x: float, yaw: float = 0.0) -> Pose:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.scene.agreement import describe_displaced, describe_pending, find_displaced
-from nodes.coordinator.scene.reconcile import Actions
-from schemas.entities import Entity
-from schemas.grips import IS_GRASPED_BY
-from schemas.joints import Joint
-from schemas.scenes import Body
+from semmap.nodes.coordinator.scene.agreement import describe_displaced, describe_pending, find_displaced
+from semmap.nodes.coordinator.scene.reconcile import Actions
+from semmap.schemas.entities import Entity
+from semmap.schemas.grips import IS_GRASPED_BY
+from semmap.schemas.joints import Joint
+from semmap.schemas.scenes import Body
 from tests.coordinator.scene.test_reconcile import THRESHOLDS, at, body, entity, look
 
 ARM = Joint(name="arm", kind="hinge", lower=-1.0, upper=1.0)

@@ -8,15 +8,15 @@ from types import SimpleNamespace
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.scene import completion as module
-from nodes.coordinator.scene.completion import PAUSED, WAIT_S, Completion
-from nodes.coordinator.scene.hands import Hands
-from nodes.coordinator.scene.settled import Settled
-from schemas import errors
-from schemas.commands import Drive, Move, Undo
-from schemas.entities import Entity, Pose, Provenance
-from schemas.replies import Changed, Moved
-from schemas.scenes import BodiesMoved, Body, Driven
+from semmap.nodes.coordinator.scene import completion as module
+from semmap.nodes.coordinator.scene.completion import PAUSED, WAIT_S, Completion
+from semmap.nodes.coordinator.scene.hands import Hands
+from semmap.nodes.coordinator.scene.settled import Settled
+from semmap.schemas import errors
+from semmap.schemas.commands import Drive, Move, Undo
+from semmap.schemas.entities import Entity, Pose, Provenance
+from semmap.schemas.replies import Changed, Moved
+from semmap.schemas.scenes import BodiesMoved, Body, Driven
 
 START = Pose(position_m=(1.0, 2.0, 0.0))
 THERE = Pose(position_m=(5.0, 2.0, 0.0))

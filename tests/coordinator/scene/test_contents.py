@@ -5,15 +5,15 @@ from concurrent.futures import Future
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.config import CoordinatorConfig
-from nodes.coordinator.scene import rest_waits
-from nodes.coordinator.scene.contents import inside
-from nodes.coordinator.scene.reconcile import order
-from nodes.coordinator.scene.reconciler import Keeping
-from schemas import commands as c
-from schemas.entities import Pose
-from schemas.joints import Joint
-from schemas.scenes import Body
+from semmap.nodes.coordinator.config import CoordinatorConfig
+from semmap.nodes.coordinator.scene import rest_waits
+from semmap.nodes.coordinator.scene.contents import inside
+from semmap.nodes.coordinator.scene.reconcile import order
+from semmap.nodes.coordinator.scene.reconciler import Keeping
+from semmap.schemas import commands as c
+from semmap.schemas.entities import Pose
+from semmap.schemas.joints import Joint
+from semmap.schemas.scenes import Body
 from tests.coordinator.conftest import at_once
 from tests.coordinator.scene.test_reconciler import standing
 

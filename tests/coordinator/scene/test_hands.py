@@ -1,9 +1,9 @@
 import pytest
 
-from nodes.coordinator.scene import hands
-from nodes.coordinator.scene.hands import Hand, Hands
-from schemas import errors
-from schemas.commands import Move
+from semmap.nodes.coordinator.scene import hands
+from semmap.nodes.coordinator.scene.hands import Hand, Hands
+from semmap.schemas import errors
+from semmap.schemas.commands import Move
 
 MOVE = Move(name="cup1", at=(1.0, 2.0, 0.0), agent="ann")
 ANN = Hand("move", "ann", "cup1 was moved by hand")

@@ -5,15 +5,15 @@ from concurrent.futures import Future
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.config import CoordinatorConfig
-from nodes.coordinator.scene.completion import Completion
-from nodes.coordinator.scene.opening import Opening, _arrived, _on_its_way, _require_joints, _share
-from nodes.coordinator.scene.reconciler import Keeping
-from schemas import commands as c
-from schemas import errors
-from schemas.entities import Pose
-from schemas.joints import Joint
-from schemas.scenes import Body, JointsMoving
+from semmap.nodes.coordinator.config import CoordinatorConfig
+from semmap.nodes.coordinator.scene.completion import Completion
+from semmap.nodes.coordinator.scene.opening import Opening, _arrived, _on_its_way, _require_joints, _share
+from semmap.nodes.coordinator.scene.reconciler import Keeping
+from semmap.schemas import commands as c
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose
+from semmap.schemas.joints import Joint
+from semmap.schemas.scenes import Body, JointsMoving
 from tests.coordinator.conftest import at_once
 
 

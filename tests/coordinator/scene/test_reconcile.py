@@ -7,11 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.coordinator.config import Thresholds
-from nodes.coordinator.scene.reconcile import Actions, latest, reconcile
-from schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
-from schemas.joints import Joint
-from schemas.scenes import Body
+from semmap.nodes.coordinator.config import Thresholds
+from semmap.nodes.coordinator.scene.reconcile import Actions, latest, reconcile
+from semmap.schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
+from semmap.schemas.joints import Joint
+from semmap.schemas.scenes import Body
 
 THRESHOLDS = Thresholds(distance_m=0.05, angle_rad=0.0873)
 NAMES = ["chair1", "table1", "cup1", "kitchen1"]

@@ -3,12 +3,12 @@
 import pytest
 from msgspec import structs
 
-from nodes.coordinator import holding
-from nodes.coordinator.scene.reconcile import reconcile
-from schemas.entities import Pose, compose, relative
-from schemas.errors import Refused
-from schemas.grips import grip_of, holder_of, pose_of_text, pose_text
-from schemas.scenes import GripOrder
+from semmap.nodes.coordinator import holding
+from semmap.nodes.coordinator.scene.reconcile import reconcile
+from semmap.schemas.entities import Pose, compose, relative
+from semmap.schemas.errors import Refused
+from semmap.schemas.grips import grip_of, holder_of, pose_of_text, pose_text
+from semmap.schemas.scenes import GripOrder
 from tests.coordinator.scene.test_reconcile import THRESHOLDS, at, body, entity, provenance
 
 GRIP = Pose(position_m=(0.1, 0.0, 0.3))

@@ -5,11 +5,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.coordinator.scene.reconcile import Actions, order
-from nodes.coordinator.scene.settled import Settled, doing, statements
-from schemas.entities import Entity
-from schemas.joints import Joint, openness
-from schemas.scenes import Body
+from semmap.nodes.coordinator.scene.reconcile import Actions, order
+from semmap.nodes.coordinator.scene.settled import Settled, doing, statements
+from semmap.schemas.entities import Entity
+from semmap.schemas.joints import Joint, openness
+from semmap.schemas.scenes import Body
 from tests.coordinator.scene.test_reconcile import at, body, entity, look, provenance
 
 DOOR = Joint(name="door", kind="hinge", lower=0.0, upper=1.6, closed=0.0)
@@ -123,7 +123,7 @@ def _value(text: str) -> bool | float | str:
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_a_reset_puts_joints_where_the_map_says(share):
-    from nodes.coordinator.scene.reconcile import joint_order
+    from semmap.nodes.coordinator.scene.reconcile import joint_order
 
     wanted = joint_order(fridge(2, openness=share), standing(0.25))
     assert wanted.positions == {"door": pytest.approx(1.6 * share)}

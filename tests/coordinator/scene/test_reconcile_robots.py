@@ -3,9 +3,9 @@
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.scene.reconcile import Actions
-from schemas.entities import Entity
-from schemas.scenes import Body
+from semmap.nodes.coordinator.scene.reconcile import Actions
+from semmap.schemas.entities import Entity
+from semmap.schemas.scenes import Body
 from tests.coordinator.scene.test_reconcile import NOTHING, at, body, entity, look
 
 TRUTHS = ["map", "scene", "perceived"]

@@ -7,16 +7,16 @@ from itertools import count
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.config import CoordinatorConfig
-from nodes.coordinator.scene.reconcile import order
-from nodes.coordinator.scene.reconciler import Keeping
-from nodes.coordinator.scene.spawn_batches import BATCH
-from schemas import commands as c
-from schemas import errors
-from schemas.commits import Effects
-from schemas.entities import Pose
-from schemas.joints import Joint
-from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Poses, Scene, Spawned
+from semmap.nodes.coordinator.config import CoordinatorConfig
+from semmap.nodes.coordinator.scene.reconcile import order
+from semmap.nodes.coordinator.scene.reconciler import Keeping
+from semmap.nodes.coordinator.scene.spawn_batches import BATCH
+from semmap.schemas import commands as c
+from semmap.schemas import errors
+from semmap.schemas.commits import Effects
+from semmap.schemas.entities import Pose
+from semmap.schemas.joints import Joint
+from semmap.schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Poses, Scene, Spawned
 from tests.coordinator.conftest import at_once
 
 

@@ -2,7 +2,7 @@
 
 from msgspec import structs
 
-from nodes.coordinator.scene.rest_waits import CALM_S, RestWaits
+from semmap.nodes.coordinator.scene.rest_waits import CALM_S, RestWaits
 from tests.coordinator.scene.test_reconcile import at, body
 
 ROBOT = body("robot1", at(1.0))

@@ -6,16 +6,16 @@ from types import SimpleNamespace
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.config import CoordinatorConfig
-from nodes.coordinator.scene import reconciler
-from nodes.coordinator.scene.reconcile import order
-from nodes.coordinator.scene.reconciler import Keeping
-from nodes.coordinator.scene.rest_waits import CALM_S
-from schemas import commands as c
-from schemas import errors
-from schemas.entities import Pose
-from schemas.joints import Joint
-from schemas.scenes import Body, BodyOrder
+from semmap.nodes.coordinator.config import CoordinatorConfig
+from semmap.nodes.coordinator.scene import reconciler
+from semmap.nodes.coordinator.scene.reconcile import order
+from semmap.nodes.coordinator.scene.reconciler import Keeping
+from semmap.nodes.coordinator.scene.rest_waits import CALM_S
+from semmap.schemas import commands as c
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose
+from semmap.schemas.joints import Joint
+from semmap.schemas.scenes import Body, BodyOrder
 from tests.coordinator.conftest import at_once
 from tests.coordinator.scene.test_reconciler import standing
 

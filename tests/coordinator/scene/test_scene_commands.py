@@ -5,11 +5,11 @@ from types import SimpleNamespace
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.scene.completion import Completion
-from nodes.coordinator.scene.scene_commands import Running
-from schemas import commands as c
-from schemas.entities import Pose
-from schemas.scenes import BodiesMoved, Body
+from semmap.nodes.coordinator.scene.completion import Completion
+from semmap.nodes.coordinator.scene.scene_commands import Running
+from semmap.schemas import commands as c
+from semmap.schemas.entities import Pose
+from semmap.schemas.scenes import BodiesMoved, Body
 
 
 def cup(z: float, *, ghost: bool = False, in_the_way: str = "") -> Body:

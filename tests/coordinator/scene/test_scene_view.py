@@ -1,6 +1,6 @@
-from nodes.coordinator.scene.scene_view import SceneView
-from schemas.entities import Pose
-from schemas.scenes import Body, Poses, Scene
+from semmap.nodes.coordinator.scene.scene_view import SceneView
+from semmap.schemas.entities import Pose
+from semmap.schemas.scenes import Body, Poses, Scene
 
 
 def body(name: str) -> Body:

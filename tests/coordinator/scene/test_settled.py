@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.scene.settled import Settled, doing, said_by, statements
-from schemas.entities import Pose, orientation_from_yaw
-from schemas.joints import Joint
+from semmap.nodes.coordinator.scene.settled import Settled, doing, said_by, statements
+from semmap.schemas.entities import Pose, orientation_from_yaw
+from semmap.schemas.joints import Joint
 from tests.coordinator.scene.test_reconcile import entity, provenance
 
 HERE = Pose(position_m=(1.0, 2.0, 0.0), orientation_wxyz=orientation_from_yaw(1.0))

@@ -1,6 +1,6 @@
-from nodes.coordinator.scene.spawn_batches import BATCH, batches
-from schemas.entities import Pose
-from schemas.scenes import BodyOrder
+from semmap.nodes.coordinator.scene.spawn_batches import BATCH, batches
+from semmap.schemas.entities import Pose
+from semmap.schemas.scenes import BodyOrder
 
 
 def order(number: int, size_m=None) -> BodyOrder:

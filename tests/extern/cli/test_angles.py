@@ -5,7 +5,7 @@ import math
 import click
 import pytest
 
-from nodes.extern.cli.angles import ANGLE
+from semmap.nodes.extern.cli.angles import ANGLE
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,8 @@
 
 import pytest
 
-from nodes.extern.cli.app import execute
-from nodes.extern.cli.calling import given
+from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.extern.cli.calling import given
 
 
 def test_what_is_left_out_is_not_given():

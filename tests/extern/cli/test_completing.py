@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from click.shell_completion import BashComplete
 
-from nodes import bus
-from nodes.extern.cli import completing, known_names
-from nodes.extern.cli.all_verbs import app
-from schemas import keys
-from schemas.entities import ClassInfo, Entity, Provenance
+from semmap.nodes import bus
+from semmap.nodes.extern.cli import completing, known_names
+from semmap.nodes.extern.cli.all_verbs import app
+from semmap.schemas import keys
+from semmap.schemas.entities import ClassInfo, Entity, Provenance
 from tests.conftest import free_endpoint
 
 SEMMAP = Path(sys.executable).parent / "semmap"

@@ -2,7 +2,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from nodes.extern.cli.ontology_options import import_option
+from semmap.nodes.extern.cli.ontology_options import import_option
 
 
 @click.command()

@@ -7,17 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from nodes.extern.cli.app import execute
+from semmap.nodes.extern.cli.app import execute
 
 # Ctrl-C while the verbs are being imported.
 INTERRUPTED = """
 import sys, importlib.abc
 class Interrupted(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path, target=None):
-        if name == "nodes.extern.cli.all_verbs":
+        if name == "semmap.nodes.extern.cli.all_verbs":
             raise KeyboardInterrupt
 sys.meta_path.insert(0, Interrupted())
-from nodes.extern.cli.app import main
+from semmap.nodes.extern.cli.app import main
 main()
 """
 
@@ -29,7 +29,7 @@ def test_ctrl_c_while_it_starts_is_quiet():
 
 def test_it_starts_without_numpy():
     code = (
-        "import sys; from nodes.extern.cli.all_verbs import app\n"
+        "import sys; from semmap.nodes.extern.cli.all_verbs import app\n"
         "for verb in app.list_commands(None): app.get_command(None, verb)\n"
         "sys.exit('numpy' in sys.modules or len(app.commands) < 30)"
     )
@@ -39,15 +39,18 @@ def test_it_starts_without_numpy():
 @pytest.mark.parametrize(
     ("words", "needless"),
     [
-        (("--version",), {"zenoh", "rich.console", "nodes.extern.client"}),
-        (("tbox", "--help"), {"zenoh", "rich.console", "nodes.extern.client"}),
-        (("update", "cup1", "--connect", "tcp/127.0.0.1:9"), {"rich.console", "nodes.extern.availability"}),
+        (("--version",), {"zenoh", "rich.console", "semmap.nodes.extern.client"}),
+        (("tbox", "--help"), {"zenoh", "rich.console", "semmap.nodes.extern.client"}),
+        (
+            ("update", "cup1", "--connect", "tcp/127.0.0.1:9"),
+            {"rich.console", "semmap.nodes.extern.availability"},
+        ),
         (("sparql", "ASK {}", "--connect", "tcp/127.0.0.1:9"), {"rich.console", "rich.table"}),
     ],
 )
 def test_a_verb_imports_only_what_it_needs(words, needless):
     code = (
-        "import sys; from nodes.extern.cli.app import execute\n"
+        "import sys; from semmap.nodes.extern.cli.app import execute\n"
         f"execute({list(words)!r})\nsys.exit(sorted({needless!r} & sys.modules.keys()) or 0)"
     )
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)

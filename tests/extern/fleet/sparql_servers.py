@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pyoxigraph
 
-from nodes.extern.fleet import facts as f
-from nodes.extern.fleet.server import SparqlServer
-from nodes.extern.testing import free_endpoint
+from semmap.nodes.extern.fleet import facts as f
+from semmap.nodes.extern.fleet.server import SparqlServer
+from semmap.nodes.extern.testing import free_endpoint
 from tests.conftest import PATIENCE_S
 
 Graph = frozenset[tuple[str, str, str]]

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 from msgspec import structs
 
-from nodes.extern.fleet.catching_up import Anew, Continued, catch_up
-from nodes.extern.fleet.facts import Facts
-from nodes.extern.fleet.following import Following
-from nodes.extern.fleet.frames import Frame
-from schemas.bridge import CopyQuery, MapCopy, Recall
-from schemas.commits import Commit
+from semmap.nodes.extern.fleet.catching_up import Anew, Continued, catch_up
+from semmap.nodes.extern.fleet.facts import Facts
+from semmap.nodes.extern.fleet.following import Following
+from semmap.nodes.extern.fleet.frames import Frame
+from semmap.schemas.bridge import CopyQuery, MapCopy, Recall
+from semmap.schemas.commits import Commit
 
 
 class Journal:

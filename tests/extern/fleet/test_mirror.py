@@ -17,11 +17,11 @@ from pathlib import Path
 
 import pytest
 
-from nodes.extern.client import connect
-from nodes.extern.fleet import asking, mirroring
-from nodes.extern.fleet.mirror import Mirror
-from nodes.extern.fleet.server import TIMEOUT_S
-from schemas import errors
+from semmap.nodes.extern.client import connect
+from semmap.nodes.extern.fleet import asking, mirroring
+from semmap.nodes.extern.fleet.mirror import Mirror
+from semmap.nodes.extern.fleet.server import TIMEOUT_S
+from semmap.schemas import errors
 from tests.conftest import PATIENCE_S, until
 from tests.extern.fleet.sparql_servers import oxigraph, spelled, virtuoso
 

@@ -6,10 +6,10 @@ import json
 
 import pytest
 
-from nodes import bus
-from nodes.extern.client import connect
-from nodes.extern.fleet.robots import Robots, robots
-from schemas import errors
+from semmap.nodes import bus
+from semmap.nodes.extern.client import connect
+from semmap.nodes.extern.fleet.robots import Robots, robots
+from semmap.schemas import errors
 
 
 @pytest.fixture

@@ -10,14 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.extern.fleet import facts as f
-from nodes.extern.fleet import updates
-from nodes.extern.fleet.facts import Facts
-from nodes.extern.fleet.frames import Frame
-from nodes.extern.fleet.updates import Change
-from schemas.bridge import MapCopy
-from schemas.commits import Commit, Departed
-from schemas.entities import Pose
+from semmap.nodes.extern.fleet import facts as f
+from semmap.nodes.extern.fleet import updates
+from semmap.nodes.extern.fleet.facts import Facts
+from semmap.nodes.extern.fleet.frames import Frame
+from semmap.nodes.extern.fleet.updates import Change
+from semmap.schemas.bridge import MapCopy
+from semmap.schemas.commits import Commit, Departed
+from semmap.schemas.entities import Pose
 from tests.recorder.messages import entity as made
 
 FRAME = Frame(10.0, 0.0, 0.0, 0.0)

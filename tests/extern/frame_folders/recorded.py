@@ -16,7 +16,7 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from nodes.extern.ros.types import new, store
+from semmap.nodes.extern.ros.types import new, store
 from tests.extern.ros.made import image, info, transforms
 
 WIDTH, HEIGHT = 60, 40

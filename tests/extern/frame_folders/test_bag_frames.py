@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.extern.cli.app import execute
-from nodes.perception_node.input.files.frame_folders import frames_in, read_frame
+from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.perception_node.input.files.frame_folders import frames_in, read_frame
 from tests.extern.frame_folders.recorded import (
     COLOUR,
     DEPTH,

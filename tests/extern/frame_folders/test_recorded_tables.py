@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.extern.cli.app import execute
-from nodes.extern.ros.types import new
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.files.cloud_files import read_cloud
-from nodes.perception_node.pipeline import Look, look
-from nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.extern.ros.types import new
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.files.cloud_files import read_cloud
+from semmap.nodes.perception_node.pipeline import Look, look
+from semmap.nodes.perception_node.recognition.shipped_votes import shipped
 from tests.data import data_folder
 from tests.extern.frame_folders.recorded import COLOUR, DEPTH, FRAME, INFO, Said, lens, seconds, write
 from tests.extern.ros.made import image, stamped

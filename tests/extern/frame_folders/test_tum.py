@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.extern.cli.app import execute
-from nodes.perception_node.input.files.frame_folders import frames_in
+from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.perception_node.input.files.frame_folders import frames_in
 from tests.extern.frame_folders.recorded import HEIGHT, MM, RGB, WIDTH, lens, tum
 
 

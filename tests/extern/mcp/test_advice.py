@@ -2,7 +2,7 @@
 
 import pytest
 
-from nodes.extern.mcp.advice import for_agents
+from semmap.nodes.extern.mcp.advice import for_agents
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.extern.mcp import answers
-from nodes.extern.mcp.answers import BUDGET, Answer, read_cursor, said, text, who
-from schemas import errors
+from semmap.nodes.extern.mcp import answers
+from semmap.nodes.extern.mcp.answers import BUDGET, Answer, read_cursor, said, text, who
+from semmap.schemas import errors
 
 TEXTS = st.text(max_size=3000)
 VALUES = st.recursive(

@@ -7,12 +7,12 @@ import time
 
 import pytest
 
-from nodes.extern.mcp.changing import Changes
-from nodes.extern.mcp.limits import Limits
-from nodes.extern.mcp.rate import Rate
-from nodes.extern.mcp.server import server
-from nodes.extern.mcp.tools import Tools, changing
-from schemas import errors
+from semmap.nodes.extern.mcp.changing import Changes
+from semmap.nodes.extern.mcp.limits import Limits
+from semmap.nodes.extern.mcp.rate import Rate
+from semmap.nodes.extern.mcp.server import server
+from semmap.nodes.extern.mcp.tools import Tools, changing
+from semmap.schemas import errors
 from tests.extern.mcp.conftest import by_stdio, in_memory, run
 
 ON_TABLE = [8.2, 2.2, 0.74]

@@ -8,8 +8,8 @@ import pytest
 from mcp import Client
 from mcp.client.streamable_http import streamable_http_client
 
-from nodes.extern.mcp.http import behind, new_token
-from schemas import errors
+from semmap.nodes.extern.mcp.http import behind, new_token
+from semmap.schemas import errors
 from tests.extern.mcp.conftest import Agent, run
 
 TOKEN = "a-token-that-is-long-enough"

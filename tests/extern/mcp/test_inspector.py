@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from nodes.extern.mcp.tools import READING
+from semmap.nodes.extern.mcp.tools import READING
 from tests.extern.mcp.conftest import SEMMAP
 
 INSPECTOR = "@modelcontextprotocol/inspector"

@@ -1,4 +1,4 @@
-from nodes.extern.mcp.moment import at_one_commit
+from semmap.nodes.extern.mcp.moment import at_one_commit
 
 
 class Changing:

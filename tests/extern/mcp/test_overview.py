@@ -1,8 +1,8 @@
 import json
 
-from nodes.extern.mcp.overview import BUDGET, overview
-from schemas.entities import Entity, Pose, Provenance
-from schemas.replies import SystemStatus
+from semmap.nodes.extern.mcp.overview import BUDGET, overview
+from semmap.schemas.entities import Entity, Pose, Provenance
+from semmap.schemas.replies import SystemStatus
 
 BY = Provenance(commit=1, stamp_ns=1, source="operator")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from schemas import errors
+from semmap.schemas import errors
 from tests.extern.mcp.conftest import by_stdio, run
 
 

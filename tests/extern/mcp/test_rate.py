@@ -1,6 +1,6 @@
 import pytest
 
-from nodes.extern.mcp.rate import Rate
+from semmap.nodes.extern.mcp.rate import Rate
 
 
 class Clock:

@@ -4,10 +4,10 @@ import json
 
 import pytest
 
-from nodes.extern.mcp.answers import BUDGET
-from nodes.extern.mcp.rate import Rate
-from nodes.extern.mcp.server import server
-from nodes.extern.mcp.tools import READING, Tools
+from semmap.nodes.extern.mcp.answers import BUDGET
+from semmap.nodes.extern.mcp.rate import Rate
+from semmap.nodes.extern.mcp.server import server
+from semmap.nodes.extern.mcp.tools import READING, Tools
 from tests.extern.mcp.conftest import by_stdio, in_memory, run
 
 

@@ -7,13 +7,13 @@ from urllib.parse import quote
 import pytest
 from mcp.shared.exceptions import MCPError
 
-from nodes.extern.mcp import resources
-from nodes.extern.mcp.answers import BUDGET
-from nodes.extern.mcp.rate import Rate
-from nodes.extern.mcp.server import server
-from nodes.extern.mcp.standing import MOST, Standing
-from nodes.extern.mcp.tools import Tools
-from schemas import errors
+from semmap.nodes.extern.mcp import resources
+from semmap.nodes.extern.mcp.answers import BUDGET
+from semmap.nodes.extern.mcp.rate import Rate
+from semmap.nodes.extern.mcp.server import server
+from semmap.nodes.extern.mcp.standing import MOST, Standing
+from semmap.nodes.extern.mcp.tools import Tools
+from semmap.schemas import errors
 from tests.extern.mcp.conftest import by_stdio, in_memory, run
 
 

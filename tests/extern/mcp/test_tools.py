@@ -5,12 +5,12 @@ from unittest.mock import Mock
 
 import pytest
 
-from nodes.extern.mcp import arguments
-from nodes.extern.mcp.answers import Answer
-from nodes.extern.mcp.rate import Rate
-from nodes.extern.mcp.tools import READING, Tool, Tools, changing, complaint
-from schemas import errors
-from schemas.commands import COMMANDS
+from semmap.nodes.extern.mcp import arguments
+from semmap.nodes.extern.mcp.answers import Answer
+from semmap.nodes.extern.mcp.rate import Rate
+from semmap.nodes.extern.mcp.tools import READING, Tool, Tools, changing, complaint
+from semmap.schemas import errors
+from semmap.schemas.commands import COMMANDS
 
 ECHO = Tool("echo", "Says what it is given.", arguments.Get, lambda _, asked: told(asked))
 

@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from nodes.extern.movie import Film, movie
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.seed import seed
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
-from schemas import errors
-from schemas.commits import Edit, Transaction
+from semmap.nodes.extern.movie import Film, movie
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.seed import seed
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.schemas import errors
+from semmap.schemas.commits import Edit, Transaction
 
 SMALL = Film(size=(241, 180), fps=5, longest_s=0.5)
 

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.extern.movie import storyboard
-from nodes.extern.movie.storyboard import GLIDE_S, LEAST_S, Scene, between, scenes, steps, total_s
-from schemas.entities import Pose, angle_rad, orientation_from_yaw
+from semmap.nodes.extern.movie import storyboard
+from semmap.nodes.extern.movie.storyboard import GLIDE_S, LEAST_S, Scene, between, scenes, steps, total_s
+from semmap.schemas.entities import Pose, angle_rad, orientation_from_yaw
 from tests.recorder.messages import START_NS, commit, entity, pose
 
 CUP, TABLE = entity("cup1", "Cup", pose(1.0)), entity("table1", "Table")

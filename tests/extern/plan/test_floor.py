@@ -3,8 +3,8 @@ import math
 import pytest
 from msgspec import structs
 
-from nodes.extern.plan.floor import floor_of, footprint
-from schemas.entities import Pose, orientation_from_yaw
+from semmap.nodes.extern.plan.floor import floor_of, footprint
+from semmap.schemas.entities import Pose, orientation_from_yaw
 from tests.extern.plan.things import place, thing
 
 

@@ -1,7 +1,7 @@
 import itertools
 import random
 
-from nodes.extern.plan.labels import Box, Sheet, text_width_mm
+from semmap.nodes.extern.plan.labels import Box, Sheet, text_width_mm
 
 PAPER = Box(0.0, 0.0, 200.0, 150.0)
 

@@ -2,8 +2,8 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from nodes.extern.plan.floor import floor_of
-from nodes.extern.plan.svg import draw, drawing
+from semmap.nodes.extern.plan.floor import floor_of
+from semmap.nodes.extern.plan.svg import draw, drawing
 from tests.extern.plan.things import place, thing
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -2,8 +2,8 @@
 
 import math
 
-from ontology import vocabulary as v
-from schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
 
 SINCE = Provenance(commit=1, stamp_ns=1, source="file")
 

@@ -16,8 +16,8 @@ from zenoh_ros2_sdk import ROS2Publisher, ROS2Subscriber
 from zenoh_ros2_sdk.qos import QosDurability, QosProfile
 from zenoh_ros2_sdk.session import ZenohSession
 
-from nodes.extern.ros.bridge import topics
-from nodes.extern.ros.types import store
+from semmap.nodes.extern.ros.bridge import topics
+from semmap.nodes.extern.ros.types import store
 from tests.extern.ros.made import image, info, transforms
 
 PORT = int(sys.argv[1])

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from nodes.extern.ros.messages import Moment
-from nodes.extern.ros.things import Thing
-from nodes.extern.ros.types import new
-from schemas.entities import Pose, orientation_from_yaw
+from semmap.nodes.extern.ros.messages import Moment
+from semmap.nodes.extern.ros.things import Thing
+from semmap.nodes.extern.ros.types import new
+from semmap.schemas.entities import Pose, orientation_from_yaw
 
 AT = Moment("map", 1_500_000_002)
 

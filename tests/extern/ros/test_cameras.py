@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from nodes.extern.ros.cameras import Camera, camera_topics
-from nodes.extern.ros.frames import Frames
-from schemas import errors
+from semmap.nodes.extern.ros.cameras import Camera, camera_topics
+from semmap.nodes.extern.ros.frames import Frames
+from semmap.schemas import errors
 from tests.extern.ros.made import image, info, transforms
 
 COLOUR = np.zeros((4, 6, 3), np.uint8)

@@ -2,11 +2,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.extern.ros.detected import observations_of
-from nodes.extern.ros.frames import Frames
-from nodes.extern.ros.messages import detections
-from schemas import errors
-from schemas.entities import angle_rad, distance_m
+from semmap.nodes.extern.ros.detected import observations_of
+from semmap.nodes.extern.ros.frames import Frames
+from semmap.nodes.extern.ros.messages import detections
+from semmap.schemas import errors
+from semmap.schemas.entities import angle_rad, distance_m
 from tests.extern.ros.made import AT, thing, transforms
 
 NUMBERS = st.floats(-50, 50)

@@ -1,7 +1,7 @@
 import pytest
 
-from nodes.extern.ros.frames import Frames
-from schemas import errors
+from semmap.nodes.extern.ros.frames import Frames
+from semmap.schemas import errors
 from tests.extern.ros.made import transforms
 
 

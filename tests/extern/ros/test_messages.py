@@ -3,9 +3,9 @@ import math
 import numpy as np
 import pytest
 
-from nodes.extern.ros import messages
-from nodes.extern.ros.types import decode, encode
-from schemas.scenes import Surface
+from semmap.nodes.extern.ros import messages
+from semmap.nodes.extern.ros.types import decode, encode
+from semmap.schemas.scenes import Surface
 from tests.extern.ros.made import AT, by_name, thing
 
 ADD, REMOVE, MOVE = 0, 1, 3

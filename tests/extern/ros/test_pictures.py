@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from nodes.extern.ros.pictures import colour_of, depth_of
-from schemas import errors
+from semmap.nodes.extern.ros.pictures import colour_of, depth_of
+from semmap.schemas import errors
 from tests.extern.ros.made import image
 
 RED_BLUE = np.array([[[255, 0, 0], [0, 0, 255]]], np.uint8)

@@ -12,13 +12,13 @@ import time
 import numpy as np
 import pytest
 
-from nodes import bus
-from nodes.bus.rmw import RosNode
-from nodes.extern.ros import messages
-from nodes.extern.ros.types import decode, encode, topic
-from nodes.extern.testing import free_endpoint
-from schemas import codec
-from schemas.scenes import CameraFrame
+from semmap.nodes import bus
+from semmap.nodes.bus.rmw import RosNode
+from semmap.nodes.extern.ros import messages
+from semmap.nodes.extern.ros.types import decode, encode, topic
+from semmap.nodes.extern.testing import free_endpoint
+from semmap.schemas import codec
+from semmap.schemas.scenes import CameraFrame
 from tests.conftest import PATIENCE_S, until
 from tests.extern.ros.made import AT, thing
 

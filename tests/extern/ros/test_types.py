@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from nodes.extern.ros.definitions import DEFINITIONS
-from nodes.extern.ros.types import decode, encode, new, store, topic
-from schemas import errors
+from semmap.nodes.extern.ros.definitions import DEFINITIONS
+from semmap.nodes.extern.ros.types import decode, encode, new, store, topic
+from semmap.schemas import errors
 
 OURS = sorted(DEFINITIONS)
 BOUNDED = re.compile(r"\[<=\d+\]")

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.extern.web.access import Access
+from semmap.nodes.extern.web.access import Access
 
 TOKEN = "t" * 32
 HOST = ("host", "127.0.0.1:8080")

@@ -2,8 +2,8 @@
 
 from msgspec import structs
 
-from nodes.extern.web.differences import between, counted, differences
-from schemas.entities import orientation_from_yaw
+from semmap.nodes.extern.web.differences import between, counted, differences
+from semmap.schemas.entities import orientation_from_yaw
 from tests.recorder.messages import entity, pose
 
 

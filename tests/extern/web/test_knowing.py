@@ -4,12 +4,12 @@ import asyncio
 
 import pytest
 
-from nodes.extern.web import knowing
-from nodes.extern.web.knowing import Knowing
-from nodes.extern.web.live import Happening
-from schemas import errors
-from schemas.commands import Properties
-from schemas.sparql import SparqlResult
+from semmap.nodes.extern.web import knowing
+from semmap.nodes.extern.web.knowing import Knowing
+from semmap.nodes.extern.web.live import Happening
+from semmap.schemas import errors
+from semmap.schemas.commands import Properties
+from semmap.schemas.sparql import SparqlResult
 from tests.extern.web.scene.things import body, pose, scene
 from tests.extern.web.views.worlds import commit, fact, thing
 

@@ -1,8 +1,8 @@
 import os
 import socket
 
-from nodes.extern.web.loads import loads_of
-from schemas.health import Health
+from semmap.nodes.extern.web.loads import loads_of
+from semmap.schemas.health import Health
 
 
 def beat(pid, host):

@@ -3,10 +3,10 @@ import sys
 
 import pytest
 
-from nodes import bus
-from nodes.extern.testing import free_endpoint
-from nodes.extern.web.server import WebConfig, run
-from schemas import errors
+from semmap.nodes import bus
+from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.extern.web.server import WebConfig, run
+from semmap.schemas import errors
 
 
 def test_a_port_that_is_taken_is_told_before_anything_begins():
@@ -21,7 +21,7 @@ def test_a_port_that_is_taken_is_told_before_anything_begins():
 
 _IMPORTED = """
 import sys
-from nodes.extern.web.server import _as_if_not_installed
+from semmap.nodes.extern.web.server import _as_if_not_installed
 with _as_if_not_installed("aiohttp", "requests"):
     import nicegui
 assert "aiohttp" not in sys.modules and "requests" not in sys.modules

@@ -1,9 +1,9 @@
 import asyncio
 import threading
 
-from nodes.extern.web.standing import Following
-from schemas import errors
-from schemas.sparql import RowsChanged
+from semmap.nodes.extern.web.standing import Following
+from semmap.schemas import errors
+from semmap.schemas.sparql import RowsChanged
 
 
 class Query:

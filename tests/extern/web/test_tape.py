@@ -5,12 +5,12 @@ import asyncio
 import pytest
 from msgspec import structs
 
-from nodes.extern.web import tape as tape_module
-from nodes.extern.web.live import Happening
-from nodes.extern.web.tape import BLOCK, Tape
-from schemas import bridge, errors
-from schemas.commands import History
-from schemas.replies import LoggedCommit
+from semmap.nodes.extern.web import tape as tape_module
+from semmap.nodes.extern.web.live import Happening
+from semmap.nodes.extern.web.tape import BLOCK, Tape
+from semmap.schemas import bridge, errors
+from semmap.schemas.commands import History
+from semmap.schemas.replies import LoggedCommit
 from tests.recorder.messages import START_NS, commit, entity, pose
 
 

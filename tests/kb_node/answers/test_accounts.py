@@ -3,17 +3,17 @@
 import pytest
 from msgspec import structs
 
-from nodes.kb_node.answers.accounts import Accounts
-from nodes.kb_node.answers.sightings import Sightings
-from nodes.kb_node.answers.whereabouts import Now
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.history import Past
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Tell
-from schemas.commits import Edit, NewEntity, Statement, Transaction
-from schemas.entities import Pose
-from schemas.perception import MISSING
+from semmap.nodes.kb_node.answers.accounts import Accounts
+from semmap.nodes.kb_node.answers.sightings import Sightings
+from semmap.nodes.kb_node.answers.whereabouts import Now
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Tell
+from semmap.schemas.commits import Edit, NewEntity, Statement, Transaction
+from semmap.schemas.entities import Pose
+from semmap.schemas.perception import MISSING
 from tests.kb_node import home
 
 
@@ -123,7 +123,7 @@ def test_chairs_are_round_a_table_that_is_in_no_place(accounts, semantic_map):
 
 
 def test_of_a_large_map_only_numbers_are_told(accounts, room, monkeypatch):
-    monkeypatch.setattr("nodes.kb_node.answers.accounts.LARGEST", 3)
+    monkeypatch.setattr("semmap.nodes.kb_node.answers.accounts.LARGEST", 3)
     assert accounts.tell(Tell()).text == (
         "The map has one place and 7 things. There are 3 chairs, 2 cups, a lamp and a table."
     )

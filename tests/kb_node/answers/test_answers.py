@@ -1,11 +1,11 @@
 import pytest
 
-from nodes.kb_node.answers import answers, trials
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.documents.abox_document import sort_out
-from nodes.kb_node.reasoner.rules.general import GeneralEngine
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.kb_node.answers import answers, trials
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents.abox_document import sort_out
+from semmap.nodes.kb_node.reasoner.rules.general import GeneralEngine
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from tests.kb_node import home
 from tests.kb_node.graphs import canonical
 from tests.kb_node.home import chair, transaction, turtle

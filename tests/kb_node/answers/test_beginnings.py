@@ -5,12 +5,12 @@ import random
 import pytest
 from msgspec import structs
 
-from nodes.kb_node.answers.beginnings import Moves, beginnings
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from schemas import codec
-from schemas.commits import Commit, Departed
-from schemas.entities import Pose
+from semmap.nodes.kb_node.answers.beginnings import Moves, beginnings
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.schemas import codec
+from semmap.schemas.commits import Commit, Departed
+from semmap.schemas.entities import Pose
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
 
 FIRST = [ROOM, CORNER, TABLE, thing("table2", (1.7, 0.2, 0.0)), thing("bowl1", (0.0, -0.4, TOP))]

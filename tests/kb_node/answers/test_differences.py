@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from schemas import errors
+from semmap.schemas import errors
 
 
 @pytest.fixture(scope="module")

@@ -3,15 +3,15 @@
 import pytest
 from msgspec import structs
 
-from nodes.kb_node.answers.finding import Finding
-from nodes.kb_node.answers.gone import gone
-from nodes.kb_node.storage.history import Past
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Find
-from schemas.commits import Transaction
-from schemas.entities import Pose
+from semmap.nodes.kb_node.answers.finding import Finding
+from semmap.nodes.kb_node.answers.gone import gone
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Find
+from semmap.schemas.commits import Transaction
+from semmap.schemas.entities import Pose
 
 
 def names(found):

@@ -4,10 +4,10 @@ import re
 
 import pytest
 
-from nodes.kb_node.answers.hidden import closed_around, in_words
-from ontology import vocabulary as v
-from schemas.commits import Edit, NewEntity, Statement, Transaction
-from schemas.entities import Pose
+from semmap.nodes.kb_node.answers.hidden import closed_around, in_words
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Edit, NewEntity, Statement, Transaction
+from semmap.schemas.entities import Pose
 from tests.kb_node import home
 
 

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.kb_node.answers.live import LiveEntities
-from nodes.kb_node.answers.whereabouts import Now
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import Journal
-from ontology import HOUSEHOLD_TTL
-from ontology import vocabulary as v
-from schemas.bridge import Entities
-from schemas.commands import Relations
-from schemas.commits import Edit, NewEntity, Transaction
-from schemas.entities import Live, Pose
-from schemas.live import LivePoses
-from schemas.relations import Where
+from semmap.nodes.kb_node.answers.live import LiveEntities
+from semmap.nodes.kb_node.answers.whereabouts import Now
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.ontology import HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
+from semmap.schemas.bridge import Entities
+from semmap.schemas.commands import Relations
+from semmap.schemas.commits import Edit, NewEntity, Transaction
+from semmap.schemas.entities import Live, Pose
+from semmap.schemas.live import LivePoses
+from semmap.schemas.relations import Where
 
 
 def new(name: str, class_name: str, x: float, **fields) -> NewEntity:

@@ -2,18 +2,18 @@
 
 import pytest
 
-from nodes.kb_node.answers import answers
-from nodes.kb_node.answers.map_then import ask_then, export_then, map_then
-from nodes.kb_node.beliefs import Believed
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.history import Past
-from ontology import FLAT_TTL
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Export, Sparql
-from schemas.commits import Edit, NewEntity, Transaction
-from schemas.entities import Pose
+from semmap.nodes.kb_node.answers import answers
+from semmap.nodes.kb_node.answers.map_then import ask_then, export_then, map_then
+from semmap.nodes.kb_node.beliefs import Believed
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.ontology import FLAT_TTL
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Export, Sparql
+from semmap.schemas.commits import Edit, NewEntity, Transaction
+from semmap.schemas.entities import Pose
 from tests.kb_node import home
 
 FLAT = tuple(rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f"))

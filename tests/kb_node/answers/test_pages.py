@@ -1,8 +1,8 @@
 import pytest
 
-from nodes.kb_node.answers import pages as pages_module
-from nodes.kb_node.answers.pages import Pages
-from schemas.bridge import SnapshotQuery
+from semmap.nodes.kb_node.answers import pages as pages_module
+from semmap.nodes.kb_node.answers.pages import Pages
+from semmap.schemas.bridge import SnapshotQuery
 from tests.kb_node.home import chair, close, new_map, transaction
 
 NAMES = tuple(f"chair{i}" for i in range(1, 6))

@@ -1,13 +1,13 @@
 import pytest
 
-from nodes.kb_node.answers import questions
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.reasoner import Held, Reasoner
-from nodes.kb_node.reasoner.entailment.explaining import nearby
-from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Could, Explain
+from semmap.nodes.kb_node.answers import questions
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.reasoner import Held, Reasoner
+from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby
+from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Could, Explain
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 from tests.kb_node.reasoner.graphs import triple, triples

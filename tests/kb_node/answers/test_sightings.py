@@ -5,12 +5,12 @@ import time
 
 import pytest
 
-from nodes.kb_node.answers.sightings import Sightings
-from nodes.kb_node.storage.history import Past
-from schemas import errors
-from schemas.commits import Edit
-from schemas.entities import Pose
-from schemas.perception import MISSING, Observation, Observations
+from semmap.nodes.kb_node.answers.sightings import Sightings
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.schemas import errors
+from semmap.schemas.commits import Edit
+from semmap.schemas.entities import Pose
+from semmap.schemas.perception import MISSING, Observation, Observations
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction
 

@@ -3,9 +3,9 @@
 import pytest
 from msgspec import structs
 
-from nodes.kb_node.answers.speakable import item, terms
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.answers.speakable import item, terms
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Reasoner
 from tests.kb_node.reasoner.graphs import household
 from tests.kb_node.relations.made import ROOM, TABLE
 

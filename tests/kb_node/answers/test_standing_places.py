@@ -5,13 +5,13 @@ import time
 
 import pytest
 
-from nodes.kb_node.answers.standing_places import StandingPlaces
-from nodes.kb_node.relations.selection import selected
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Renew, Watch
-from schemas.commits import Edit
-from schemas.relations import Where
+from semmap.nodes.kb_node.answers.standing_places import StandingPlaces
+from semmap.nodes.kb_node.relations.selection import selected
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Renew, Watch
+from semmap.schemas.commits import Edit
+from semmap.schemas.relations import Where
 from tests.kb_node import home
 from tests.kb_node.test_places import TBOX, TOP, commit, move, new, take_back
 
@@ -122,7 +122,7 @@ def test_leases(room, monkeypatch):
     assert on.standing.renew(Renew(watch="w1")).text == "w1 goes on for 10 s"
     assert on.standing.renew(Renew(watch="another")) is None
     later = time.monotonic() + 11.0
-    monkeypatch.setattr("nodes.kb_node.answers.standing_places.time.monotonic", lambda: later)
+    monkeypatch.setattr("semmap.nodes.kb_node.answers.standing_places.time.monotonic", lambda: later)
     on.standing.drop_expired()
     assert on.standing.renew(Renew(watch="w1")) is None
     assert [(news.rows, news.ended) for news in on.news] == [(None, True)]

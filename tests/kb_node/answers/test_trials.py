@@ -2,12 +2,12 @@
 
 import pytest
 
-from nodes.kb_node.answers import trials
-from nodes.kb_node.documents.tbox import tbox_validation
-from nodes.kb_node.undo import undo
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.bridge import TakeBack
+from semmap.nodes.kb_node.answers import trials
+from semmap.nodes.kb_node.documents.tbox import tbox_validation
+from semmap.nodes.kb_node.undo import undo
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.bridge import TakeBack
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 from tests.kb_node.stating import TBOX, adding, editing, stated, statement

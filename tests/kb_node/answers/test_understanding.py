@@ -2,13 +2,13 @@
 
 import pytest
 
-from nodes.kb_node.answers.finding import Finding
-from nodes.kb_node.answers.understanding import Understanding
-from ontology import stars
-from ontology import vocabulary as v
-from schemas.commands import Understand
-from schemas.commits import Transaction
-from schemas.entities import Pose
+from semmap.nodes.kb_node.answers.finding import Finding
+from semmap.nodes.kb_node.answers.understanding import Understanding
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commands import Understand
+from semmap.schemas.commits import Transaction
+from semmap.schemas.entities import Pose
 
 
 @pytest.fixture

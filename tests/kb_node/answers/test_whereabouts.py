@@ -2,19 +2,19 @@
 
 import pytest
 
-from nodes.kb_node.answers import beginnings, questions, whereabouts
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.relations.measuring.phrases import SPOKEN
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.history import Past
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.bridge import Entities
-from schemas.commands import Could, Explain, Get, Relations
-from schemas.commits import Edit, NewEntity, Transaction
-from schemas.entities import Pose
-from schemas.relations import Where
+from semmap.nodes.kb_node.answers import beginnings, questions, whereabouts
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.bridge import Entities
+from semmap.schemas.commands import Could, Explain, Get, Relations
+from semmap.schemas.commits import Edit, NewEntity, Transaction
+from semmap.schemas.entities import Pose
+from semmap.schemas.relations import Where
 from tests.kb_node import home
 
 

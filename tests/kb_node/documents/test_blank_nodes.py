@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.documents.blank_nodes import labelled_like
-from ontology import HOUSEHOLD_TTL
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents.blank_nodes import labelled_like
+from semmap.ontology import HOUSEHOLD_TTL
 
 RESTRICTED = b"<urn:c> <urn:below> [ <urn:on> <urn:p> ; <urn:in> ( <urn:a> [ <urn:not> <urn:b> ] ) ] ."
 TWINS = RESTRICTED + RESTRICTED.replace(b"urn:c>", b"urn:d>")

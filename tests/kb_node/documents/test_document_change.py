@@ -1,9 +1,9 @@
 import pytest
 
-from nodes.kb_node.documents import document_change
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.bridge import LoadDocument, LoadTBox
+from semmap.nodes.kb_node.documents import document_change
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.bridge import LoadDocument, LoadTBox
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 

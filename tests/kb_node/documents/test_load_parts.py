@@ -1,7 +1,7 @@
 import pytest
 
-from nodes.kb_node.documents.load_parts import commit_each, in_parts
-from schemas import errors
+from semmap.nodes.kb_node.documents.load_parts import commit_each, in_parts
+from semmap.schemas import errors
 from tests.kb_node.home import chair, close, new_map, transaction
 
 CHAIRS = [chair(f"chair{i}") for i in range(10)]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.kb_node.documents import ontology_files
-from nodes.kb_node.documents.ontology_files import gather, header, missing_imports
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.kb_node.documents import ontology_files
+from semmap.nodes.kb_node.documents.ontology_files import gather, header, missing_imports
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from tests.data import data_folder
 
 PREFIXES = (

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.documents import plain_turtle, plain_words, rdf
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.kb_node.documents import plain_turtle, plain_words, rdf
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 
 HEAD = (
     f"@prefix : <{v.ABOX}> .\n@prefix dm: <{v.TBOX}> .\n@prefix xsd: <{v.XSD}> .\n"

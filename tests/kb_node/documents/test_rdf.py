@@ -4,9 +4,9 @@ from hypothesis import strategies as st
 from rdflib import Graph
 from rdflib.compare import isomorphic
 
-from nodes.kb_node.documents import rdf
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.kb_node.documents import rdf
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from tests.kb_node.graphs import canonical
 
 RDFLIB = {"rdfxml": "xml", "turtle": "turtle", "ntriples": "nt", "jsonld": "json-ld"}

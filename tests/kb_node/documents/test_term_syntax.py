@@ -2,11 +2,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.kb_node.documents.term_syntax import require_triples
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.entities import Pose
+from semmap.nodes.kb_node.documents.term_syntax import require_triples
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose
 from tests.kb_node.home import TBOX
 
 

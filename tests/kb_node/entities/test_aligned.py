@@ -4,14 +4,14 @@ import math
 
 import pytest
 
-from nodes.kb_node.answers import whereabouts
-from nodes.kb_node.documents import abox_document, rdf
-from nodes.kb_node.entities import alignments
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Get
-from schemas.commits import Edit, NewEntity, Transaction
-from schemas.entities import Pose, orientation_from_yaw
+from semmap.nodes.kb_node.answers import whereabouts
+from semmap.nodes.kb_node.documents import abox_document, rdf
+from semmap.nodes.kb_node.entities import alignments
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Get
+from semmap.schemas.commits import Edit, NewEntity, Transaction
+from semmap.schemas.entities import Pose, orientation_from_yaw
 from tests.kb_node import home
 
 PREFIXES = """

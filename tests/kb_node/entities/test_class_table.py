@@ -1,11 +1,11 @@
 import pytest
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Reasoner
-from ontology import vocabulary as v
-from ontology.prefixes import PREFERRED_PREFIX
-from schemas import errors
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import vocabulary as v
+from semmap.ontology.prefixes import PREFERRED_PREFIX
+from semmap.schemas import errors
 from tests.kb_node import home
 from tests.kb_node.home import turtle
 

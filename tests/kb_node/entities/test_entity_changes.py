@@ -1,7 +1,7 @@
 """What a change of the triples does to the entities."""
 
-from nodes.kb_node.documents import rdf
-from ontology import vocabulary as v
+from semmap.nodes.kb_node.documents import rdf
+from semmap.ontology import vocabulary as v
 from tests.kb_node import home
 from tests.kb_node.home import TBOX_TURTLE, chair, transaction
 

@@ -1,10 +1,10 @@
 import pytest
 
-from nodes.kb_node.entities import entity_reading
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.entities import Pose
+from semmap.nodes.kb_node.entities import entity_reading
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 

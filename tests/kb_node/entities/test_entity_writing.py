@@ -2,11 +2,11 @@
 
 import pytest
 
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commits import Edit, NewEntity, Transaction
-from schemas.entities import Pose, orientation_from_yaw
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commits import Edit, NewEntity, Transaction
+from semmap.schemas.entities import Pose, orientation_from_yaw
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 

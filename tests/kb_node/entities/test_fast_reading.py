@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.entities import entity_reading
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.entities import Pose
+from semmap.nodes.kb_node.entities import entity_reading
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose
 from tests.kb_node import home
 from tests.kb_node.home import transaction
 

@@ -2,12 +2,12 @@
 
 import pytest
 
-from nodes.kb_node.semantic_map import SemanticMap
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commits import Edit, NewEntity, Statement, Transaction
-from schemas.entities import Pose
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commits import Edit, NewEntity, Statement, Transaction
+from semmap.schemas.entities import Pose
 from tests.kb_node import home
 
 HERE = Pose(position_m=(1.0, 2.0, 0.0))

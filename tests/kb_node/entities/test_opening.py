@@ -1,7 +1,7 @@
 """Who states one thing of how far open something is takes back what it makes untrue."""
 
-from nodes.kb_node.entities.opening import implied
-from ontology import vocabulary as v
+from semmap.nodes.kb_node.entities.opening import implied
+from semmap.ontology import vocabulary as v
 
 TRUE, FALSE = (v.literal(word, v.XSD_BOOLEAN) for word in ("true", "false"))
 HALF, NONE = v.literal("0.5", v.XSD_FLOAT), v.literal("0.0", v.XSD_FLOAT)

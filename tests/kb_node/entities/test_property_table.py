@@ -2,9 +2,9 @@
 
 import pytest
 
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.entities import PropertyInfo
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.entities import PropertyInfo
 from tests.kb_node import home
 from tests.kb_node.home import transaction, turtle
 from tests.kb_node.stating import (

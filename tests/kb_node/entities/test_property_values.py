@@ -2,9 +2,9 @@
 
 import pytest
 
-from nodes.kb_node.entities.property_values import literal, plain, same
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.kb_node.entities.property_values import literal, plain, same
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 
 INTEGER, DECIMAL, DOUBLE, BYTE, TIME = (
     v.iri(v.XSD + name) for name in ("integer", "decimal", "double", "byte", "dateTime")

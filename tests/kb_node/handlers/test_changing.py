@@ -4,12 +4,12 @@ from contextlib import contextmanager
 
 import pytest
 
-from nodes.kb_node.handlers import changing
-from nodes.kb_node.handlers.changing import Changing
-from schemas import errors
-from schemas.bridge import MadeBy, TakeBack, Transactions
-from schemas.commits import NewEntity
-from schemas.health import WORKING
+from semmap.nodes.kb_node.handlers import changing
+from semmap.nodes.kb_node.handlers.changing import Changing
+from semmap.schemas import errors
+from semmap.schemas.bridge import MadeBy, TakeBack, Transactions
+from semmap.schemas.commits import NewEntity
+from semmap.schemas.health import WORKING
 from tests.kb_node.home import chair, transaction
 from tests.kb_node.storage.journal.test_journal import BULKY, full_by_page_count
 

@@ -2,13 +2,13 @@
 
 from contextlib import nullcontext
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.handlers.changing import Changing
-from nodes.kb_node.handlers.loading import Loading
-from ontology import stars
-from ontology import vocabulary as v
-from schemas.bridge import LoadDocument
-from schemas.entities import Pose
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.handlers.changing import Changing
+from semmap.nodes.kb_node.handlers.loading import Loading
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas.bridge import LoadDocument
+from semmap.schemas.entities import Pose
 
 
 class NoSparql:

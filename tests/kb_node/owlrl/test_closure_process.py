@@ -4,7 +4,7 @@ import rdflib
 from rdflib import RDF, Literal, URIRef
 from rdflib.paths import OneOrMore
 
-from nodes.kb_node.owlrl.closure_process import QuickGraph
+from semmap.nodes.kb_node.owlrl.closure_process import QuickGraph
 
 A, B, C, P = (URIRef(f"urn:{name}") for name in "abcp")
 

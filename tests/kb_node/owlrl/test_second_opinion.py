@@ -2,8 +2,8 @@
 
 import pytest
 
-from nodes.kb_node.owlrl import second_opinion
-from schemas import errors
+from semmap.nodes.kb_node.owlrl import second_opinion
+from semmap.schemas import errors
 from tests.kb_node import home
 
 

@@ -1,6 +1,6 @@
 """What every explanation must be, whatever it explains."""
 
-from nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 
 
 def check(explanation, asserted):

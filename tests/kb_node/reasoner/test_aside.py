@@ -1,6 +1,6 @@
 """What is set aside, found by either end."""
 
-from nodes.kb_node.reasoner.aside import Aside
+from semmap.nodes.kb_node.reasoner.aside import Aside
 
 ON, OFF = "<urn:on>", "<urn:off>"
 TRIPLES = [("<urn:a>", ON, "<urn:b>"), ("<urn:b>", ON, "<urn:c>"), ("<urn:a>", OFF, "<urn:c>")]

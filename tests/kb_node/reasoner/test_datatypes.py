@@ -2,8 +2,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.kb_node.reasoner.datatypes import canonical, contains, datatypes, is_ill_typed, value
-from nodes.kb_node.reasoner.terms import iri, literal, quoted
+from semmap.nodes.kb_node.reasoner.datatypes import canonical, contains, datatypes, is_ill_typed, value
+from semmap.nodes.kb_node.reasoner.terms import iri, literal, quoted
 
 
 def lit(text, datatype):

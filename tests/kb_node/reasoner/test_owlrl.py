@@ -6,8 +6,8 @@ import owlrl
 import pytest
 import rdflib
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.terms import SAME_AS, TYPE
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.terms import SAME_AS, TYPE
 from tests.depth import tries
 from tests.kb_node.reasoner.graphs import CLASSES, EVERYTHING, OBJECT_PROPERTIES, triples
 from tests.kb_node.reasoner.worlds import World

@@ -5,12 +5,12 @@ import sys
 
 import pytest
 
-from nodes.kb_node import reasoner
+from semmap.nodes.kb_node import reasoner
 
 _WORDS_ALONE = """
 import sys
-import nodes.kb_node.reasoner.explain.sentences
-rules = [name for name in sys.modules if name.startswith("nodes.kb_node.reasoner.rules")]
+import semmap.nodes.kb_node.reasoner.explain.sentences
+rules = [name for name in sys.modules if name.startswith("semmap.nodes.kb_node.reasoner.rules")]
 sys.exit(str(rules) if rules else 0)
 """
 

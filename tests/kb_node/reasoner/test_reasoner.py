@@ -5,11 +5,11 @@ import pytest
 from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner, compiled, datatypes
-from nodes.kb_node.reasoner.compiled import CompiledEngine
-from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.reasoner.terms import TYPE, is_literal
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner, compiled, datatypes
+from semmap.nodes.kb_node.reasoner.compiled import CompiledEngine
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.nodes.kb_node.reasoner.terms import TYPE, is_literal
 from tests.depth import tries
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.facts import ANY_FACT, INDIVIDUALS, facts, prefixed

@@ -4,11 +4,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.refutation import refute, why_different
-from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
-from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.refutation import refute, why_different
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS
 from tests.kb_node.reasoner.facts import ANY_FACT
 from tests.kb_node.reasoner.graphs import EVERYTHING, household, triple, triples
 

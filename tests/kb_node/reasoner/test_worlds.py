@@ -7,12 +7,12 @@ import random
 
 import pytest
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.datatypes import canonical
-from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.reasoner.rules.general import GeneralEngine
-from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, iri, is_literal, is_named
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.datatypes import canonical
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.rules.general import GeneralEngine
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.nodes.kb_node.reasoner.terms import SAME_AS, TYPE, iri, is_literal, is_named
 from tests.depth import tries
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.worlds import AXIOMS, KEYS, NOMINALS, TRANSITIVE, World

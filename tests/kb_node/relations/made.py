@@ -1,7 +1,7 @@
 """Entities by model and place."""
 
-from ontology.model_shapes import own_size_m
-from schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
+from semmap.ontology.model_shapes import own_size_m
+from semmap.schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
 
 NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
 

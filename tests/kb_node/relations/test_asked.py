@@ -4,12 +4,12 @@ import math
 
 import pytest
 
-from nodes.kb_node.relations.asked import Asked
-from nodes.kb_node.relations.measuring.viewing import View
-from nodes.kb_node.relations.selection import selected
-from nodes.kb_node.relations.telling import as_seen
-from schemas import errors
-from schemas.relations import Where
+from semmap.nodes.kb_node.relations.asked import Asked
+from semmap.nodes.kb_node.relations.measuring.viewing import View
+from semmap.nodes.kb_node.relations.selection import selected
+from semmap.nodes.kb_node.relations.telling import as_seen
+from semmap.schemas import errors
+from semmap.schemas.relations import Where
 
 
 @pytest.fixture
@@ -67,7 +67,7 @@ def test_whereabouts_are_the_nearest_first(space):
 
 
 def test_what_would_take_too_long_is_refused(space, monkeypatch):
-    monkeypatch.setattr("nodes.kb_node.relations.asked.MOST_PAIRS", 10)
+    monkeypatch.setattr("semmap.nodes.kb_node.relations.asked.MOST_PAIRS", 10)
     asked = Asked(space)
     for _ in range(10):
         asked.related("isOn", "plate1", "table1")

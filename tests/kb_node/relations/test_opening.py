@@ -5,13 +5,13 @@ import math
 import pytest
 from msgspec import structs
 
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.geometry.fitting import fitted
-from nodes.kb_node.relations.geometry.opening import opened, positions_of
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.telling import relations
-from ontology.model_shapes import own_size_m, shapes
-from schemas.commands import Relations
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.geometry.fitting import fitted
+from semmap.nodes.kb_node.relations.geometry.opening import opened, positions_of
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.telling import relations
+from semmap.ontology.model_shapes import own_size_m, shapes
+from semmap.schemas.commands import Relations
 from tests.kb_node.relations.made import ROOM, thing
 
 CHEST = thing("chest1", (0.0, 0.0, 0.0), "drawer")

@@ -2,11 +2,11 @@
 
 import pytest
 
-from nodes.kb_node.relations.measuring.phrases import SPOKEN
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.telling import explained, relations
-from schemas import errors
-from schemas.commands import Relations
+from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.telling import explained, relations
+from semmap.schemas import errors
+from semmap.schemas.commands import Relations
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
 
 FRIDGE = thing("fridge1", (2.0, -2.0, 0.0))

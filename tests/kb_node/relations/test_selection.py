@@ -1,10 +1,10 @@
 import pytest
 
-from nodes.kb_node.relations.facts.beside import Beside
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.selection import meant, only_meant, selected
-from schemas import errors
-from schemas.relations import Where
+from semmap.nodes.kb_node.relations.facts.beside import Beside
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.selection import meant, only_meant, selected
+from semmap.schemas import errors
+from semmap.schemas.relations import Where
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
 
 MAP = [

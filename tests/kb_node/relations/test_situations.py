@@ -3,10 +3,10 @@
 import pytest
 
 from benchmarks.relations.situations import SITUATIONS, TABLE, TOP, about_y, on_table
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.telling import relations
-from schemas.commands import Relations
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.telling import relations
+from semmap.schemas.commands import Relations
 
 
 def test_there_are_sixty():

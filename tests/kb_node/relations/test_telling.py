@@ -1,9 +1,9 @@
 import pytest
 
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.telling import relations, whereabouts
-from schemas import errors
-from schemas.commands import Relations
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.telling import relations, whereabouts
+from semmap.schemas import errors
+from semmap.schemas.commands import Relations
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
 
 MAP = [

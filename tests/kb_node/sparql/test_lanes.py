@@ -5,12 +5,12 @@ import signal
 import pytest
 from msgspec import Raw, msgpack
 
-from nodes.kb_node.sparql import lanes
-from nodes.kb_node.sparql.lanes import AT_LENGTH, LANES, Lanes
-from nodes.kb_node.sparql.protocol import Dismiss, Hire, Left, Outcome, questions
-from schemas import errors
-from schemas.commands import Sparql
-from schemas.sparql import SparqlResult
+from semmap.nodes.kb_node.sparql import lanes
+from semmap.nodes.kb_node.sparql.lanes import AT_LENGTH, LANES, Lanes
+from semmap.nodes.kb_node.sparql.protocol import Dismiss, Hire, Left, Outcome, questions
+from semmap.schemas import errors
+from semmap.schemas.commands import Sparql
+from semmap.schemas.sparql import SparqlResult
 from tests.conftest import until
 
 WAIT_S = 30.0

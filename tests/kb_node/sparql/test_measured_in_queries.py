@@ -5,13 +5,13 @@ import random
 
 import pytest
 
-from nodes.kb_node.relations.facts.beside import beside
-from nodes.kb_node.relations.telling import explained
-from nodes.kb_node.sparql.protocol import Surrounded
-from nodes.kb_node.sparql.service import SparqlService
-from ontology import vocabulary as v
-from schemas.commands import Sparql, Watch
-from schemas.commits import Edit, Transaction
+from semmap.nodes.kb_node.relations.facts.beside import beside
+from semmap.nodes.kb_node.relations.telling import explained
+from semmap.nodes.kb_node.sparql.protocol import Surrounded
+from semmap.nodes.kb_node.sparql.service import SparqlService
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commands import Sparql, Watch
+from semmap.schemas.commits import Edit, Transaction
 
 WAIT_S = 60.0
 ALL = "SELECT ?x ?y {{ ?x dm:{} ?y }}"

@@ -5,10 +5,10 @@ import random
 
 import pytest
 
-from nodes.kb_node.sparql.service import SparqlService
-from ontology import vocabulary as v
-from schemas.commands import Sparql, Watch
-from schemas.commits import Edit, Transaction
+from semmap.nodes.kb_node.sparql.service import SparqlService
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commands import Sparql, Watch
+from semmap.schemas.commits import Edit, Transaction
 
 WAIT_S = 60.0
 COMMITS = 300

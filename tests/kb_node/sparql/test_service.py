@@ -10,19 +10,19 @@ import pyoxigraph as ox
 import pytest
 from msgspec import structs
 
-from nodes.kb_node.beliefs import Beliefs
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.sparql import readers
-from nodes.kb_node.sparql.queries import text
-from nodes.kb_node.sparql.service import SparqlService
-from nodes.kb_node.sparql.triples.consequences import inferred
-from ontology import FLAT_TTL, HOUSEHOLD_TTL, stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Renew, Sparql, Watch
-from schemas.commits import Commit, Departed
-from schemas.entities import Pose
+from semmap.nodes.kb_node.beliefs import Beliefs
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.sparql import readers
+from semmap.nodes.kb_node.sparql.queries import text
+from semmap.nodes.kb_node.sparql.service import SparqlService
+from semmap.nodes.kb_node.sparql.triples.consequences import inferred
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Renew, Sparql, Watch
+from semmap.schemas.commits import Commit, Departed
+from semmap.schemas.entities import Pose
 from tests.kb_node import home
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 

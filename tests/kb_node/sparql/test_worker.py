@@ -5,11 +5,11 @@ from multiprocessing.connection import Pipe, wait
 import pytest
 from msgspec import msgpack
 
-from nodes.kb_node.sparql import worker
-from nodes.kb_node.sparql.protocol import Committed, Hire, Left, Load, Question, outcomes
-from nodes.kb_node.sparql.triples.dataset import Delta
-from ontology import vocabulary as v
-from schemas.sparql import SparqlResult
+from semmap.nodes.kb_node.sparql import worker
+from semmap.nodes.kb_node.sparql.protocol import Committed, Hire, Left, Load, Question, outcomes
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.ontology import vocabulary as v
+from semmap.schemas.sparql import SparqlResult
 from tests.conftest import until
 from tests.kb_node import home
 

@@ -2,10 +2,10 @@
 
 from msgspec import structs
 
-from nodes.kb_node.storage import changelog, history
-from nodes.kb_node.storage.changelog import Changelog
-from nodes.kb_node.storage.journal import Journal
-from schemas.commands import History
+from semmap.nodes.kb_node.storage import changelog, history
+from semmap.nodes.kb_node.storage.changelog import Changelog
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.schemas.commands import History
 from tests.kb_node import home
 from tests.kb_node.home import transaction
 from tests.kb_node.stating import TBOX, adding, edited, stated, statement, unstated

@@ -1,8 +1,8 @@
 import pytest
 
-from nodes.kb_node.reasoner import compiled
-from nodes.kb_node.storage import closure_cache, conclusions_format
-from ontology import vocabulary as v
+from semmap.nodes.kb_node.reasoner import compiled
+from semmap.nodes.kb_node.storage import closure_cache, conclusions_format
+from semmap.ontology import vocabulary as v
 from tests.kb_node.home import TBOX
 
 CHAIR, OBJECT = v.dm("Chair"), v.dm("Object")

@@ -5,18 +5,18 @@ from __future__ import annotations
 import hashlib
 import re
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.entities.entity_reading import read_entity
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.reasoner.abox.columns import Columns, KindSaid
-from nodes.kb_node.reasoner.rules import facts
-from nodes.kb_node.reasoner.rules.rule_table import TABLE
-from nodes.kb_node.storage.conclusions_format import FORMAT
-from nodes.kb_node.storage.journal import Checkpoint
-from ontology import vocabulary as v
-from schemas import codec
-from schemas.entities import Entity, Pose, Provenance
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.entities.entity_reading import read_entity
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.abox.columns import Columns, KindSaid
+from semmap.nodes.kb_node.reasoner.rules import facts
+from semmap.nodes.kb_node.reasoner.rules.rule_table import TABLE
+from semmap.nodes.kb_node.storage.conclusions_format import FORMAT
+from semmap.nodes.kb_node.storage.journal import Checkpoint
+from semmap.ontology import vocabulary as v
+from semmap.schemas import codec
+from semmap.schemas.entities import Entity, Pose, Provenance
 
 DIGESTS = {
     "rules": "866c583d92a0dbe7",

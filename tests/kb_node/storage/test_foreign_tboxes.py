@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.kb_node.documents.tbox import tbox_notes
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.seed import seed
-from ontology import vocabulary as v
+from semmap.nodes.kb_node.documents.tbox import tbox_notes
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.seed import seed
+from semmap.ontology import vocabulary as v
 from tests.data import data_folder
 from tests.kb_node.home import transaction
 

@@ -2,12 +2,12 @@ from datetime import datetime
 
 import pytest
 
-from nodes.kb_node.storage.history import Past
-from ontology import stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import History
-from schemas.entities import Pose
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import History
+from semmap.schemas.entities import Pose
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 

@@ -1,10 +1,10 @@
 import pytest
 
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.seed import KEPT, seed
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.seed import KEPT, seed
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from tests.kb_node.home import PREFIXES, TBOX_TURTLE
 
 ABOX = (

@@ -2,9 +2,9 @@
 
 import math
 
-from nodes.language.finding.finding import find
-from nodes.language.finding.known import Item, Known, Terms
-from schemas import errors
+from semmap.nodes.language.finding.finding import find
+from semmap.nodes.language.finding.known import Item, Known, Terms
+from semmap.schemas import errors
 
 CLASSES = {
     "Thing": ("thing", "cosa"),

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from nodes.language.finding import telling
-from nodes.language.finding.finding import find
-from nodes.language.finding.known import Known
-from schemas import errors
+from semmap.nodes.language.finding import telling
+from semmap.nodes.language.finding.finding import find
+from semmap.nodes.language.finding.known import Known
+from semmap.schemas import errors
 from tests.language.finding.kitchen import ITEMS, TERMS, Written, found, item, known
 from tests.language.finding.phrases import PHRASES
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from nodes.language.finding import telling
-from nodes.language.finding.finding import find
-from nodes.language.finding.missing import missing
+from semmap.nodes.language.finding import telling
+from semmap.nodes.language.finding.finding import find
+from semmap.nodes.language.finding.missing import missing
 from tests.language.finding.kitchen import Written, item, known
 from tests.language.finding.phrases import PHRASES
 

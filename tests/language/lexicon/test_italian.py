@@ -2,7 +2,7 @@
 
 import pytest
 
-from nodes.language.lexicon.italian import _inflected, italian, singulars
+from semmap.nodes.language.lexicon.italian import _inflected, italian, singulars
 
 
 @pytest.mark.parametrize(

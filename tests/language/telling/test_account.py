@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.language.telling import account
-from nodes.language.telling.inventory import Inventory, Place, Thing
+from semmap.nodes.language.telling import account
+from semmap.nodes.language.telling.inventory import Inventory, Place, Thing
 
 
 def kitchen():

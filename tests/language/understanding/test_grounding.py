@@ -5,8 +5,8 @@ import random
 
 import pytest
 
-from nodes.language.understanding.grounding import Thing, called, distance
-from nodes.language.understanding.interpretation import shipped
+from semmap.nodes.language.understanding.grounding import Thing, called, distance
+from semmap.nodes.language.understanding.interpretation import shipped
 from tests.language.household import LEXICON, THINGS, there
 
 

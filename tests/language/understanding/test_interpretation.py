@@ -4,8 +4,8 @@ import random
 
 import pytest
 
-from nodes.language.understanding.grounding import Thing
-from nodes.language.understanding.interpretation import shipped
+from semmap.nodes.language.understanding.grounding import Thing
+from semmap.nodes.language.understanding.interpretation import shipped
 from tests.language.household import THINGS, there
 
 

@@ -4,13 +4,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.language.languages import language_of
-from nodes.language.lexicon.italian import italian as lexicon
-from nodes.language.lexicon.italian import singulars
-from nodes.language.understanding import italian
-from nodes.language.understanding.interpretation import shipped
-from nodes.training.language import made
-from nodes.training.language.household import household
+from semmap.nodes.language.languages import language_of
+from semmap.nodes.language.lexicon.italian import italian as lexicon
+from semmap.nodes.language.lexicon.italian import singulars
+from semmap.nodes.language.understanding import italian
+from semmap.nodes.language.understanding.interpretation import shipped
+from semmap.nodes.training.language import made
+from semmap.nodes.training.language.household import household
 from tests.language.household import there
 
 

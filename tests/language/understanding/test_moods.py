@@ -2,7 +2,7 @@
 
 import pytest
 
-from nodes.language.understanding.interpretation import shipped
+from semmap.nodes.language.understanding.interpretation import shipped
 from tests.language.household import there
 
 

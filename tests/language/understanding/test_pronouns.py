@@ -2,8 +2,8 @@
 
 import pytest
 
-from nodes.language.understanding.grounding import Thing
-from nodes.language.understanding.interpretation import shipped
+from semmap.nodes.language.understanding.grounding import Thing
+from semmap.nodes.language.understanding.interpretation import shipped
 from tests.language.household import there
 
 THINGS = (

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nodes.language.understanding import slots
+from semmap.nodes.language.understanding import slots
 from tests.data import data_folder
 
 

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from nodes.perception_node.fitting.model_surfaces import ModelSurface, shipped
-from schemas.entities import Pose, orientation_from_yaw
+from semmap.nodes.perception_node.fitting.model_surfaces import ModelSurface, shipped
+from semmap.schemas.entities import Pose, orientation_from_yaw
 
 EYE = np.array([1.2, 0.0, 1.5])
 TOP_M = 0.7

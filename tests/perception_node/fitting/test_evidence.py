@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from nodes.perception_node.fitting.evidence import borne_out, not_seen_through, spacing_m
-from nodes.perception_node.fitting.model_surfaces import ModelSurface
-from nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.fitting.evidence import borne_out, not_seen_through, spacing_m
+from semmap.nodes.perception_node.fitting.model_surfaces import ModelSurface
+from semmap.nodes.perception_node.input.cloud import Cloud
 
 WITHIN_M = 0.01
 

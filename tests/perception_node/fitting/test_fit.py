@@ -8,9 +8,9 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from nodes.perception_node.fitting.fit import angle_between, fitted, quaternion
-from nodes.perception_node.fitting.model_surfaces import shipped
-from nodes.sim_node.models.parts import rotation_matrix
+from semmap.nodes.perception_node.fitting.fit import angle_between, fitted, quaternion
+from semmap.nodes.perception_node.fitting.model_surfaces import shipped
+from semmap.nodes.sim_node.models.parts import rotation_matrix
 from tests.perception_node.fitting.seen import EYE, TOP_M, box, model, rotation, shown
 
 pytestmark = pytest.mark.skipif(find_spec("open3d") is None, reason="Open3D is not installed")

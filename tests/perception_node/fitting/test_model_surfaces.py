@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.fitting.model_surfaces import load, save, shipped
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.fitting.model_surfaces import load, save, shipped
+from semmap.schemas.errors import BadFile
 from tests.perception_node.fitting.seen import model
 
 

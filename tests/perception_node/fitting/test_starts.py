@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from nodes.perception_node.fitting.model_surfaces import ModelSurface
-from nodes.perception_node.fitting.starts import (
+from semmap.nodes.perception_node.fitting.model_surfaces import ModelSurface
+from semmap.nodes.perception_node.fitting.starts import (
     in_proportion,
     off_by,
     placed,

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from nodes.perception_node.fitting.fit import Fit, angle_between
-from nodes.perception_node.fitting.model_surfaces import shipped as surfaces
-from nodes.perception_node.fitting.things import all_fitted, fit_of, strays, with_fit
-from nodes.perception_node.pipeline import look
-from nodes.perception_node.recognition.shipped_votes import shipped
-from nodes.sim_node.models.parts import rotation_matrix
-from schemas.entities import Pose, orientation_from_yaw
+from semmap.nodes.perception_node.fitting.fit import Fit, angle_between
+from semmap.nodes.perception_node.fitting.model_surfaces import shipped as surfaces
+from semmap.nodes.perception_node.fitting.things import all_fitted, fit_of, strays, with_fit
+from semmap.nodes.perception_node.pipeline import look
+from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.sim_node.models.parts import rotation_matrix
+from semmap.schemas.entities import Pose, orientation_from_yaw
 from tests.perception_node.fitting.seen import box, model, shown
 from tests.perception_node.scenes import shot
 from tests.perception_node.things import at, seen

@@ -7,13 +7,13 @@ import math
 import pytest
 from msgspec import structs
 
-from nodes.perception_node.fitting.fit import Fit
-from nodes.perception_node.fitting.tracked import known_fit, known_of, request_fit
-from nodes.perception_node.fitting.worker import Request
-from nodes.perception_node.pipeline import Look
-from schemas.commands import Update
-from schemas.entities import orientation_from_yaw
-from schemas.perception import Observations
+from semmap.nodes.perception_node.fitting.fit import Fit
+from semmap.nodes.perception_node.fitting.tracked import known_fit, known_of, request_fit
+from semmap.nodes.perception_node.fitting.worker import Request
+from semmap.nodes.perception_node.pipeline import Look
+from semmap.schemas.commands import Update
+from semmap.schemas.entities import orientation_from_yaw
+from semmap.schemas.perception import Observations
 from tests.perception_node.things import CLASSES, CONFIG, Table, at, entity, seen
 
 CUP = seen("Cup", at(0, 0, yaw=0.2))

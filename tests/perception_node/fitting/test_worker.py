@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import threading
 
-from nodes.perception_node.fitting.worker import FitWorker, Request
-from nodes.perception_node.pipeline import Look
-from schemas.perception import Observations
+from semmap.nodes.perception_node.fitting.worker import FitWorker, Request
+from semmap.nodes.perception_node.pipeline import Look
+from semmap.schemas.perception import Observations
 from tests.conftest import until
 from tests.perception_node.things import at, seen
 

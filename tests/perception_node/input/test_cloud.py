@@ -5,7 +5,7 @@ from dataclasses import FrozenInstanceError
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.cloud import Cloud
 
 
 def depths(values, rows=1):

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from nodes.perception_node.input import frames as module
-from nodes.perception_node.input.frames import Frames, Pair, Plane, read_cloud, read_masks
-from nodes.perception_node.input.projection import thinning
-from schemas.errors import BadRequest
-from schemas.perception import DetectedMasks, MaskImage, MaskRun
-from schemas.scenes import CameraFrame
+from semmap.nodes.perception_node.input import frames as module
+from semmap.nodes.perception_node.input.frames import Frames, Pair, Plane, read_cloud, read_masks
+from semmap.nodes.perception_node.input.projection import thinning
+from semmap.schemas.errors import BadRequest
+from semmap.schemas.perception import DetectedMasks, MaskImage, MaskRun
+from semmap.schemas.scenes import CameraFrame
 
 DEPTH = CameraFrame(
     camera="left",

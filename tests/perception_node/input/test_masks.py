@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.perception_node.input.masks import Said, of_image, of_numbers, of_runs
-from schemas.perception import MaskImage, MaskRun
+from semmap.nodes.perception_node.input.masks import Said, of_image, of_numbers, of_runs
+from semmap.schemas.perception import MaskImage, MaskRun
 
 
 def runs(mask):

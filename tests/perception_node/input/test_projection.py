@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.projection import cloud_of, fits, is_pose
+from semmap.nodes.perception_node.input.projection import cloud_of, fits, is_pose
 
 INTRINSICS = np.array([[100.0, 0.0, 2.0], [0.0, 100.0, 1.0], [0.0, 0.0, 1.0]])
 

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.recognition.features import SORTS, features_of
-from nodes.perception_node.views.merged_thing import thing_of
-from nodes.perception_node.views.segments import Segment
-from nodes.perception_node.views.supports import Support
+from semmap.nodes.perception_node.recognition.features import SORTS, features_of
+from semmap.nodes.perception_node.views.merged_thing import thing_of
+from semmap.nodes.perception_node.views.segments import Segment
+from semmap.nodes.perception_node.views.supports import Support
 
 TRIMMED = slice(22, None)
 """The columns of `geometry` that leave 3 % of the cells and more out at each end."""

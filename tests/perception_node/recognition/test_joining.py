@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.recognition.joining import between, near, signs, worth_trying
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, shipped
-from nodes.perception_node.views.merged_thing import thing_of
-from nodes.perception_node.views.segments import Segment
-from nodes.perception_node.views.supports import Support
+from semmap.nodes.perception_node.recognition.joining import between, near, signs, worth_trying
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, shipped
+from semmap.nodes.perception_node.views.merged_thing import thing_of
+from semmap.nodes.perception_node.views.segments import Segment
+from semmap.nodes.perception_node.views.supports import Support
 
 CLASSES = shipped().classes
 

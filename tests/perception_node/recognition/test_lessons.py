@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nodes.perception_node.pipeline import parts_in, shipped
-from nodes.perception_node.recognition.features import features_of
-from nodes.perception_node.recognition.lessons import Lesson, taught
-from nodes.perception_node.recognition.likeness import WIDTH
-from nodes.perception_node.recognition.recognise import recognise
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN
-from nodes.perception_node.recognition.vote import leaves
-from nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.pipeline import parts_in, shipped
+from semmap.nodes.perception_node.recognition.features import features_of
+from semmap.nodes.perception_node.recognition.lessons import Lesson, taught
+from semmap.nodes.perception_node.recognition.likeness import WIDTH
+from semmap.nodes.perception_node.recognition.recognise import recognise
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN
+from semmap.nodes.perception_node.recognition.vote import leaves
+from semmap.nodes.perception_node.views.segmented_view import see
 from tests.perception_node.scenes import shot
 
 MUG = Lesson(3, "Mug_of_mine", ("Tableware", "Object"), np.zeros((2, WIDTH)), (0.1, 0.08, 0.09), "", 0)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.pipeline import parts_in
-from nodes.perception_node.recognition import likeness
-from nodes.perception_node.recognition.features import features_of
-from nodes.perception_node.recognition.likeness import COLOUR, GEOMETRY, SHAPE, WIDTH, views_of
-from nodes.perception_node.views.segmented_view import see
-from nodes.training.recognition.samples import shared_pixels
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.pipeline import parts_in
+from semmap.nodes.perception_node.recognition import likeness
+from semmap.nodes.perception_node.recognition.features import features_of
+from semmap.nodes.perception_node.recognition.likeness import COLOUR, GEOMETRY, SHAPE, WIDTH, views_of
+from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.training.recognition.samples import shared_pixels
+from semmap.schemas.errors import BadFile
 from tests.perception_node.scenes import KINDS, shot
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from nodes.perception_node.recognition.novelty import Novelty, signs
+from semmap.nodes.perception_node.recognition.novelty import Novelty, signs
 
 SPACE = Novelty(
     mean=np.array([1.0, 0.0, 0.0]),

@@ -3,11 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nodes.perception_node.recognition.features import SORTS, features_of
-from nodes.perception_node.recognition.outlines import WIDTH
-from nodes.perception_node.views.merged_thing import thing_of
-from nodes.perception_node.views.segments import Segment
-from nodes.perception_node.views.supports import Support
+from semmap.nodes.perception_node.recognition.features import SORTS, features_of
+from semmap.nodes.perception_node.recognition.outlines import WIDTH
+from semmap.nodes.perception_node.views.merged_thing import thing_of
+from semmap.nodes.perception_node.views.segments import Segment
+from semmap.nodes.perception_node.views.supports import Support
 
 WIDE, HIGH, LONG = slice(0, 20), slice(20, 30), slice(30, 40)
 OFF_A_CIRCLE, ITS_SIZE, THICK = slice(40, 44), slice(44, 48), slice(48, 52)

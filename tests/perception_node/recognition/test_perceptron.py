@@ -5,7 +5,7 @@ from dataclasses import FrozenInstanceError
 import numpy as np
 import pytest
 
-from nodes.perception_node.recognition.perceptron import REACH, Perceptron, log_softmax
+from semmap.nodes.perception_node.recognition.perceptron import REACH, Perceptron, log_softmax
 
 PLAIN = Perceptron(
     mean=np.array([1.0, 2.0]),

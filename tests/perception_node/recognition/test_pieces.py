@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nodes.perception_node.recognition.pieces import put_together
-from nodes.perception_node.recognition.shipped_votes import shipped
-from nodes.perception_node.views.merged_thing import thing_of
-from nodes.perception_node.views.supports import Support
+from semmap.nodes.perception_node.recognition.pieces import put_together
+from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.views.merged_thing import thing_of
+from semmap.nodes.perception_node.views.supports import Support
 from tests.perception_node.scenes import shot
 from tests.perception_node.views.test_fusion import truly_cut
 

@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nodes.perception_node.recognition.features import SORTS, features_of
-from nodes.perception_node.recognition.relief import RELIEF
+from semmap.nodes.perception_node.recognition.features import SORTS, features_of
+from semmap.nodes.perception_node.recognition.relief import RELIEF
 from tests.perception_node.recognition.test_outlines import BOTTLE, solid, thing, turned
 
 SIDE = 12

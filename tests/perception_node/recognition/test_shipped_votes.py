@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.recognition.features import SORTS
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, load, save, shipped
-from nodes.perception_node.recognition.vote import leaves
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.recognition.features import SORTS
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, load, save, shipped
+from semmap.nodes.perception_node.recognition.vote import leaves
+from semmap.schemas.errors import BadFile
 
 
 def random_features(learnt, count=5):

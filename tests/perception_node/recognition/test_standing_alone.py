@@ -3,9 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nodes.perception_node.recognition.recognise import recognise
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, shipped
-from nodes.perception_node.recognition.standing_alone import stand_alone
+from semmap.nodes.perception_node.recognition.recognise import recognise
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, shipped
+from semmap.nodes.perception_node.recognition.standing_alone import stand_alone
 from tests.perception_node.recognition.test_features import block
 
 THING = block(((0.0, 0.0, 0.0), (0.2, 0.1, 0.1)))

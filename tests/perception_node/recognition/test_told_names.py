@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN
-from nodes.perception_node.recognition.told_names import Labels, told_class, with_names
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN
+from semmap.nodes.perception_node.recognition.told_names import Labels, told_class, with_names
 
 LEARNT = SimpleNamespace(
     classes=("Fork", "Spoon", "Book", UNKNOWN, CLUTTER),

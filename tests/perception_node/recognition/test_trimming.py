@@ -1,9 +1,9 @@
 import numpy as np
 
-from nodes.perception_node.recognition.features import features_of
-from nodes.perception_node.recognition.shipped_votes import shipped
-from nodes.perception_node.recognition.trimming import looked_at_again, trim
-from nodes.perception_node.recognition.vote import leaves
+from semmap.nodes.perception_node.recognition.features import features_of
+from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.recognition.trimming import looked_at_again, trim
+from semmap.nodes.perception_node.recognition.vote import leaves
 from tests.perception_node.recognition.test_features import ALONE, WITH_A_SCRAP
 
 

@@ -3,10 +3,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from nodes.perception_node.recognition.features import SORTS
-from nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS
-from nodes.perception_node.recognition.vote import (
+from semmap.nodes.perception_node.recognition.features import SORTS
+from semmap.nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS
+from semmap.nodes.perception_node.recognition.vote import (
     answer,
     ballots,
     expected_sizes,

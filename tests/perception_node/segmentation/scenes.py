@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.cloud import Cloud
 
 FOCAL_PX = 525.0
 WIDTH, HEIGHT = 640, 480

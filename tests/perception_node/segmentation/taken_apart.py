@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nodes.perception_node.segmentation.segment import Parts, taken_apart
+from semmap.nodes.perception_node.segmentation.segment import Parts, taken_apart
 from tests.perception_node.segmentation.scenes import Seen
 
 

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nodes.perception_node.pipeline import look
-from nodes.perception_node.recognition.shipped_votes import shipped
-from nodes.perception_node.segmentation.gravity import level_plane, room_pose
-from nodes.perception_node.segmentation.planes import Plane
-from nodes.perception_node.segmentation.working_picture import grid_of
-from nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.pipeline import look
+from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.segmentation.gravity import level_plane, room_pose
+from semmap.nodes.perception_node.segmentation.planes import Plane
+from semmap.nodes.perception_node.segmentation.working_picture import grid_of
+from semmap.nodes.perception_node.views.segmented_view import see
 from tests.perception_node.scenes import KINDS, shot
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.test_patches import SCENES

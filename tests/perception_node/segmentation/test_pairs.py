@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from nodes.perception_node.segmentation import statistics as s
-from nodes.perception_node.segmentation.pairs import NAMES, candidates, features
+from semmap.nodes.perception_node.segmentation import statistics as s
+from semmap.nodes.perception_node.segmentation.pairs import NAMES, candidates, features
 
 PLAIN_BORDER = {
     s.TOUCH: 10.0,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.segmentation.patches import patches
+from semmap.nodes.perception_node.segmentation.patches import patches
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.taken_apart import apart
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.segmentation.picture import as_picture
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.segmentation.picture import as_picture
 from tests.perception_node.segmentation.scenes import boxes_on_table
 
 SEEN = boxes_on_table(((-0.1, -0.1, 0.0), (0.1, 0.1, 0.2)))

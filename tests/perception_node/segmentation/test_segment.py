@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.segmentation import segment
-from nodes.perception_node.segmentation.shipped_trees import load, save, shipped
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.segmentation import segment
+from semmap.nodes.perception_node.segmentation.shipped_trees import load, save, shipped
+from semmap.schemas.errors import BadFile
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.test_patches import SCENES
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.segmentation import statistics as s
-from nodes.perception_node.segmentation.pairs import NAMES, candidates, features
+from semmap.nodes.perception_node.segmentation import statistics as s
+from semmap.nodes.perception_node.segmentation.pairs import NAMES, candidates, features
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.taken_apart import apart
 

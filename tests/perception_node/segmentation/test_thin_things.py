@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.segmentation import segment
-from nodes.perception_node.segmentation.planes import find_planes
-from nodes.perception_node.segmentation.thin_things import thin_things
-from nodes.perception_node.segmentation.working_picture import grid_of
-from nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.segmentation import segment
+from semmap.nodes.perception_node.segmentation.planes import find_planes
+from semmap.nodes.perception_node.segmentation.thin_things import thin_things
+from semmap.nodes.perception_node.segmentation.working_picture import grid_of
+from semmap.nodes.perception_node.views.segmented_view import see
 from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 
 TABLE = ((-0.6, -0.5, 0.70), (0.6, 0.5, 0.75))

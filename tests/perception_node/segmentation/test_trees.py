@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from nodes.perception_node.segmentation.trees import LEAVES
-from nodes.training.segmentation.fit import trees_of
+from semmap.nodes.perception_node.segmentation.trees import LEAVES
+from semmap.nodes.training.segmentation.fit import trees_of
 
 RNG = np.random.default_rng(0)
 X = RNG.normal(size=(600, 7)).astype(np.float32)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.segmentation.working_picture import grid_of, shades_of, spread
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.segmentation.working_picture import grid_of, shades_of, spread
 from tests.perception_node.segmentation.scenes import boxes_on_table
 
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.perception_node.tracking.assignment import Candidate, assign, match
-from nodes.perception_node.tracking.costs import Target
-from nodes.perception_node.tracking.tracks import Track
-from nodes.perception_node.tracking.votes import Votes
+from semmap.nodes.perception_node.tracking.assignment import Candidate, assign, match
+from semmap.nodes.perception_node.tracking.costs import Target
+from semmap.nodes.perception_node.tracking.tracks import Track
+from semmap.nodes.perception_node.tracking.votes import Votes
 from tests.perception_node.things import CLASSES, CONFIG, SIZES, at, seen
 
 EMPTY, FILLED, HIDDEN = (lambda pose, size_m, it=it: it for it in ("free", "occupied", "unknown"))

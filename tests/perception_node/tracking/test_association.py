@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.perception_node.tracking.association import associate, renamed
-from nodes.perception_node.tracking.tracks import Tracks
-from schemas.commands import Add, Remove, Update
-from schemas.perception import DISPLACED, MISSING
+from semmap.nodes.perception_node.tracking.association import associate, renamed
+from semmap.nodes.perception_node.tracking.tracks import Tracks
+from semmap.schemas.commands import Add, Remove, Update
+from semmap.schemas.perception import DISPLACED, MISSING
 from tests.perception_node.things import CLASSES, CONFIG, SIZES, Table, at, entity, seen
 
 

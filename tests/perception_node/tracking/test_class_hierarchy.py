@@ -1,5 +1,5 @@
-from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy, hierarchy_of
-from schemas.entities import ClassInfo
+from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy, hierarchy_of
+from semmap.schemas.entities import ClassInfo
 
 
 def test_the_class_table_tells_the_hierarchy_and_the_labels():

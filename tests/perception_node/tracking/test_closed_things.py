@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.projection import cloud_of
-from nodes.perception_node.tracking.occupancy import occupancy_in
-from nodes.sim_node.vision.raycast import raycast
-from nodes.sim_node.vision.view import look_at
-from nodes.sim_node.world import World
-from schemas.commands import Remove
-from schemas.entities import Pose
-from schemas.scenes import BodyOrder, JointOrder
+from semmap.nodes.perception_node.input.projection import cloud_of
+from semmap.nodes.perception_node.tracking.occupancy import occupancy_in
+from semmap.nodes.sim_node.vision.raycast import raycast
+from semmap.nodes.sim_node.vision.view import look_at
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.commands import Remove
+from semmap.schemas.entities import Pose
+from semmap.schemas.scenes import BodyOrder, JointOrder
 from tests.perception_node.things import CONFIG, Table, entity
 from tests.sim_node.orders import bodies
 

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.perception_node.tracking.class_hierarchy import ANYTHING
-from nodes.perception_node.tracking.costs import (
+from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING
+from semmap.nodes.perception_node.tracking.costs import (
     FORBIDDEN,
     Target,
     class_difference,

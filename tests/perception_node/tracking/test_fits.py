@@ -5,8 +5,8 @@ from dataclasses import FrozenInstanceError
 
 import pytest
 
-from nodes.perception_node.tracking.fits import KnownFit
-from schemas.entities import orientation_from_yaw
+from semmap.nodes.perception_node.tracking.fits import KnownFit
+from semmap.schemas.entities import orientation_from_yaw
 from tests.perception_node.things import at
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.perception_node.tracking.fronts import is_front
-from nodes.perception_node.tracking.overlap import OrientedBox
-from schemas.commands import Update
+from semmap.nodes.perception_node.tracking.fronts import is_front
+from semmap.nodes.perception_node.tracking.overlap import OrientedBox
+from semmap.schemas.commands import Update
 from tests.perception_node.things import CONFIG, Table, at, seen
 
 OVEN = OrientedBox(at(1.0, 1.0, 0.0), (0.6, 0.6, 0.9))

@@ -2,9 +2,9 @@ import math
 
 import pytest
 
-from nodes.perception_node.tracking.legs import is_leg
-from nodes.perception_node.tracking.overlap import OrientedBox
-from schemas.entities import Pose
+from semmap.nodes.perception_node.tracking.legs import is_leg
+from semmap.nodes.perception_node.tracking.overlap import OrientedBox
+from semmap.schemas.entities import Pose
 
 TURN = math.pi / 6
 CHAIR = (0.45, 0.45, 0.9)

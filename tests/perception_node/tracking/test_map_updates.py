@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 from msgspec import structs
 
-from nodes.perception_node.tracking.class_hierarchy import ANYTHING
-from nodes.perception_node.tracking.fits import KnownFit
-from nodes.perception_node.tracking.map_updates import (
+from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING
+from semmap.nodes.perception_node.tracking.fits import KnownFit
+from semmap.nodes.perception_node.tracking.map_updates import (
     AGENT,
     additions,
     has_moved,
@@ -19,11 +19,11 @@ from nodes.perception_node.tracking.map_updates import (
     update_of,
     with_load,
 )
-from nodes.perception_node.tracking.tracks import Track
-from nodes.perception_node.tracking.votes import Votes
-from schemas.commands import Add, Remove, Undo, Update
-from schemas.entities import Provenance, orientation_from_yaw
-from schemas.perception import DISPLACED, MISSING
+from semmap.nodes.perception_node.tracking.tracks import Track
+from semmap.nodes.perception_node.tracking.votes import Votes
+from semmap.schemas.commands import Add, Remove, Undo, Update
+from semmap.schemas.entities import Provenance, orientation_from_yaw
+from semmap.schemas.perception import DISPLACED, MISSING
 from tests.perception_node.things import CLASSES, CONFIG, SIZES, at, entity
 
 MARK = replace(CONFIG, when_gone="mark")

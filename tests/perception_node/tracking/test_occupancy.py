@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.projection import cloud_of
-from nodes.perception_node.tracking.occupancy import occupancy_in
-from schemas.entities import Pose, orientation_from_yaw
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.projection import cloud_of
+from semmap.nodes.perception_node.tracking.occupancy import occupancy_in
+from semmap.schemas.entities import Pose, orientation_from_yaw
 
 WIDTH, HEIGHT, FOCAL = 320, 240, 300.0
 INTRINSICS = np.array([[FOCAL, 0.0, WIDTH / 2], [0.0, FOCAL, HEIGHT / 2], [0.0, 0.0, 1.0]])

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, left_behind, share
+from semmap.nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, left_behind, share
 from tests.perception_node.things import at
 
 CUP = (0.08, 0.08, 0.1)

@@ -8,10 +8,10 @@ from dataclasses import replace
 import pytest
 from msgspec import structs
 
-from nodes.perception_node.tracking.class_hierarchy import ANYTHING
-from nodes.perception_node.tracking.fits import KnownFit
-from nodes.perception_node.tracking.tracks import Track, slack_m, turn_between, turned_like
-from schemas.entities import Size
+from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING
+from semmap.nodes.perception_node.tracking.fits import KnownFit
+from semmap.nodes.perception_node.tracking.tracks import Track, slack_m, turn_between, turned_like
+from semmap.schemas.entities import Size
 from tests.perception_node.things import CLASSES, CONFIG, SIZES, at, seen
 
 COUCH: Size = (2.0, 0.9, 0.85)

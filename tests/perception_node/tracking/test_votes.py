@@ -1,8 +1,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.perception_node.tracking.class_hierarchy import ANYTHING
-from nodes.perception_node.tracking.votes import Votes
+from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING
+from semmap.nodes.perception_node.tracking.votes import Votes
 from tests.perception_node.things import CLASSES
 
 looks = st.lists(st.tuples(st.sampled_from(["Cup", "Tableware", "Bottle", "Object"]), st.floats(0.1, 1.0)))

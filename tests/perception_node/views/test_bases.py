@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.views.bases import supports_of_things
-from nodes.perception_node.views.merged_thing import thing_of
-from nodes.perception_node.views.segments import Segment
-from nodes.perception_node.views.supports import Support
+from semmap.nodes.perception_node.views.bases import supports_of_things
+from semmap.nodes.perception_node.views.merged_thing import thing_of
+from semmap.nodes.perception_node.views.segments import Segment
+from semmap.nodes.perception_node.views.supports import Support
 
 FLOOR = Support(0.0)
 CABINET_M = (1.4, 0.4, 0.5)

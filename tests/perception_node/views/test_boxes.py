@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.perception_node.views.boxes import Box, best_yaw, box_around, in_frame
+from semmap.nodes.perception_node.views.boxes import Box, best_yaw, box_around, in_frame
 
 YAWS = st.floats(-3.0, 3.0)
 

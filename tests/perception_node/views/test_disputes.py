@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from nodes.perception_node.views.disputes import settled
-from nodes.perception_node.views.fusion import fuse
-from nodes.perception_node.views.segmented_view import labelled, see
+from semmap.nodes.perception_node.views.disputes import settled
+from semmap.nodes.perception_node.views.fusion import fuse
+from semmap.nodes.perception_node.views.segmented_view import labelled, see
 from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 
 BOXES = (((-0.1, -0.05, 0.0), (0.0, 0.05, 0.12)), ((0.0, -0.05, 0.0), (0.1, 0.05, 0.2)))

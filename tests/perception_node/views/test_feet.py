@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.views.feet import supports_at_feet
-from nodes.perception_node.views.furniture_planes import EVERY
-from nodes.perception_node.views.merged_thing import thing_of
-from nodes.perception_node.views.segmented_view import Sight
-from nodes.perception_node.views.segments import Segment
-from nodes.perception_node.views.supports import Support
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.views.feet import supports_at_feet
+from semmap.nodes.perception_node.views.furniture_planes import EVERY
+from semmap.nodes.perception_node.views.merged_thing import thing_of
+from semmap.nodes.perception_node.views.segmented_view import Sight
+from semmap.nodes.perception_node.views.segments import Segment
+from semmap.nodes.perception_node.views.supports import Support
 
 TOP_M = 0.9
 FLOOR = Support(0.0)

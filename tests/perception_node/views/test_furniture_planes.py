@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.segmentation import Plane, Segmentation
-from nodes.perception_node.views.furniture_planes import (
+from semmap.nodes.perception_node.segmentation import Plane, Segmentation
+from semmap.nodes.perception_node.views.furniture_planes import (
     _box,
     _stands_free,
     _touching,
     with_furniture,
     with_what_hangs_below,
 )
-from nodes.perception_node.views.segments import Segment
+from semmap.nodes.perception_node.views.segments import Segment
 
 
 def segment(low, high, *, carrier=False) -> Segment:

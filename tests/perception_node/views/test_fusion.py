@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nodes.perception_node.views.fusion import fuse, held_for_one
-from nodes.perception_node.views.segmented_view import labelled, see
+from semmap.nodes.perception_node.views.fusion import fuse, held_for_one
+from semmap.nodes.perception_node.views.segmented_view import labelled, see
 from tests.perception_node.scenes import shot
 
 

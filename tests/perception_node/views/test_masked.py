@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from nodes.perception_node.input.masks import Masks, Said
-from nodes.perception_node.pipeline import look
-from nodes.perception_node.recognition.shipped_votes import shipped
-from nodes.perception_node.recognition.told_names import Labels
-from nodes.perception_node.views.masked import with_masks
-from nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.input.masks import Masks, Said
+from semmap.nodes.perception_node.pipeline import look
+from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.recognition.told_names import Labels
+from semmap.nodes.perception_node.views.masked import with_masks
+from semmap.nodes.perception_node.views.segmented_view import see
 from tests.perception_node.scenes import KINDS, shot
 
 CLASSES = {"cereals": "Cereals", "apple": "Apple", "bottle": "Bottle", "basket": "Basket"}

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.views.merged_thing import thing_of
-from nodes.perception_node.views.segments import Segment
-from nodes.perception_node.views.supports import Support
+from semmap.nodes.perception_node.views.merged_thing import thing_of
+from semmap.nodes.perception_node.views.segments import Segment
+from semmap.nodes.perception_node.views.supports import Support
 
 RNG = np.random.default_rng(0)
 

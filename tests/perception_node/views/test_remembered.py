@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.projection import cloud_of
-from nodes.perception_node.views import remembered
-from nodes.perception_node.views.remembered import Remembered, completed, joined
-from nodes.perception_node.views.segmented_view import Sight
-from nodes.perception_node.views.segments import cut_out
+from semmap.nodes.perception_node.input.projection import cloud_of
+from semmap.nodes.perception_node.views import remembered
+from semmap.nodes.perception_node.views.remembered import Remembered, completed, joined
+from semmap.nodes.perception_node.views.segmented_view import Sight
+from semmap.nodes.perception_node.views.segments import cut_out
 
 WIDTH, HEIGHT, FOCAL = 160, 120, 120.0
 BOARD_M, WALL_M, SCREEN_M = 2.0, 3.0, 1.0

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.views.segmented_view import see
 from tests.perception_node.scenes import shot
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.views.segments import MOST_POINTS, cut_out, in_map, map_points
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.views.segments import MOST_POINTS, cut_out, in_map, map_points
 from tests.perception_node.segmentation.scenes import camera_pose
 
 POSE = camera_pose()

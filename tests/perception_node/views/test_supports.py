@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.views.supports import Support, height_below, support_of
+from semmap.nodes.perception_node.views.supports import Support, height_below, support_of
 
 TABLE = Support(0.7, (0.0, 0.0), (0.8, 1.4), 1.12)
 FLOOR = Support(0.0, (2.0, 2.0), (3.0, 3.0), 1.0)

@@ -3,7 +3,7 @@ from collections.abc import Iterator
 import pytest
 import rerun.blueprint as rrb
 
-from nodes.recorder.drawing.blueprint import Bounds, bounds_of, layout
+from semmap.nodes.recorder.drawing.blueprint import Bounds, bounds_of, layout
 from tests.recorder.messages import pose
 
 

@@ -1,5 +1,5 @@
-from nodes.drawing.neighbourhood import Knot, Link, Neighbourhood
-from nodes.recorder.drawing.graph import MANY, graph_of, nodes_and_edges
+from semmap.nodes.drawing.neighbourhood import Knot, Link, Neighbourhood
+from semmap.nodes.recorder.drawing.graph import MANY, graph_of, nodes_and_edges
 from tests.recorder.messages import entity
 
 ENTITIES = {

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.drawing.palette import colour_of
-from nodes.recorder.drawing import perception_archetypes as archetypes
-from nodes.recorder.recording import open_recording
-from schemas.entities import Pose
-from schemas.perception import Observation, Observations, SegmentedCloud
-from schemas.scenes import CameraFrame
+from semmap.nodes.drawing.palette import colour_of
+from semmap.nodes.recorder.drawing import perception_archetypes as archetypes
+from semmap.nodes.recorder.recording import open_recording
+from semmap.schemas.entities import Pose
+from semmap.schemas.perception import Observation, Observations, SegmentedCloud
+from semmap.schemas.scenes import CameraFrame
 from tests.recorder.files import column
 from tests.recorder.messages import START_NS
 

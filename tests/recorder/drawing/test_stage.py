@@ -3,12 +3,12 @@ import pytest
 import rerun as rr
 from msgspec import structs
 
-from nodes.drawing.figures import figure_of
-from nodes.drawing.neighbourhood import Knot, Neighbourhood
-from nodes.recorder.drawing.geometry import shape_of
-from nodes.recorder.drawing.stage import Stage
-from schemas.entities import Pose
-from schemas.polygons import EXTENT, box_around, read_wkt
+from semmap.nodes.drawing.figures import figure_of
+from semmap.nodes.drawing.neighbourhood import Knot, Neighbourhood
+from semmap.nodes.recorder.drawing.geometry import shape_of
+from semmap.nodes.recorder.drawing.stage import Stage
+from semmap.schemas.entities import Pose
+from semmap.schemas.polygons import EXTENT, box_around, read_wkt
 from tests.recorder.messages import body, entity, pose
 
 

@@ -1,8 +1,8 @@
 from msgspec import structs
 
-from nodes.recorder.state.map_relations import Relations, is_relation, missed
-from ontology import vocabulary as v
-from schemas.commits import PlaceChanges
+from semmap.nodes.recorder.state.map_relations import Relations, is_relation, missed
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import PlaceChanges
 from tests.recorder.messages import commit, entity, relation, star
 
 ON = relation("cup1", "isOn", "table1")

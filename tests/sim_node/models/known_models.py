@@ -6,12 +6,12 @@ from functools import cache
 
 import numpy as np
 
-from nodes.perception_node.fitting.model_surfaces import ModelSurface, shipped
-from nodes.sim_node.models.convex_parts import convex_part
-from nodes.sim_node.models.library import Model, build
-from nodes.sim_node.models.parts import Role
-from nodes.training.model_surfaces import library_models, outside_m
-from ontology.model_shapes import ConvexPart, ModelShape, shapes
+from semmap.nodes.perception_node.fitting.model_surfaces import ModelSurface, shipped
+from semmap.nodes.sim_node.models.convex_parts import convex_part
+from semmap.nodes.sim_node.models.library import Model, build
+from semmap.nodes.sim_node.models.parts import Role
+from semmap.nodes.training.model_surfaces import library_models, outside_m
+from semmap.ontology.model_shapes import ConvexPart, ModelShape, shapes
 
 _WITHIN_M = 0.001
 """The knowledge base's file is rounded to a tenth of a millimetre."""

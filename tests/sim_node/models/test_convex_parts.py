@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.convex_parts import convex_part
-from nodes.sim_node.models.parts import about, ball, box, mesh, pill, rod
+from semmap.nodes.sim_node.models.convex_parts import convex_part
+from semmap.nodes.sim_node.models.parts import about, ball, box, mesh, pill, rod
 
 RED = (1.0, 0.0, 0.0)
 QUARTER = about("z", math.pi / 2)

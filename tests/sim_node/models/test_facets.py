@@ -3,10 +3,10 @@ import math
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.facets import facets, surface_of
-from nodes.sim_node.models.library import build
-from nodes.sim_node.models.parts import Mesh, Part, Shape, about, ball, box, pill, rod
-from nodes.sim_node.models.variety_table import KINDS
+from semmap.nodes.sim_node.models.facets import facets, surface_of
+from semmap.nodes.sim_node.models.library import build
+from semmap.nodes.sim_node.models.parts import Mesh, Part, Shape, about, ball, box, pill, rod
+from semmap.nodes.sim_node.models.variety_table import KINDS
 
 RED = (1.0, 0.0, 0.0)
 TILTED = about("x", 0.7)

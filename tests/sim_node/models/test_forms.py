@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from nodes.sim_node.models import forms
-from nodes.sim_node.models.parts import Joint, Role, Shape, bounds, box, felt, moving, rotation_matrix
+from semmap.nodes.sim_node.models import forms
+from semmap.nodes.sim_node.models.parts import Joint, Role, Shape, bounds, box, felt, moving, rotation_matrix
 
 RED = (0.5, 0.2, 0.0)
 

@@ -4,9 +4,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.library import ModelError, assemble, build, check_size
-from nodes.sim_node.models.parts import Joint, Role, bounds, box, moving, seen
-from nodes.sim_node.models.variety_table import KINDS
+from semmap.nodes.sim_node.models.library import ModelError, assemble, build, check_size
+from semmap.nodes.sim_node.models.parts import Joint, Role, bounds, box, moving, seen
+from semmap.nodes.sim_node.models.variety_table import KINDS
 
 HOUSEHOLD = Path(__file__).parents[3] / "ontology" / "household.ttl"
 

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from nodes.sim_node.models.sources import Models
-from nodes.sim_node.models.write_shapes import own_notes, own_shapes
-from nodes.sim_node.world import World
-from schemas.scenes import JointOrder
+from semmap.nodes.sim_node.models.sources import Models
+from semmap.nodes.sim_node.models.write_shapes import own_notes, own_shapes
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.scenes import JointOrder
 from tests.sim_node.orders import bodies, order, pose
 
 CHEST = """<mujoco>

@@ -1,10 +1,10 @@
 import pytest
 import trimesh
 
-from nodes.sim_node.models.library import ModelError
-from nodes.sim_node.models.parts import Role, Shape
-from nodes.sim_node.models.sources import Models
-from nodes.sim_node.world import World
+from semmap.nodes.sim_node.models.library import ModelError
+from semmap.nodes.sim_node.models.parts import Role, Shape
+from semmap.nodes.sim_node.models.sources import Models
+from semmap.nodes.sim_node.world import World
 from tests.sim_node.orders import order, pose
 
 MJCF = """

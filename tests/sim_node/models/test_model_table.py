@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.library import build
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.variety_table import VARIETIES
+from semmap.nodes.sim_node.models.library import build
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.models.variety_table import VARIETIES
 from tests.sim_node.models.known_models import differences
 
 OWN = [name for name in MODELS if name not in VARIETIES]

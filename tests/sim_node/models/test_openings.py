@@ -4,13 +4,13 @@ import math
 
 import pytest
 
-from nodes.sim_node.models import openings
-from nodes.sim_node.models.forms import WHITE
-from nodes.sim_node.models.library import build
-from nodes.sim_node.models.parts import bounds, box, moved
-from nodes.sim_node.models.variety_table import KINDS
-from nodes.sim_node.world import World
-from schemas.scenes import JointOrder
+from semmap.nodes.sim_node.models import openings
+from semmap.nodes.sim_node.models.forms import WHITE
+from semmap.nodes.sim_node.models.library import build
+from semmap.nodes.sim_node.models.parts import bounds, box, moved
+from semmap.nodes.sim_node.models.variety_table import KINDS
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.scenes import JointOrder
 from tests.sim_node.models.known_models import differences
 from tests.sim_node.orders import bodies, order, pose, spawned
 

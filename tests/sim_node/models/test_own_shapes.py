@@ -2,9 +2,9 @@
 
 import pytest
 
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.sim_node.models.write_shapes import own_shapes, write_own
-from ontology import model_shapes
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.sim_node.models.write_shapes import own_shapes, write_own
+from semmap.ontology import model_shapes
 from tests.kb_node.relations.made import thing
 
 PLINTH = """<mujoco><worldbody>
@@ -40,7 +40,7 @@ def test_the_knowledge_base_reads_them_and_an_entity_without_a_size_has_its_mode
     write_own(folder, target)
     known = dict(model_shapes.shapes())
     monkeypatch.setattr(model_shapes, "shapes", lambda: known)
-    monkeypatch.setattr("nodes.kb_node.relations.geometry.fitting.shapes", model_shapes.shapes)
+    monkeypatch.setattr("semmap.nodes.kb_node.relations.geometry.fitting.shapes", model_shapes.shapes)
     model_shapes.add_own(target)
     facts = Facts()
     facts.update([thing("plinth1", (0.0, 0.0, 0.0)), thing("cup1", (0.1, 0.0, 0.5))])

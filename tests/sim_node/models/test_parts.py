@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.sim_node.models.facets import facets
-from nodes.sim_node.models.parts import (
+from semmap.nodes.sim_node.models.facets import facets
+from semmap.nodes.sim_node.models.parts import (
     ALONG_X,
     ALONG_Y,
     UPRIGHT,

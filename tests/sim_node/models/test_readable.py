@@ -6,8 +6,8 @@ import os
 
 import pytest
 
-from nodes.sim_node.models.library import ModelError
-from nodes.sim_node.models.sources import Models
+from semmap.nodes.sim_node.models.library import ModelError
+from semmap.nodes.sim_node.models.sources import Models
 
 BOX = '<mujoco>{}<worldbody><body><geom type="box" size=".1 .1 .1"/></body></worldbody></mujoco>'
 

@@ -4,9 +4,9 @@ import os
 
 import pytest
 
-from nodes.sim_node.models.library import ModelError
-from nodes.sim_node.models.library import build as built_in
-from nodes.sim_node.models.sources import Models, is_one_of, passed_over
+from semmap.nodes.sim_node.models.library import ModelError
+from semmap.nodes.sim_node.models.library import build as built_in
+from semmap.nodes.sim_node.models.sources import Models, is_one_of, passed_over
 
 MODELS = {"chair", "table", "sofa.obj", "/elsewhere/lamp.stl"}
 PLINTH = """<mujoco><worldbody><body>

@@ -6,14 +6,14 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.forms import hollow_box, slab
-from nodes.sim_node.models.library import assemble, build
-from nodes.sim_node.models.parts import UPRIGHT, about, ball, box, mesh, pill, product, rod, seen
-from nodes.sim_node.models.spaces import _cut, shape_of
-from nodes.sim_node.models.variety_table import KINDS
-from nodes.sim_node.models.write_shapes import as_json, library_shapes
-from nodes.sim_node.physics.build import add_part
-from ontology import MODEL_SHAPES_JSON
+from semmap.nodes.sim_node.models.forms import hollow_box, slab
+from semmap.nodes.sim_node.models.library import assemble, build
+from semmap.nodes.sim_node.models.parts import UPRIGHT, about, ball, box, mesh, pill, product, rod, seen
+from semmap.nodes.sim_node.models.spaces import _cut, shape_of
+from semmap.nodes.sim_node.models.variety_table import KINDS
+from semmap.nodes.sim_node.models.write_shapes import as_json, library_shapes
+from semmap.nodes.sim_node.physics.build import add_part
+from semmap.ontology import MODEL_SHAPES_JSON
 
 
 def heights(model):

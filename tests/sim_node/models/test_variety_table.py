@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.library import build
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.variety_table import KINDS, VARIETIES
-from ontology.model_shapes import shapes
+from semmap.nodes.sim_node.models.library import build
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.models.variety_table import KINDS, VARIETIES
+from semmap.ontology.model_shapes import shapes
 from tests.sim_node.models.known_models import differences
 
 

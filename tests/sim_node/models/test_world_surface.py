@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.world_surface import body_surface, world_surface
+from semmap.nodes.sim_node.models.world_surface import body_surface, world_surface
 
 ROOM = """<mujoco>
   <asset>

@@ -6,10 +6,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.physics import base_scene
-from nodes.sim_node.physics.build import IMPEDANCE
-from nodes.sim_node.vision.view import camera_view, look_at
-from schemas.errors import BadFile
+from semmap.nodes.sim_node.physics import base_scene
+from semmap.nodes.sim_node.physics.build import IMPEDANCE
+from semmap.nodes.sim_node.vision.view import camera_view, look_at
+from semmap.schemas.errors import BadFile
 
 
 def spec(body="", *, more="", option=""):

@@ -4,8 +4,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.physics.body_slots import Berth
-from nodes.sim_node.world import World
+from semmap.nodes.sim_node.physics.body_slots import Berth
+from semmap.nodes.sim_node.world import World
 from tests.sim_node.orders import hand, order, pose
 
 KINDS = ("chair", "cup", "vase", "apple", "table")

@@ -8,10 +8,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.library import build as library_model
-from nodes.sim_node.models.parts import Role, Shape, ball, box, felt, mesh, pill, rod, seen
-from nodes.sim_node.orders import newcomers
-from nodes.sim_node.physics import build
+from semmap.nodes.sim_node.models.library import build as library_model
+from semmap.nodes.sim_node.models.parts import Role, Shape, ball, box, felt, mesh, pill, rod, seen
+from semmap.nodes.sim_node.orders import newcomers
+from semmap.nodes.sim_node.physics import build
 from tests.sim_node.orders import order, pose
 
 RED = (1.0, 0.0, 0.0)

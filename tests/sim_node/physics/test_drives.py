@@ -4,9 +4,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.bodies import BodyIndex
-from nodes.sim_node.physics.drives import STEPS_A_PUSH, Drives
-from schemas.joints import Joint
+from semmap.nodes.sim_node.bodies import BodyIndex
+from semmap.nodes.sim_node.physics.drives import STEPS_A_PUSH, Drives
+from semmap.schemas.joints import Joint
 from tests.sim_node.test_bodies import record
 
 SCENE = """<mujoco>

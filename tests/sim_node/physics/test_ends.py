@@ -5,9 +5,9 @@ import itertools
 import mujoco
 import pytest
 
-from nodes.sim_node.physics.ends import Ends
-from nodes.sim_node.world import World
-from schemas.scenes import JointOrder
+from semmap.nodes.sim_node.physics.ends import Ends
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.scenes import JointOrder
 from tests.sim_node.orders import bodies
 
 STOVE = """<mujoco><compiler angle="radian"/><custom>

@@ -4,12 +4,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.library import build as library_model
-from nodes.sim_node.orders import newcomers
-from nodes.sim_node.physics import base_scene
-from nodes.sim_node.physics.engine import Engine
-from nodes.sim_node.vision.view import look_at
-from schemas.entities import Pose, distance_m
+from semmap.nodes.sim_node.models.library import build as library_model
+from semmap.nodes.sim_node.orders import newcomers
+from semmap.nodes.sim_node.physics import base_scene
+from semmap.nodes.sim_node.physics.engine import Engine
+from semmap.nodes.sim_node.vision.view import look_at
+from semmap.schemas.entities import Pose, distance_m
 from tests.sim_node.orders import order, pose
 
 KITCHEN = """<mujoco><worldbody>
@@ -327,7 +327,7 @@ def test_the_stage_has_bodies_where_they_are_now():
 
 
 def test_others_are_heard_while_it_compiles_and_then_it_does_not(monkeypatch):
-    monkeypatch.setattr("nodes.sim_node.physics.build._PATIENCE_S", 0.0)
+    monkeypatch.setattr("semmap.nodes.sim_node.physics.build._PATIENCE_S", 0.0)
     heard, engines = [], []
     world = Engine(base_scene.bare_floor(), lambda: heard.extend(one.compiling for one in engines))
     engines.append(world)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.parts import about
-from nodes.sim_node.physics.rest import ASLEEP_S, STILL_M, STILL_RAD, STILL_S, JointWatch, RestWatch
+from semmap.nodes.sim_node.models.parts import about
+from semmap.nodes.sim_node.physics.rest import ASLEEP_S, STILL_M, STILL_RAD, STILL_S, JointWatch, RestWatch
 
 
 def at(*places, turn_rad=0.0):

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.physics import sleep
+from semmap.nodes.sim_node.physics import sleep
 
 BOXES = """<mujoco><option><flag sleep="enable"/></option><worldbody>
   <geom type="plane" size="0 0 1"/>

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.physics.walls import walls
+from semmap.nodes.sim_node.physics.walls import walls
 
 TETRAHEDRON = "0 0 0  1 0 0  0 1 0  0 0 2"
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.library import build
-from nodes.sim_node.orders import newcomers
-from nodes.sim_node.placement.obstacles import GROUND
-from nodes.sim_node.world import World
+from semmap.nodes.sim_node.models.library import build
+from semmap.nodes.sim_node.orders import newcomers
+from semmap.nodes.sim_node.placement.obstacles import GROUND
+from semmap.nodes.sim_node.world import World
 from tests.sim_node.orders import order, pose
 
 BOX = (0.4, 0.4, 0.4)

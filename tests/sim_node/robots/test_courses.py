@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.bodies import BodyIndex
-from nodes.sim_node.models.parts import about
-from nodes.sim_node.robots.courses import Courses, actuators
+from semmap.nodes.sim_node.bodies import BodyIndex
+from semmap.nodes.sim_node.models.parts import about
+from semmap.nodes.sim_node.robots.courses import Courses, actuators
 from tests.sim_node.test_bodies import record
 
 

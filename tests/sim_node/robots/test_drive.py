@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from schemas import errors
+from semmap.schemas import errors
 from tests.conftest import running, until
 
 

@@ -7,9 +7,9 @@ import signal
 
 import pytest
 
-from nodes import bus
-from schemas import errors, keys
-from schemas.scenes import Scene, SceneQuery
+from semmap.nodes import bus
+from semmap.schemas import errors, keys
+from semmap.schemas.scenes import Scene, SceneQuery
 from tests.conftest import running, until
 
 ROBOT = ("robot1", "robot1_gripper")

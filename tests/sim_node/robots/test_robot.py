@@ -8,15 +8,15 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.config import RobotConfig
-from nodes.sim_node.models.sources import Models
-from nodes.sim_node.robots.robot import SHIPPED
-from nodes.sim_node.vision.view import camera_names, camera_view
-from nodes.sim_node.world_file import open_world
-from ontology import FLAT_WORLD
-from schemas.entities import Pose, compose
-from schemas.errors import BadFile, Refused
-from schemas.scenes import BodyOrder, DriveBase, Placement
+from semmap.nodes.sim_node.config import RobotConfig
+from semmap.nodes.sim_node.models.sources import Models
+from semmap.nodes.sim_node.robots.robot import SHIPPED
+from semmap.nodes.sim_node.vision.view import camera_names, camera_view
+from semmap.nodes.sim_node.world_file import open_world
+from semmap.ontology import FLAT_WORLD
+from semmap.schemas.entities import Pose, compose
+from semmap.schemas.errors import BadFile, Refused
+from semmap.schemas.scenes import BodyOrder, DriveBase, Placement
 
 AT = (7.5, 2.0, 0.0)
 

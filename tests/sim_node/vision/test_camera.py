@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.sim_node.vision.camera import Eye, picture_png
-from nodes.sim_node.vision.offscreen import open_gl
-from nodes.sim_node.vision.view import camera_view, look_at, overview
-from nodes.sim_node.world import World
-from schemas.errors import BadRequest
+from semmap.nodes.sim_node.vision.camera import Eye, picture_png
+from semmap.nodes.sim_node.vision.offscreen import open_gl
+from semmap.nodes.sim_node.vision.view import camera_view, look_at, overview
+from semmap.nodes.sim_node.world import World
+from semmap.schemas.errors import BadRequest
 from tests.sim_node.orders import order, pose
 
 

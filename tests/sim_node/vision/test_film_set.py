@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from nodes.sim_node.vision.film_set import FilmSet
-from schemas.errors import BadRequest
+from semmap.nodes.sim_node.vision.film_set import FilmSet
+from semmap.schemas.errors import BadRequest
 from tests.sim_node.orders import order, pose
 
 KITCHEN = """<mujoco><worldbody><geom type="plane" size="9 9 1"/>

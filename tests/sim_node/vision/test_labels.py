@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from nodes.sim_node.vision.labels import free_place, projected, written
-from nodes.sim_node.vision.view import look_at
+from semmap.nodes.sim_node.vision.labels import free_place, projected, written
+from semmap.nodes.sim_node.vision.view import look_at
 
 
 def test_a_point_is_where_the_camera_sees_it():

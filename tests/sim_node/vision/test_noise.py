@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nodes.sim_node.vision.noise import kinect_noise
+from semmap.nodes.sim_node.vision.noise import kinect_noise
 
 
 @pytest.mark.parametrize(("distance_m", "sigma_m"), [(1.0, 0.003), (2.0, 0.010), (4.0, 0.035)])

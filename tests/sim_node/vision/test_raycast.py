@@ -4,8 +4,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.vision.raycast import raycast
-from nodes.sim_node.vision.view import look_at
+from semmap.nodes.sim_node.vision.raycast import raycast
+from semmap.nodes.sim_node.vision.view import look_at
 
 SCENE = """<mujoco>
   <asset>

@@ -5,10 +5,10 @@ import threading
 import numpy as np
 import pytest
 
-from nodes.sim_node.config import CameraConfig
-from nodes.sim_node.vision.studio import Still, Studio, segment_bodies
-from nodes.sim_node.vision.view import overview
-from nodes.sim_node.world import World
+from semmap.nodes.sim_node.config import CameraConfig
+from semmap.nodes.sim_node.vision.studio import Still, Studio, segment_bodies
+from semmap.nodes.sim_node.vision.view import overview
+from semmap.nodes.sim_node.world import World
 from tests.sim_node.orders import order, pose
 
 RAYS = {"graphics": False, "width": 16, "height": 12}

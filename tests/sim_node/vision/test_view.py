@@ -8,8 +8,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from nodes.sim_node.models.parts import rotation_matrix
-from nodes.sim_node.vision.view import (
+from semmap.nodes.sim_node.models.parts import rotation_matrix
+from semmap.nodes.sim_node.vision.view import (
     View,
     bulk,
     camera_names,
@@ -20,7 +20,7 @@ from nodes.sim_node.vision.view import (
     pinhole,
     pixel_rays,
 )
-from schemas.errors import BadRequest
+from semmap.schemas.errors import BadRequest
 
 FLOOR = """<mujoco><worldbody>
   <camera name="down" pos="1 2 3" fovy="60"/>

@@ -2,10 +2,10 @@
 
 from benchmarks.language import trials
 from benchmarks.language.scoring import scores
-from nodes.language.understanding.interpretation import Interpreter
-from nodes.training.language import corpus, made
-from nodes.training.language.household import household
-from nodes.training.language.learning import learn
+from semmap.nodes.language.understanding.interpretation import Interpreter
+from semmap.nodes.training.language import corpus, made
+from semmap.nodes.training.language.household import household
+from semmap.nodes.training.language.learning import learn
 from tests.data import data_folder
 
 

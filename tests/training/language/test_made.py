@@ -1,9 +1,9 @@
 """Commands of our own making."""
 
-from nodes.language import lexicon
-from nodes.language.understanding import slots
-from nodes.training.language import made
-from nodes.training.language.household import household
+from semmap.nodes.language import lexicon
+from semmap.nodes.language.understanding import slots
+from semmap.nodes.training.language import made
+from semmap.nodes.training.language.household import household
 
 
 def test_every_pattern_can_be_drawn_and_means_what_it_says():

@@ -1,7 +1,7 @@
 import numpy as np
 
-from nodes.training.recognition import gathering
-from nodes.training.recognition.gathering import gather, joined, read
+from semmap.nodes.training.recognition import gathering
+from semmap.nodes.training.recognition.gathering import gather, joined, read
 
 
 def test_what_is_gathered_is_the_same_each_time_and_out_of_its_files(tmp_path):

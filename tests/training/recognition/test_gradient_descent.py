@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.training.recognition.fitting import classifier, regressor
-from nodes.training.recognition.gradient_descent import Recipe, descend
+from semmap.nodes.training.recognition.fitting import classifier, regressor
+from semmap.nodes.training.recognition.gradient_descent import Recipe, descend
 
 RNG = np.random.default_rng(3)
 POINTS = RNG.uniform(-1, 1, (1024, 2))

@@ -1,7 +1,7 @@
 import numpy as np
 
-from nodes.training.recognition.gradient_descent import Recipe
-from nodes.training.recognition.learn_familiar import learn_familiar
+from semmap.nodes.training.recognition.gradient_descent import Recipe
+from semmap.nodes.training.recognition.learn_familiar import learn_familiar
 
 NONE = 2
 LEAF = np.repeat([0, 1, NONE], 400)

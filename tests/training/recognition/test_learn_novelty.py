@@ -1,11 +1,11 @@
 import numpy as np
 
-from nodes.perception_node.recognition.features import SORTS
-from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS
-from nodes.perception_node.recognition.vote import ballots, pool, shown_to_voters
-from nodes.training.recognition.fitting import classifier
-from nodes.training.recognition.gradient_descent import Recipe
-from nodes.training.recognition.learn_novelty import Told, learn_novelty
+from semmap.nodes.perception_node.recognition.features import SORTS
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS
+from semmap.nodes.perception_node.recognition.vote import ballots, pool, shown_to_voters
+from semmap.nodes.training.recognition.fitting import classifier
+from semmap.nodes.training.recognition.gradient_descent import Recipe
+from semmap.nodes.training.recognition.learn_novelty import Told, learn_novelty
 
 CLASSES = (CLUTTER, UNKNOWN, *(f"Class{n}" for n in range(38)))
 UNKNOWN_AT = CLASSES.index(UNKNOWN)

@@ -1,7 +1,7 @@
 import numpy as np
 
-from nodes.training.recognition.__main__ import strangers
-from nodes.training.scenes.simulated_scenes import foreign_label
+from semmap.nodes.training.recognition.__main__ import strangers
+from semmap.nodes.training.scenes.simulated_scenes import foreign_label
 
 
 def test_foreign_things_are_numbered_and_our_own_are_not():

@@ -2,9 +2,9 @@ from dataclasses import fields
 
 import numpy as np
 
-from nodes.perception_node.recognition.features import MEAN_COLOUR
-from nodes.training.recognition.natural_colours import unnatural
-from nodes.training.recognition.samples import Samples
+from semmap.nodes.perception_node.recognition.features import MEAN_COLOUR
+from semmap.nodes.training.recognition.natural_colours import unnatural
+from semmap.nodes.training.recognition.samples import Samples
 
 GREEN, RED, BLUE, NONE = (0.3, 0.7, 0.2), (0.8, 0.2, 0.2), (0.1, 0.2, 0.9), (0.0, 0.0, 0.0)
 

@@ -1,6 +1,6 @@
 import numpy as np
 
-from nodes.training.recognition.neighbour_pairs import Pairs, pairs_of
+from semmap.nodes.training.recognition.neighbour_pairs import Pairs, pairs_of
 from tests.perception_node.scenes import HEIGHT_M, KINDS, item, shot
 
 

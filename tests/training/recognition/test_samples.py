@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.model_table import MODELS
-from nodes.training.recognition.samples import NOTHING, samples_of, true_box
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.training.recognition.samples import NOTHING, samples_of, true_box
 from tests.perception_node.scenes import HEIGHT_M, KINDS, item, shot, shot_of
 
 

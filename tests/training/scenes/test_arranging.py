@@ -2,7 +2,7 @@ from collections import Counter
 
 import numpy as np
 
-from nodes.training.scenes.arranging import heaps
+from semmap.nodes.training.scenes.arranging import heaps
 
 
 def test_heaps_hold_several_of_a_kind_on_a_table():

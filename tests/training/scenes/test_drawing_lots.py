@@ -6,14 +6,14 @@ import pytest
 import trimesh
 from PIL import Image
 
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.parts import bounds
-from nodes.training.scenes.drawing_lots import SMALL, of_model, small_things
-from nodes.training.scenes.families.table import FAMILIES
-from nodes.training.scenes.foreign_things import foreign_things, texture_of
-from nodes.training.scenes.simulated_scenes import STRANGE, foreign_class, tinted
-from nodes.training.scenes.strange_things import _lump, size_of, strange_parts
-from nodes.training.scenes.varieties import VARIETIES, any_size, carton, is_like_another
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.models.parts import bounds
+from semmap.nodes.training.scenes.drawing_lots import SMALL, of_model, small_things
+from semmap.nodes.training.scenes.families.table import FAMILIES
+from semmap.nodes.training.scenes.foreign_things import foreign_things, texture_of
+from semmap.nodes.training.scenes.simulated_scenes import STRANGE, foreign_class, tinted
+from semmap.nodes.training.scenes.strange_things import _lump, size_of, strange_parts
+from semmap.nodes.training.scenes.varieties import VARIETIES, any_size, carton, is_like_another
 
 
 @pytest.fixture

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nodes.training.scenes.paint import Paint, any_paint, painted, printed_on
+from semmap.nodes.training.scenes.paint import Paint, any_paint, painted, printed_on
 
 POINTS = np.random.default_rng(0).uniform(-1.0, 1.0, (500, 3)).astype(np.float32)
 SHADED = (np.linspace(60, 180, 500)[:, None] * [1.0, 0.2, 0.2]).astype(np.uint8)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nodes.training.scenes.placements import overlap, spread
+from semmap.nodes.training.scenes.placements import overlap, spread
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from nodes.training.scenes.solids import full, hollow, lathe, lump, smooth, tube
+from semmap.nodes.training.scenes.solids import full, hollow, lathe, lump, smooth, tube
 
 
 def volume_of(solid) -> float:

@@ -6,9 +6,9 @@ import functools
 
 import numpy as np
 
-from nodes.perception_node.segmentation.pairs import NAMES
-from nodes.training.segmentation.examples import example, joined, own_way, right_way
-from nodes.training.segmentation.fit import fit
+from semmap.nodes.perception_node.segmentation.pairs import NAMES
+from semmap.nodes.training.segmentation.examples import example, joined, own_way, right_way
+from semmap.nodes.training.segmentation.fit import fit
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.test_patches import SCENES
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.sim_node.vision.camera import Eye
-from nodes.training.segmentation.piles import pile
+from semmap.nodes.sim_node.vision.camera import Eye
+from semmap.nodes.training.segmentation.piles import pile
 
 
 @pytest.fixture(scope="module")

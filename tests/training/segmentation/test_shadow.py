@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.training.segmentation.shadow import shadowed
+from semmap.nodes.training.segmentation.shadow import shadowed
 
 
 def test_a_shadow_falls_to_the_left_and_is_as_wide_as_the_disparities_differ():

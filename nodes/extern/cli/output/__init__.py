@@ -11,10 +11,10 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from nodes.extern.cli.output import show as show
-    from nodes.extern.cli.output import show_past as show_past
-    from nodes.extern.cli.output import sparql_formats as sparql_formats
-    from nodes.extern.cli.output import tables as tables
+    from semmap.nodes.extern.cli.output import show as show
+    from semmap.nodes.extern.cli.output import show_past as show_past
+    from semmap.nodes.extern.cli.output import sparql_formats as sparql_formats
+    from semmap.nodes.extern.cli.output import tables as tables
 
 _LATE = {"show", "show_past", "sparql_formats", "tables"}
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from datetime import date, datetime
 
-from schemas import wording
-from schemas.explanations import Explanation
-from schemas.happenings import Difference
-from schemas.language import Found
-from schemas.relations import Relation
-from schemas.replies import Changed, Inferred, LoggedCommit, Moved
+from semmap.schemas import wording
+from semmap.schemas.explanations import Explanation
+from semmap.schemas.happenings import Difference
+from semmap.schemas.language import Found
+from semmap.schemas.relations import Relation
+from semmap.schemas.replies import Changed, Inferred, LoggedCommit, Moved
 
 _MOST = 20
 """Lines of what would follow, or would no longer; names of what a thing bears."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from schemas.language import Argument, Frame, Understood
+from semmap.schemas.language import Argument, Frame, Understood
 
 
 def document(understood: Understood) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from rich.cells import cell_len
 
-from nodes.extern.cli.output.printable import escaped
+from semmap.nodes.extern.cli.output.printable import escaped
 
 _BETWEEN = "  "
 

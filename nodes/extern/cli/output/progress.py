@@ -7,11 +7,11 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from nodes import bus
-from nodes.extern.cli.output.printable import say
-from nodes.extern.client import Client
-from schemas import keys
-from schemas.health import WORKING, Health
+from semmap.nodes import bus
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.client import Client
+from semmap.schemas import keys
+from semmap.schemas.health import WORKING, Health
 
 _PATIENCE_S = 2.0
 _AGAIN_S = 5.0

@@ -10,9 +10,9 @@ from rich.table import Table
 from rich.text import Text
 from rich.tree import Tree
 
-from nodes.extern.cli.output.printable import escaped
-from nodes.extern.cli.output.tables import card, printable, table
-from nodes.extern.phrasing import (
+from semmap.nodes.extern.cli.output.printable import escaped
+from semmap.nodes.extern.cli.output.tables import card, printable, table
+from semmap.nodes.extern.phrasing import (
     author,
     english,
     labelled,
@@ -21,15 +21,15 @@ from nodes.extern.phrasing import (
     provenance_text,
     size_text,
 )
-from schemas import wording
-from schemas.changes import value_in_words
-from schemas.commits import Commit
-from schemas.entities import ClassInfo, Entity, PropertyInfo, Value
-from schemas.frames import Frame
-from schemas.grips import holder_of
-from schemas.joints import in_words
-from schemas.relations import Described, Relation
-from schemas.replies import SystemStatus
+from semmap.schemas import wording
+from semmap.schemas.changes import value_in_words
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo, Value
+from semmap.schemas.frames import Frame
+from semmap.schemas.grips import holder_of
+from semmap.schemas.joints import in_words
+from semmap.schemas.relations import Described, Relation
+from semmap.schemas.replies import SystemStatus
 
 _WIDE = 100_000
 _LEVEL = 1e-3

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 
 from rich.table import Table
 
-from nodes.extern.cli.output.lines import touched
-from nodes.extern.cli.output.tables import card, table
-from nodes.extern.phrasing import author, moment, pose_text, provenance_text
-from schemas.replies import LoggedCommit, Sighting
+from semmap.nodes.extern.cli.output.lines import touched
+from semmap.nodes.extern.cli.output.tables import card, table
+from semmap.nodes.extern.phrasing import author, moment, pose_text, provenance_text
+from semmap.schemas.replies import LoggedCommit, Sighting
 
 
 def history_table(commits: Iterable[LoggedCommit]) -> Table:

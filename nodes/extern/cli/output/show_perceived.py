@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
-from nodes.extern.cli.output.show import console
-from nodes.extern.cli.output.tables import table
-from schemas import wording
-from schemas.perception import FrameRow, Observation, SeenInFrame
+from semmap.nodes.extern.cli.output.show import console
+from semmap.nodes.extern.cli.output.tables import table
+from semmap.schemas import wording
+from semmap.schemas.perception import FrameRow, Observation, SeenInFrame
 
 if TYPE_CHECKING:
-    from nodes.perception_node.views.segmented_view import Sight
+    from semmap.nodes.perception_node.views.segmented_view import Sight
 
 _COLUMNS = ("object", "class", "probability", "points", "x", "y", "z", "yaw", "size [m]")
 

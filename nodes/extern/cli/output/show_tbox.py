@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from schemas.tbox_report import TBoxReport
+from semmap.schemas.tbox_report import TBoxReport
 
 _COLUMN = 15
 _FEW = 20

@@ -6,14 +6,14 @@ import json
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from nodes.extern.cli.output import plain
-from nodes.extern.cli.output.formats import Format
-from nodes.runtime import extras
-from ontology import vocabulary as v
-from ontology.prefixes import WELL_KNOWN, used_by
-from schemas import errors
-from schemas.explanations import Term
-from schemas.sparql import Row, RowsChanged, SparqlResult
+from semmap.nodes.extern.cli.output import plain
+from semmap.nodes.extern.cli.output.formats import Format
+from semmap.nodes.runtime import extras
+from semmap.ontology import vocabulary as v
+from semmap.ontology.prefixes import WELL_KNOWN, used_by
+from semmap.schemas import errors
+from semmap.schemas.explanations import Term
+from semmap.schemas.sparql import Row, RowsChanged, SparqlResult
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -26,7 +26,7 @@ def plain_table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Iterator[s
 
 def table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Table:
     """The same for a terminal."""
-    from nodes.extern.cli.output import tables
+    from semmap.nodes.extern.cli.output import tables
 
     shown = tables.table(*variables, fold=variables)
     for row in rows:

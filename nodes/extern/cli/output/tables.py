@@ -11,8 +11,8 @@ from rich.segment import Segment
 from rich.table import Column, Table
 from rich.text import Text
 
-from nodes.extern.cli.output import plain
-from nodes.extern.cli.output.printable import escaped
+from semmap.nodes.extern.cli.output import plain
+from semmap.nodes.extern.cli.output.printable import escaped
 
 _NARROWEST = 8
 """Characters: a column that folds keeps so many, if it has them."""

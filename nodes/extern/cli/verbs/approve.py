@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from nodes.extern.cli.calling import print_json, print_lines, talks
-from nodes.extern.cli.output.printable import escaped, quoted
-from schemas import errors
+from semmap.nodes.extern.cli.calling import print_json, print_lines, talks
+from semmap.nodes.extern.cli.output.printable import escaped, quoted
+from semmap.schemas import errors
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
-    from schemas.approvals import Request
+    from semmap.nodes.extern.client import Client
+    from semmap.schemas.approvals import Request
 
 _FEW = 4
 """Facts of a request that are shown; the others are counted."""

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli import output
-from nodes.extern.cli.angles import from_pose
-from nodes.extern.cli.calling import (
+from semmap.nodes.extern.cli import output
+from semmap.nodes.extern.cli.angles import from_pose
+from semmap.nodes.extern.cli.calling import (
     TIME,
     answered_by_robots,
     complain,
@@ -21,19 +21,19 @@ from nodes.extern.cli.calling import (
     print_lines,
     talks,
 )
-from nodes.extern.cli.completing import class_names, entity_names
-from nodes.extern.cli.negative_numbers import NegativeNumbers
-from nodes.extern.cli.output import lines
-from nodes.extern.cli.output.formats import FORMATS
-from nodes.extern.cli.output.printable import say
-from nodes.extern.cli.verbs import robots as of_robots
-from nodes.extern.cli.verbs import sparql as sparql_answers
-from nodes.extern.files import write_atomically
-from schemas import commands, errors, keys, roles
-from schemas.entities import Entity
+from semmap.nodes.extern.cli.completing import class_names, entity_names
+from semmap.nodes.extern.cli.negative_numbers import NegativeNumbers
+from semmap.nodes.extern.cli.output import lines
+from semmap.nodes.extern.cli.output.formats import FORMATS
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.cli.verbs import robots as of_robots
+from semmap.nodes.extern.cli.verbs import sparql as sparql_answers
+from semmap.nodes.extern.files import write_atomically
+from semmap.schemas import commands, errors, keys, roles
+from semmap.schemas.entities import Entity
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
+    from semmap.nodes.extern.client import Client
 
 _format = functools.partial(click.option, "--format", "format")
 _as_of = click.option("--as-of", metavar="COMMIT|TIME", help=f"The map after a commit or at a time. {TIME}")
@@ -319,7 +319,7 @@ def watch(client: Client, keyexpr: str, query: str | None, inferred: bool, **whe
     asks_where = any(word is not None for word in where.values())
     if (query is not None) + (keyexpr != keys.COMMIT.key) + asks_where > 1:
         raise errors.BadRequest("give one of: a key expression, --sparql, or --on, --in and --near")
-    from nodes.extern import availability
+    from semmap.nodes.extern import availability
 
     with availability.told(client, complain):
         if query is not None:
@@ -337,7 +337,7 @@ def _watch_key(client: Client, keyexpr: str) -> None:
         with client.commits() as commits:
             for commit in commits:
                 say(output.show.commit_line(commit))
-    from nodes import bus
+    from semmap.nodes import bus
 
     if client.identity is not None:
         followed = roles.followed(client.identity.role)

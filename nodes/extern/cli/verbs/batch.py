@@ -10,14 +10,14 @@ from typing import Any, Final, NoReturn
 
 import click
 
-from nodes.extern.cli.calling import print_lines, talks
-from nodes.extern.cli.output import lines
-from nodes.extern.cli.verbs.edit import set_, unset, update
-from nodes.extern.client import Client
-from nodes.extern.client_verbs import Verbs
-from nodes.extern.files import read_file
-from schemas import errors
-from schemas.commands import Command, Set, Unset, Update
+from semmap.nodes.extern.cli.calling import print_lines, talks
+from semmap.nodes.extern.cli.output import lines
+from semmap.nodes.extern.cli.verbs.edit import set_, unset, update
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.client_verbs import Verbs
+from semmap.nodes.extern.files import read_file
+from semmap.schemas import errors
+from semmap.schemas.commands import Command, Set, Unset, Update
 
 _VERBS: Final[dict[str, click.Command]] = {"update": update, "set": set_, "unset": unset}
 

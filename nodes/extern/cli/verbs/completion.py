@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from nodes.extern.cli import completing
+from semmap.nodes.extern.cli import completing
 
 
 @click.command()

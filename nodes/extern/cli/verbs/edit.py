@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli.angles import yaw_option
-from nodes.extern.cli.calling import carrying, frame_option, given, print_lines, talks, vector_option
-from nodes.extern.cli.completing import class_names, entity_names
-from nodes.extern.cli.negative_numbers import NegativeNumbers
-from nodes.extern.cli.ontology_options import import_option, spatial_root_option
-from nodes.extern.cli.output import lines
-from nodes.extern.cli.output.printable import say
-from nodes.extern.plan_files import is_plan, read_plan
-from schemas import errors
+from semmap.nodes.extern.cli.angles import yaw_option
+from semmap.nodes.extern.cli.calling import carrying, frame_option, given, print_lines, talks, vector_option
+from semmap.nodes.extern.cli.completing import class_names, entity_names
+from semmap.nodes.extern.cli.negative_numbers import NegativeNumbers
+from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from semmap.nodes.extern.cli.output import lines
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.plan_files import is_plan, read_plan
+from semmap.schemas import errors
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
+    from semmap.nodes.extern.client import Client
 
 
 def _options(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -168,7 +168,7 @@ def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
 @talks
 def clear(client: Client, dry_run: bool) -> None:
     """Remove all entities from the map and the scene."""
-    from nodes.extern.cli.output.progress import progress
+    from semmap.nodes.extern.cli.output.progress import progress
 
     with progress(client):
         reply = client.clear(dry_run=dry_run)
@@ -192,7 +192,7 @@ def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **ho
     A map is an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; a TBox comes with its imports.
     A plan is the .yaml of an occupancy grid of ROS's map server: its free space becomes rooms and doors.
     """
-    from nodes.extern.cli.output.progress import progress
+    from semmap.nodes.extern.cli.output.progress import progress
 
     with progress(client):
         try:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from nodes.extern.cli.calling import connect_option, identity_option, print_json
-from nodes.extern.cli.output.printable import say
-from nodes.extern.cli.verbs import sparql as sparql_answers
+from semmap.nodes.extern.cli.calling import connect_option, identity_option, print_json
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.cli.verbs import sparql as sparql_answers
 
 if TYPE_CHECKING:
-    from nodes.extern.fleet.asking import CopiedRobot
+    from semmap.nodes.extern.fleet.asking import CopiedRobot
 
 _robots = click.option(
     "--robots",
@@ -61,7 +61,7 @@ def mirror(
     One graph for each robot. It follows their commits until Ctrl-C, goes on where it was when it is started
     again, and waits for robots and servers that are down. The URL may have a user and a password.
     """
-    from nodes.extern.fleet import mirroring
+    from semmap.nodes.extern.fleet import mirroring
 
     def tell(text: str) -> None:
         say(f"{time.strftime('%H:%M:%S')}  {text}")
@@ -90,7 +90,7 @@ def sparql_(
     answer is the commit that each robot's graph is as of, and how many the robot is ahead if it can be
     reached. Predefined prefixes: dm: (TBox), : (ABox), fleet:, rdf:, rdfs:, owl:, xsd:.
     """
-    from nodes.extern.fleet.asking import sparql
+    from semmap.nodes.extern.fleet.asking import sparql
 
     answer = sparql(sparql_answers.read_query(query), query_url, robots, where=where, identity=identity)
     if format == "json":

@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli import output
-from nodes.extern.cli.calling import complain, given, print_json, talks
-from nodes.extern.cli.completing import entity_names
-from nodes.extern.cli.output.printable import say
-from nodes.runtime import extras
-from schemas import errors
-from schemas.wording import counted
+from semmap.nodes.extern.cli import output
+from semmap.nodes.extern.cli.calling import complain, given, print_json, talks
+from semmap.nodes.extern.cli.completing import entity_names
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors
+from semmap.schemas.wording import counted
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
-    from nodes.extern.frame_folders.frames import Recording
+    from semmap.nodes.extern.client import Client
+    from semmap.nodes.extern.frame_folders.frames import Recording
 
 _SAY_S = 5.0
 """After this time it is told again how far a recording is."""
@@ -112,8 +112,8 @@ def _folders(
 ) -> None:
     """Write the frames of a recording; what is wrong with one is told, and the others go on."""
     extras.require("semmap frames RECORDING DIR", "ros", "perception")
-    from nodes.extern.frame_folders import bag, bag_frames, tum
-    from nodes.extern.frame_folders.frames import check_free, make
+    from semmap.nodes.extern.frame_folders import bag, bag_frames, tum
+    from semmap.nodes.extern.frame_folders.frames import check_free, make
 
     if not path.exists():
         raise errors.BadFile(f"there is no file {path}, nor a folder")
@@ -138,7 +138,7 @@ def _folders(
 
 
 def _write(found: Recording, path: Path, folder: Path) -> None:
-    from nodes.extern.frame_folders.frames import write
+    from semmap.nodes.extern.frame_folders.frames import write
 
     began_s = said_s = time.monotonic()
     bad: list[errors.SemmapError] = []

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from nodes.extern.cli.calling import complain, print_json, talks
-from nodes.extern.cli.output.printable import say
-from nodes.extern.restoring import restore as restore_map
+from semmap.nodes.extern.cli.calling import complain, print_json, talks
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.restoring import restore as restore_map
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
+    from semmap.nodes.extern.client import Client
 
 _path = click.Path(path_type=Path)
 _format = click.option(

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import click
 
-from nodes.extern.cli.output import show
-from nodes.extern.cli.output.tables import table
-from nodes.identity.register import Member, Register
-from nodes.runtime import extras
-from schemas.keys import ROUTER
-from schemas.roles import ROLES, Role
+from semmap.nodes.extern.cli.output import show
+from semmap.nodes.extern.cli.output.tables import table
+from semmap.nodes.identity.register import Member, Register
+from semmap.nodes.runtime import extras
+from semmap.schemas.keys import ROUTER
+from semmap.schemas.roles import ROLES, Role
 
 _path = click.Path(path_type=Path)
 _folder = click.option(
@@ -45,7 +45,7 @@ def init(folder: Path, hosts: tuple[str, ...], days: int) -> None:
 
     With it come the certificates of the system's own processes.
     """
-    from nodes.identity import authority
+    from semmap.nodes.identity import authority
 
     register = authority.init(folder, hosts, days)
     click.echo(f"made an authority in {folder}, for a router at {', '.join(register.hosts)}")
@@ -64,7 +64,7 @@ def add(name: str, role: Role, folder: Path, days: int) -> None:
 
     A running system admits it within a second.
     """
-    from nodes.identity import authority
+    from semmap.nodes.identity import authority
 
     _told("made", folder, authority.add(folder, name, role, days))
     click.echo(f"use it: semmap status --identity {folder / name}")
@@ -81,7 +81,7 @@ def renew(name: str, role: Role | None, hosts: tuple[str, ...], folder: Path, da
 
     The old one stays valid until it expires.
     """
-    from nodes.identity import authority
+    from semmap.nodes.identity import authority
 
     _told("renewed", folder, authority.renew(folder, name, hosts, days, role))
 
@@ -94,7 +94,7 @@ def revoke(name: str, folder: Path) -> None:
 
     A running system shuts them out within a second.
     """
-    from nodes.identity import authority
+    from semmap.nodes.identity import authority
 
     member = authority.revoke(folder, name)
     click.echo(f"revoked {member.name} ({member.role}); the name is not given again")
@@ -129,9 +129,9 @@ def zenohd(folder: Path, listen: str, connect: tuple[str, ...], namespace: str) 
     It is for a secure system, with the rules for everybody who is admitted now: print it again after each
     change.
     """
-    from nodes import bus
-    from nodes.identity import Identity
-    from nodes.router.access import access_control
+    from semmap.nodes import bus
+    from semmap.nodes.identity import Identity
+    from semmap.nodes.router.access import access_control
 
     register = Register.read(folder)
     for endpoint in (listen, *connect):

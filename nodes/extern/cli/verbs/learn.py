@@ -10,26 +10,26 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli.calling import (
+from semmap.nodes.extern.cli.calling import (
     complain,
     connect_option,
     identity_option,
     namespace_option,
     print_json,
 )
-from nodes.extern.cli.completing import class_names, entity_names
-from nodes.extern.cli.output import show
-from nodes.extern.cli.output.printable import say
-from nodes.extern.cli.output.tables import table
-from nodes.runtime import extras
-from schemas import errors
-from schemas.lessons import LessonTold
-from schemas.wording import counted
+from semmap.nodes.extern.cli.completing import class_names, entity_names
+from semmap.nodes.extern.cli.output import show
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.cli.output.tables import table
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors
+from semmap.schemas.lessons import LessonTold
+from semmap.schemas.wording import counted
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
-    from nodes.perception_node.lesson_book import LessonBook
-    from nodes.perception_node.showing import View
+    from semmap.nodes.extern.client import Client
+    from semmap.nodes.perception_node.lesson_book import LessonBook
+    from semmap.nodes.perception_node.showing import View
 
 _path = click.Path(path_type=Path)
 
@@ -97,7 +97,7 @@ def learn(
         views, notes = _seen(frames, box)
         shown = f"{counted(len(views), 'frame')} in {frames}"
     if data is not None:
-        from nodes.perception_node.recognition.shipped_votes import shipped
+        from semmap.nodes.perception_node.recognition.shipped_votes import shipped
 
         told = book.add(class_, shipped().ancestors[class_], views, shown)
     else:
@@ -152,7 +152,7 @@ def forget(number: int, data: Path | None, format: str, **system: Any) -> None:
 
 @contextmanager
 def _client(where: str | None, identity: str | None, namespace: str | None) -> Iterator[Client]:
-    from nodes.extern.client import connect
+    from semmap.nodes.extern.client import connect
 
     with connect(where, identity=identity, namespace=namespace, mode="client") as client:
         yield client
@@ -161,7 +161,7 @@ def _client(where: str | None, identity: str | None, namespace: str | None) -> I
 def _learnt(client: Client, class_: str, entity: str | None, views: list[View], shown: str) -> LessonTold:
     if entity is not None:
         return client.learn(class_, entity=entity)
-    from nodes.perception_node.teaching import view_told
+    from semmap.nodes.perception_node.teaching import view_told
 
     return client.learn(class_, views=tuple(map(view_told, views)), shown=shown[:1000])
 
@@ -169,9 +169,9 @@ def _learnt(client: Client, class_: str, entity: str | None, views: list[View], 
 def _book(data: Path) -> LessonBook:
     """The lessons of a data folder whose system does not run."""
     extras.require("semmap learn --data", "perception")
-    from nodes.perception_node.lesson_book import FILENAME, LessonBook
-    from nodes.perception_node.recognition.shipped_votes import shipped
-    from nodes.supervisor import registry
+    from semmap.nodes.perception_node.lesson_book import FILENAME, LessonBook
+    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+    from semmap.nodes.supervisor import registry
 
     if any(Path(system.data) == data.resolve() for system in registry.systems()):
         raise errors.Refused(f"a system runs on {data}, which learns by itself: leave out --data")
@@ -179,15 +179,15 @@ def _book(data: Path) -> LessonBook:
 
 
 def _known(class_: str) -> str:
-    from nodes.perception_node.lesson_book import known_class
-    from nodes.perception_node.recognition.shipped_votes import shipped
+    from semmap.nodes.perception_node.lesson_book import known_class
+    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
 
     return known_class(class_, shipped().ancestors)
 
 
 def _seen(frames: Path, box: tuple[int, int, int, int] | None) -> tuple[list[View], tuple[str, ...]]:
     extras.require("semmap learn --frames", "perception")
-    from nodes.perception_node.recognition.shipped_votes import shipped
-    from nodes.perception_node.showing import shown_in_frames
+    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+    from semmap.nodes.perception_node.showing import shown_in_frames
 
     return shown_in_frames(frames, shipped(), box)

@@ -13,21 +13,21 @@ from typing import Any
 import click
 from msgspec import structs
 
-from nodes import bus
-from nodes.extern.cli.calling import complain
-from nodes.extern.cli.ontology_options import import_option, spatial_root_option
-from nodes.extern.cli.output.printable import say
-from nodes.extern.files import read_label_map
-from nodes.identity import SUPERVISOR
-from nodes.identity.register import Register
-from nodes.runtime import extras
-from nodes.supervisor.parts import nodes_of
-from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data, is_endpoint
-from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
-from schemas import codec, errors
-from schemas.endpoints import ALL_ROBOTS, CONNECT_VARIABLE, NAMESPACE_VARIABLE
-from schemas.endpoints import robot_name as checked_namespace
-from schemas.keys import NODES, ROUTER
+from semmap.nodes import bus
+from semmap.nodes.extern.cli.calling import complain
+from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.files import read_label_map
+from semmap.nodes.identity import SUPERVISOR
+from semmap.nodes.identity.register import Register
+from semmap.nodes.runtime import extras
+from semmap.nodes.supervisor.parts import nodes_of
+from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data, is_endpoint
+from semmap.ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
+from semmap.schemas import codec, errors
+from semmap.schemas.endpoints import ALL_ROBOTS, CONNECT_VARIABLE, NAMESPACE_VARIABLE
+from semmap.schemas.endpoints import robot_name as checked_namespace
+from semmap.schemas.keys import NODES, ROUTER
 
 _ROBOTS = Path(__file__).parents[3] / "sim_node" / "robots"
 """Where those are that come with semmap."""
@@ -211,7 +211,7 @@ def up(settings: Settings) -> None:
         for name in (SUPERVISOR, *settings.nodes):
             settings.identity_of(name).require_valid()
     extras.require_nodes(settings.nodes, named=bool(settings.only))
-    from nodes.supervisor.up import up as run_up
+    from semmap.nodes.supervisor.up import up as run_up
 
     if settings.truth == "perceived" and not settings.perception and not settings.only:
         complain("no perception node started; add --perception or publish your own observations")
@@ -224,8 +224,8 @@ def up(settings: Settings) -> None:
 def down(data: Path | None, connect: str | None) -> None:
     """Stop a system that runs on this machine."""
     extras.require("semmap down", "kb")
-    from nodes.supervisor import registry
-    from nodes.supervisor.control import Supervisor
+    from semmap.nodes.supervisor import registry
+    from semmap.nodes.supervisor.control import Supervisor
 
     if data is None and connect is not None:
         meant = {connect, bus.over_tls(connect)}
@@ -246,7 +246,7 @@ def repair(data: Path | None, tbox: Path | None) -> None:
     The damaged file is kept.
     """
     extras.require("semmap repair", "kb")
-    from nodes.kb_node.storage.repair.repair import repair as repair_journal
+    from semmap.nodes.kb_node.storage.repair.repair import repair as repair_journal
 
     click.echo(repair_journal((data or default_data()).resolve(), complain, tbox=tbox))
 
@@ -263,8 +263,8 @@ def node(name: str, settings: Settings) -> None:
     if settings.namespace == ALL_ROBOTS and name != ROUTER:
         raise errors.BadRequest("--namespace '*' is for a router that robots share: semmap node router")
     extras.require(f"semmap node {name}", extras.OF_NODE[name])
-    from nodes.supervisor.launch import run_node, seed
-    from nodes.supervisor.privacy import UMASK, make_private
+    from semmap.nodes.supervisor.launch import run_node, seed
+    from semmap.nodes.supervisor.privacy import UMASK, make_private
 
     os.umask(UMASK)
     make_private(Path(settings.data))

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli.calling import talks
-from nodes.extern.cli.output.printable import say
-from nodes.runtime import extras
-from schemas import errors
+from semmap.nodes.extern.cli.calling import talks
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
-    from nodes.extern.mcp.tools import Tool
+    from semmap.nodes.extern.client import Client
+    from semmap.nodes.extern.mcp.tools import Tool
 
 
 def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
@@ -82,15 +82,15 @@ def mcp(
     ]
     if limited and allow is None:
         raise errors.BadRequest(f"{limited[0]} limits changes; to allow them at all: --allow change")
-    from nodes.extern.mcp.server import run_stdio
-    from nodes.extern.mcp.tools import Tools
+    from semmap.nodes.extern.mcp.server import run_stdio
+    from semmap.nodes.extern.mcp.tools import Tools
 
     further = _changing(client, agent, classes, places, rate, approve) if allow else ()
     tools = Tools(client, further)
     if http is None:
         run_stdio(tools)
         return
-    from nodes.extern.mcp.http import TOKEN_VARIABLE, new_token, run_http
+    from semmap.nodes.extern.mcp.http import TOKEN_VARIABLE, new_token, run_http
 
     run_http(tools, http, new_token(os.environ.get(TOKEN_VARIABLE)), lambda text: say(text, file=sys.stderr))
 
@@ -103,9 +103,9 @@ def _changing(
     rate: float | None,
     approve: bool,
 ) -> tuple[Tool, ...]:
-    from nodes.extern.mcp.changing import Changes
-    from nodes.extern.mcp.limits import CHANGES_PER_MIN, Limits
-    from nodes.extern.mcp.tools import changing
+    from semmap.nodes.extern.mcp.changing import Changes
+    from semmap.nodes.extern.mcp.limits import CHANGES_PER_MIN, Limits
+    from semmap.nodes.extern.mcp.tools import changing
 
     signed = agent if client.identity is None else client.identity.name
     changes = Changes(

@@ -8,10 +8,10 @@ from typing import Any
 
 import click
 
-from nodes.extern.cli.calling import TIME, connect_option, identity_option, namespace_option
-from nodes.extern.cli.output.printable import say
-from nodes.runtime import rhythm
-from schemas import errors
+from semmap.nodes.extern.cli.calling import TIME, connect_option, identity_option, namespace_option
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.runtime import rhythm
+from semmap.schemas import errors
 
 _path = click.Path(path_type=Path)
 _SIZE, _FPS = (960, 640), 20
@@ -59,8 +59,8 @@ def movie(
     a caption for each commit. With OpenGL where there is one, else ray-cast,
     which takes longer. The map is only read, and may be in use meanwhile.
     """
-    from nodes.extern.movie import Film
-    from nodes.extern.movie import movie as make
+    from semmap.nodes.extern.movie import Film
+    from semmap.nodes.extern.movie import movie as make
 
     if world is not None and not world.is_file():
         raise errors.BadFile(f"there is no file {world}")

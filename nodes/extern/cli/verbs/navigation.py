@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli.calling import print_json, talks
-from nodes.extern.cli.completing import entity_names
-from nodes.extern.cli.negative_numbers import NegativeNumbers
-from nodes.extern.cli.output.printable import say
-from schemas.plans import HEIGHTS_M, RADIUS_M
+from semmap.nodes.extern.cli.calling import print_json, talks
+from semmap.nodes.extern.cli.completing import entity_names
+from semmap.nodes.extern.cli.negative_numbers import NegativeNumbers
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.schemas.plans import HEIGHTS_M, RADIUS_M
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
+    from semmap.nodes.extern.client import Client
 
 _as_of = click.option("--as-of", metavar="COMMIT|TIME", help="The map as it was then.")
 _height_range = click.option(
@@ -45,7 +45,7 @@ def floorplan(client: Client, file: Path, no_furniture: bool, **how: Any) -> Non
     as it stands; if places are forbidden (isForbidden), with a mask of them. A .svg is for people, a
     .geojson for programs.
     """
-    from nodes.extern.floorplans import write_floorplan
+    from semmap.nodes.extern.floorplans import write_floorplan
 
     for path in write_floorplan(client, file, furniture=not no_furniture, **how):
         say(f"wrote {path}")

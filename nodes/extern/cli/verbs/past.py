@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
-from nodes.extern.cli import output
-from nodes.extern.cli.calling import TIME, print_json, print_lines, talks
-from nodes.extern.cli.completing import entity_names
-from nodes.extern.cli.output import lines
-from schemas import errors
-from schemas.happenings import KeptRelation
+from semmap.nodes.extern.cli import output
+from semmap.nodes.extern.cli.calling import TIME, print_json, print_lines, talks
+from semmap.nodes.extern.cli.completing import entity_names
+from semmap.nodes.extern.cli.output import lines
+from semmap.schemas import errors
+from semmap.schemas.happenings import KeptRelation
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
+    from semmap.nodes.extern.client import Client
 
 _format = click.option(
     "--format", "format", type=click.Choice(["table", "json"]), default="table", show_default=True
@@ -114,7 +114,7 @@ def undo(client: Client, commit: int | None, dry_run: bool) -> None:
 
     Without COMMIT it is the newest that a client requested.
     """
-    from nodes.extern.cli.output.progress import progress
+    from semmap.nodes.extern.cli.output.progress import progress
 
     with progress(client):
         reply = client.undo(commit, dry_run=dry_run)

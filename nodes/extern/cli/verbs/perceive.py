@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli.calling import complain, print_json
-from nodes.extern.cli.output.printable import say
-from nodes.extern.cli.output.show import console
-from nodes.extern.cli.output.show_perceived import as_records, as_table, show_frame
-from nodes.extern.files import read_label_map, write_atomically
-from nodes.runtime import extras
-from schemas import errors, wording
-from schemas.perception import FrameRow
+from semmap.nodes.extern.cli.calling import complain, print_json
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.cli.output.show import console
+from semmap.nodes.extern.cli.output.show_perceived import as_records, as_table, show_frame
+from semmap.nodes.extern.files import read_label_map, write_atomically
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors, wording
+from semmap.schemas.perception import FrameRow
 
 if TYPE_CHECKING:
-    from nodes.perception_node.detector import Detector
-    from nodes.perception_node.recognition.shipped_votes import Learnt
+    from semmap.nodes.perception_node.detector import Detector
+    from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
 
 _SAY_S = 5.0
 """After this time it is told again how far a dataset is."""
@@ -108,12 +108,12 @@ def perceive(
         )
     import numpy as np  # half of what the command line would take to start
 
-    from nodes.perception_node.fitting.model_surfaces import shipped as surfaces
-    from nodes.perception_node.fitting.things import fitted_in_sight
-    from nodes.perception_node.input.files.cloud_files import read_frames
-    from nodes.perception_node.pipeline import one_by_one
-    from nodes.perception_node.views.masked import with_masks
-    from nodes.perception_node.views.segmented_view import see
+    from semmap.nodes.perception_node.fitting.model_surfaces import shipped as surfaces
+    from semmap.nodes.perception_node.fitting.things import fitted_in_sight
+    from semmap.nodes.perception_node.input.files.cloud_files import read_frames
+    from semmap.nodes.perception_node.pipeline import one_by_one
+    from semmap.nodes.perception_node.views.masked import with_masks
+    from semmap.nodes.perception_node.views.segmented_view import see
 
     learnt = _learnt(data)
     clouds = list(read_frames(files, intrinsics))
@@ -151,7 +151,7 @@ def perceive(
 
 
 def _require_open3d() -> None:
-    from nodes.perception_node.fitting.fit import available
+    from semmap.nodes.perception_node.fitting.fit import available
 
     if not available():
         raise errors.BadRequest(
@@ -162,8 +162,8 @@ def _require_open3d() -> None:
 
 def _learnt(data: Path | None) -> Learnt:
     """What ships with perception, and what a data folder has of what was shown."""
-    from nodes.perception_node.lesson_book import FILENAME, LessonBook
-    from nodes.perception_node.recognition.shipped_votes import shipped
+    from semmap.nodes.perception_node.lesson_book import FILENAME, LessonBook
+    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
 
     if data is None:
         return shipped()
@@ -180,9 +180,9 @@ def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -
         if label_map is not None or masks_only:
             raise errors.BadRequest("--label-map and --masks-only go with --masks")
         return None
-    from nodes.perception_node.detector import Detector
-    from nodes.perception_node.recognition.shipped_votes import shipped
-    from nodes.perception_node.recognition.told_names import Labels
+    from semmap.nodes.perception_node.detector import Detector
+    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+    from semmap.nodes.perception_node.recognition.told_names import Labels
 
     classes = read_label_map(label_map) if label_map is not None else {}
     labels = Labels(shipped(), classes)
@@ -206,9 +206,9 @@ def _dataset(
     import msgspec
     import numpy as np
 
-    from nodes.perception_node.datasets import perceived
-    from nodes.perception_node.fitting.model_surfaces import shipped as surfaces
-    from nodes.perception_node.input.files.frame_folders import frames_in
+    from semmap.nodes.perception_node.datasets import perceived
+    from semmap.nodes.perception_node.fitting.model_surfaces import shipped as surfaces
+    from semmap.nodes.perception_node.input.files.frame_folders import frames_in
 
     folders = frames_in(folder)
     if out is not None and (out.is_dir() or not out.absolute().parent.is_dir()):

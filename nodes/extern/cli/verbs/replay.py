@@ -7,10 +7,10 @@ from typing import Any
 
 import click
 
-from nodes.extern.cli.calling import TIME, complain, connect_option, identity_option, namespace_option
-from nodes.extern.cli.output.printable import say
-from nodes.runtime import extras, rhythm
-from schemas import errors
+from semmap.nodes.extern.cli.calling import TIME, complain, connect_option, identity_option, namespace_option
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.runtime import extras, rhythm
+from semmap.schemas import errors
 
 _path = click.Path(path_type=Path)
 
@@ -66,7 +66,7 @@ def replay(
     if what.is_dir():
         if check:
             raise errors.BadRequest("--check is for a recording (.rrd); a replay is of the journal itself")
-        from nodes.extern.replaying import replay as run_again
+        from semmap.nodes.extern.replaying import replay as run_again
 
         longest_s, speed = options.pop("longest"), options.pop("speed")
         run_again(
@@ -84,13 +84,13 @@ def replay(
     ]:
         raise errors.BadRequest(f"{given[0]} is for a data folder, and {what} is not one")
     if check:
-        from nodes.extern.replaying import check as verify
+        from semmap.nodes.extern.replaying import check as verify
 
         say(verify(what, data, where=where, identity=identity, namespace=namespace, tell=complain))
         return
     if data is not None:
         raise errors.BadRequest("--data is for --check")
     extras.require("semmap replay", "record")
-    from nodes.recorder.replay import replay as open_viewer
+    from semmap.nodes.recorder.replay import replay as open_viewer
 
     open_viewer(what, complain)

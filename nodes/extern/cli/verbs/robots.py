@@ -6,19 +6,19 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from nodes.extern.cli import output
-from nodes.extern.cli.calling import complain, print_json, print_lines
-from nodes.extern.cli.output.printable import say
-from nodes.extern.cli.verbs import sparql as sparql_answers
-from schemas import errors
-from schemas.entities import Entity
-from schemas.relations import Described
-from schemas.replies import SystemStatus
-from schemas.robots import Answer
-from schemas.sparql import SparqlResult
+from semmap.nodes.extern.cli import output
+from semmap.nodes.extern.cli.calling import complain, print_json, print_lines
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.cli.verbs import sparql as sparql_answers
+from semmap.schemas import errors
+from semmap.schemas.entities import Entity
+from semmap.schemas.relations import Described
+from semmap.schemas.replies import SystemStatus
+from semmap.schemas.robots import Answer
+from semmap.schemas.sparql import SparqlResult
 
 if TYPE_CHECKING:
-    from nodes.extern.fleet.robots import Robots
+    from semmap.nodes.extern.fleet.robots import Robots
 
 
 def entities(robots: Robots, class_: str | None, format: str, as_of: str | None, **where: Any) -> None:

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli.calling import TIME, talks
-from nodes.extern.cli.output.printable import say
-from nodes.runtime import extras
-from schemas import errors, wording
+from semmap.nodes.extern.cli.calling import TIME, talks
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors, wording
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
+    from semmap.nodes.extern.client import Client
 
 
 def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
@@ -81,8 +81,8 @@ def ros(
     It speaks the wire of rmw_zenoh and needs no ROS. Published are /semmap/detections and /semmap/markers
     (latched), /tf with a frame for each entity, and diffs on /planning_scene.
     """
-    from nodes.extern.ros.cameras import camera_topics
-    from nodes.extern.ros.running import RosConfig, run
+    from semmap.nodes.extern.ros.cameras import camera_topics
+    from semmap.nodes.extern.ros.running import RosConfig, run
 
     config = RosConfig(
         router=router,
@@ -109,8 +109,8 @@ def mcap(client: Client, file: Path, since: str | None, until: str | None, frame
 
     FILE.mcap holds, as of each commit, the topics that semmap ros publishes; Foxglove and ros2 bag read it.
     """
-    from nodes.extern.ros.bridge import topics
-    from nodes.extern.ros.mcap_file import states, write
+    from semmap.nodes.extern.ros.bridge import topics
+    from semmap.nodes.extern.ros.mcap_file import states, write
 
     if file.suffix != ".mcap":
         raise errors.BadRequest(f"an MCAP file is written; name it {file.with_suffix('.mcap').name}")

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from nodes.extern.cli.calling import (
+from semmap.nodes.extern.cli.calling import (
     complain,
     connect_option,
     identity_option,
@@ -16,11 +16,11 @@ from nodes.extern.cli.calling import (
     print_lines,
     run_words,
 )
-from nodes.extern.cli.output import lines
-from nodes.extern.cli.output.printable import say
-from nodes.extern.client import Client, connect
-from nodes.extern.files import read_file
-from schemas import codec, commands, errors, replies
+from semmap.nodes.extern.cli.output import lines
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.client import Client, connect
+from semmap.nodes.extern.files import read_file
+from semmap.schemas import codec, commands, errors, replies
 
 _BY_THEMSELVES = frozenset(
     ("up", "down", "node", "repair", "restore", "replay", "movie", "run", "watch", "completion")

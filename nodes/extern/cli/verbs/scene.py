@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli.angles import yaw_option
-from nodes.extern.cli.calling import carrying, frame_option, given, print_lines, talks, vector_option
-from nodes.extern.cli.completing import entity_names
-from nodes.extern.cli.negative_numbers import NegativeNumbers
-from nodes.extern.cli.output import lines
-from nodes.extern.cli.output.printable import say
-from nodes.extern.files import write_atomically
-from schemas import errors
+from semmap.nodes.extern.cli.angles import yaw_option
+from semmap.nodes.extern.cli.calling import carrying, frame_option, given, print_lines, talks, vector_option
+from semmap.nodes.extern.cli.completing import entity_names
+from semmap.nodes.extern.cli.negative_numbers import NegativeNumbers
+from semmap.nodes.extern.cli.output import lines
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.files import write_atomically
+from semmap.schemas import errors
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
+    from semmap.nodes.extern.client import Client
 
 
 _WAIT = click.option(

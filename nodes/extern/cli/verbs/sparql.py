@@ -7,16 +7,16 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nodes.extern.cli import output
-from nodes.extern.cli.output.formats import Format
-from nodes.extern.cli.output.printable import say, write
-from nodes.extern.files import read_file
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.sparql import Row
+from semmap.nodes.extern.cli import output
+from semmap.nodes.extern.cli.output.formats import Format
+from semmap.nodes.extern.cli.output.printable import say, write
+from semmap.nodes.extern.files import read_file
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.sparql import Row
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
+    from semmap.nodes.extern.client import Client
 
 
 def read_query(word: str) -> str:

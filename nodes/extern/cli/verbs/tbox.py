@@ -7,11 +7,11 @@ from pathlib import Path
 
 import click
 
-from nodes.extern.cli.calling import print_json, print_lines
-from nodes.extern.cli.ontology_options import import_option, spatial_root_option
-from nodes.extern.cli.output import show_tbox
-from nodes.runtime import extras
-from schemas import errors
+from semmap.nodes.extern.cli.calling import print_json, print_lines
+from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from semmap.nodes.extern.cli.output import show_tbox
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors
 
 
 @click.group()
@@ -34,7 +34,7 @@ def check(
     be of some class; 2 that a file cannot be read.
     """
     extras.require("semmap tbox check", "kb")
-    from nodes.kb_node.documents.tbox.tbox_check import check as check_files
+    from semmap.nodes.kb_node.documents.tbox.tbox_check import check as check_files
 
     report = check_files(files, dict(imports), spatial_root)
     if format == "json":

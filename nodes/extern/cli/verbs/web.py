@@ -6,11 +6,11 @@ import os
 
 import click
 
-from nodes.extern.cli.calling import complain, connect_option, identity_option, namespace_option
-from nodes.extern.cli.output.printable import say
-from nodes.runtime import extras
-from schemas import errors
-from schemas.endpoints import WEB_TOKEN_VARIABLE
+from semmap.nodes.extern.cli.calling import complain, connect_option, identity_option, namespace_option
+from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors
+from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
 
 _HOST = "127.0.0.1"
 _PORT = 8080
@@ -53,8 +53,8 @@ def web(
                 f" of SSH (ssh -L {port}:127.0.0.1:{port} THIS_HOST), or say --insecure"
             )
         complain(f"warning: the page at {host} is plain HTTP: its token and the map can be read on the way")
-    from nodes.extern.web.joining import network_of
-    from nodes.extern.web.server import WebConfig, run
+    from semmap.nodes.extern.web.joining import network_of
+    from semmap.nodes.extern.web.server import WebConfig, run
 
     network = network_of(where, identity, namespace)
     token = os.environ.get(WEB_TOKEN_VARIABLE, "")

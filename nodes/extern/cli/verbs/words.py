@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from nodes.extern.cli.angles import from_pose
-from nodes.extern.cli.calling import complain, print_json, print_lines, talks
-from nodes.extern.cli.completing import entity_names
-from nodes.extern.cli.output import lines, lu4r
-from schemas import errors
+from semmap.nodes.extern.cli.angles import from_pose
+from semmap.nodes.extern.cli.calling import complain, print_json, print_lines, talks
+from semmap.nodes.extern.cli.completing import entity_names
+from semmap.nodes.extern.cli.output import lines, lu4r
+from semmap.schemas import errors
 
 if TYPE_CHECKING:
-    from nodes.extern.client import Client
-    from schemas.language import Language, Mood
+    from semmap.nodes.extern.client import Client
+    from semmap.schemas.language import Language, Mood
 
 _WHY: Final[dict[Mood, str]] = {
     "command": "no command is understood in '{text}'; try: take the cup from the table",

@@ -6,11 +6,11 @@ from typing import Any
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.fields import Fields
-from nodes.extern.web.panels.view import View
-from nodes.extern.web.views import forms
-from schemas import errors
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.fields import Fields
+from semmap.nodes.extern.web.panels.view import View
+from semmap.nodes.extern.web.views import forms
+from semmap.schemas import errors
 
 
 def add(page: Page) -> None:

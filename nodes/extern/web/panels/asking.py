@@ -5,15 +5,15 @@ from __future__ import annotations
 import asyncio
 from typing import Any, NamedTuple
 
-from nodes.extern.web.knowing import Knowing
-from nodes.extern.web.page import Page
-from nodes.extern.web.views.facts import Facts, facts, followed
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Command, History, Infer, LastSeen, Relations, Sparql, Tell
-from schemas.entities import Entity
-from schemas.relations import Relation
-from schemas.replies import LoggedCommit
+from semmap.nodes.extern.web.knowing import Knowing
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.views.facts import Facts, facts, followed
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Command, History, Infer, LastSeen, Relations, Sparql, Tell
+from semmap.schemas.entities import Entity
+from semmap.schemas.relations import Relation
+from semmap.schemas.replies import LoggedCommit
 
 _WORDS = 120
 _COMMITS = 100

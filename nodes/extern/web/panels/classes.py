@@ -6,9 +6,9 @@ from typing import Any, Final
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.view import View
-from nodes.extern.web.views.trees import Node, class_tree
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.view import View
+from semmap.nodes.extern.web.views.trees import Node, class_tree
 
 _OPEN_DEPTH: Final = 2
 

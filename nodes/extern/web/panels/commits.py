@@ -6,10 +6,10 @@ from typing import Any, Final
 
 from nicegui import ui
 
-from nodes.extern.cli.output.lines import touched
-from nodes.extern.phrasing import author, moment
-from nodes.extern.web.page import Page
-from schemas.replies import LoggedCommit
+from semmap.nodes.extern.cli.output.lines import touched
+from semmap.nodes.extern.phrasing import author, moment
+from semmap.nodes.extern.web.page import Page
+from semmap.schemas.replies import LoggedCommit
 
 ROWS: Final = 200
 """That many are in the table at once."""

@@ -6,12 +6,12 @@ from typing import Final
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.redrawing import Redrawing
-from nodes.extern.web.views.findings import TITLES, Finding, findings, verdict
-from schemas import errors
-from schemas.commands import Check, List
-from schemas.entities import Entity
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.redrawing import Redrawing
+from semmap.nodes.extern.web.views.findings import TITLES, Finding, findings, verdict
+from semmap.schemas import errors
+from semmap.schemas.commands import Check, List
+from semmap.schemas.entities import Entity
 
 _MOST: Final = 200
 _TIMEOUT_S: Final = 120.0

@@ -8,20 +8,20 @@ from typing import Final
 
 from nicegui import ui
 
-from nodes.extern.phrasing import english, pose_text, size_text
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels import asking
-from nodes.extern.web.panels.edit import Edit, several
-from nodes.extern.web.panels.fact_list import FactList
-from nodes.extern.web.panels.history import History
-from nodes.extern.web.panels.rows import Rows
-from nodes.extern.web.panels.states import States
-from nodes.extern.web.panels.view import Touched, View
-from nodes.extern.web.views.past import provenance
-from schemas import errors
-from schemas.commands import LastSeen
-from schemas.entities import Entity
-from schemas.errors import shortened
+from semmap.nodes.extern.phrasing import english, pose_text, size_text
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels import asking
+from semmap.nodes.extern.web.panels.edit import Edit, several
+from semmap.nodes.extern.web.panels.fact_list import FactList
+from semmap.nodes.extern.web.panels.history import History
+from semmap.nodes.extern.web.panels.rows import Rows
+from semmap.nodes.extern.web.panels.states import States
+from semmap.nodes.extern.web.panels.view import Touched, View
+from semmap.nodes.extern.web.views.past import provenance
+from semmap.schemas import errors
+from semmap.schemas.commands import LastSeen
+from semmap.schemas.entities import Entity
+from semmap.schemas.errors import shortened
 
 _LATER_S: Final = 0.4
 _AGES_S: Final = 10.0

@@ -6,13 +6,13 @@ from typing import Final
 
 from nicegui import ui
 
-from nodes.extern.web.deleting import delete_selected
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.fields import Fields
-from nodes.extern.web.panels.states import states_in_common
-from nodes.extern.web.views import forms
-from schemas import errors, wording
-from schemas.entities import Entity
+from semmap.nodes.extern.web.deleting import delete_selected
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.fields import Fields
+from semmap.nodes.extern.web.panels.states import states_in_common
+from semmap.nodes.extern.web.views import forms
+from semmap.schemas import errors, wording
+from semmap.schemas.entities import Entity
 
 _MOST: Final = 12
 

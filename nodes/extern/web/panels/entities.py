@@ -7,11 +7,11 @@ from typing import Any, Final
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.choice import Choice
-from nodes.extern.web.panels.view import Touched, View
-from nodes.extern.web.views.entity_rows import Cells, Changes, Wanted, changes, counted
-from nodes.extern.web.views.forms import class_choices
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.choice import Choice
+from semmap.nodes.extern.web.panels.view import Touched, View
+from semmap.nodes.extern.web.views.entity_rows import Cells, Changes, Wanted, changes, counted
+from semmap.nodes.extern.web.views.forms import class_choices
 
 _BY: Final = "entities"
 _TICKED: Final = "ticks"

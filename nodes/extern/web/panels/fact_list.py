@@ -6,13 +6,13 @@ from typing import Final
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.proof import proof
-from nodes.extern.web.panels.rows import Renew, Rows, keyed
-from nodes.extern.web.panels.view import View
-from nodes.extern.web.views.facts import Fact, Facts, Question
-from schemas import errors
-from schemas.commands import Explain, Unset
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.proof import proof
+from semmap.nodes.extern.web.panels.rows import Renew, Rows, keyed
+from semmap.nodes.extern.web.panels.view import View
+from semmap.nodes.extern.web.views.facts import Fact, Facts, Question
+from semmap.schemas import errors
+from semmap.schemas.commands import Explain, Unset
 
 _MOST: Final = 40
 _TIME_S: Final = 15.0

@@ -7,9 +7,9 @@ from typing import Any, Final
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.choice import Choice
-from nodes.extern.web.views.forms import Filled, best_class
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.choice import Choice
+from semmap.nodes.extern.web.views.forms import Filled, best_class
 
 _AXES: Final = ("x", "y", "z")
 

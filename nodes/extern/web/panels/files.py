@@ -9,9 +9,9 @@ from typing import Final
 
 from nicegui import events, ui
 
-from nodes.extern.cli.output.lines import changed
-from nodes.extern.web.page import Page
-from nodes.extern.web.views.uploads import (
+from semmap.nodes.extern.cli.output.lines import changed
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.views.uploads import (
     BEGINNING,
     LARGEST,
     megabytes,
@@ -20,9 +20,9 @@ from nodes.extern.web.views.uploads import (
     takes_long,
     too_large,
 )
-from schemas import errors
-from schemas.commands import Export, Load, RdfFormat
-from schemas.packing import packed
+from semmap.schemas import errors
+from semmap.schemas.commands import Export, Load, RdfFormat
+from semmap.schemas.packing import packed
 
 _TIMEOUT_S: Final = 1800.0
 _BROWSER_S: Final = 10.0

@@ -6,12 +6,12 @@ from typing import Final
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.view import View
-from nodes.extern.web.views.answers import Answer, answer, reasons
-from schemas import errors
-from schemas.commands import Find
-from schemas.language import Candidate
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.view import View
+from semmap.nodes.extern.web.views.answers import Answer, answer, reasons
+from semmap.schemas import errors
+from semmap.schemas.commands import Find
+from semmap.schemas.language import Candidate
 
 _BY: Final = "find"
 _TIME_S: Final = 20.0

@@ -7,11 +7,11 @@ from typing import Any, Final
 
 from nicegui import events, ui
 
-from nodes.drawing.neighbourhood import Neighbourhood, around, by_class, by_place
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.redrawing import Redrawing
-from nodes.extern.web.panels.tables import names_of, table
-from nodes.extern.web.views.graph_drawing import (
+from semmap.nodes.drawing.neighbourhood import Neighbourhood, around, by_class, by_place
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.redrawing import Redrawing
+from semmap.nodes.extern.web.panels.tables import names_of, table
+from semmap.nodes.extern.web.views.graph_drawing import (
     FEW_LINKS,
     FEW_ON_PHONES,
     QUERY,
@@ -20,10 +20,10 @@ from nodes.extern.web.views.graph_drawing import (
     relations_of,
     rows_of,
 )
-from nodes.extern.web.views.graph_layout import Positions, arranged
-from schemas import errors
-from schemas.commands import Sparql
-from schemas.sparql import Row
+from semmap.nodes.extern.web.views.graph_layout import Positions, arranged
+from semmap.schemas import errors
+from semmap.schemas.commands import Sparql
+from semmap.schemas.sparql import Row
 
 _WAYS: Final = {"selected": "Selected", "places": "By place", "classes": "By class"}
 _COLUMNS: Final = (("source", "what"), ("label", "is related by"), ("target", "to"))

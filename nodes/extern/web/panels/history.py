@@ -6,12 +6,12 @@ from collections.abc import Iterable
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.rows import Rows
-from nodes.extern.web.views.past import Event, events
-from schemas.commands import Undo
-from schemas.errors import shortened
-from schemas.replies import LoggedCommit
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.rows import Rows
+from semmap.nodes.extern.web.views.past import Event, events
+from semmap.schemas.commands import Undo
+from semmap.schemas.errors import shortened
+from semmap.schemas.replies import LoggedCommit
 
 
 class History:

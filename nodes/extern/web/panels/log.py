@@ -6,15 +6,15 @@ from typing import Any, Final, get_args
 
 from nicegui import ui
 
-from nodes.extern.web.live import Happening
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.redrawing import Redrawing
-from nodes.extern.web.panels.tables import names_of, table
-from nodes.extern.web.views.happened import WARNING, Log, rows_of
-from schemas import errors
-from schemas.commands import History
-from schemas.entities import Source
-from schemas.replies import LoggedCommit
+from semmap.nodes.extern.web.live import Happening
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.redrawing import Redrawing
+from semmap.nodes.extern.web.panels.tables import names_of, table
+from semmap.nodes.extern.web.views.happened import WARNING, Log, rows_of
+from semmap.schemas import errors
+from semmap.schemas.commands import History
+from semmap.schemas.entities import Source
+from semmap.schemas.replies import LoggedCommit
 
 _FIRST: Final = 300
 _AT_ONCE: Final = 1000

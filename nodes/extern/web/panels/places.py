@@ -6,9 +6,9 @@ from typing import Any
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.view import View
-from nodes.extern.web.views.trees import Node, place_tree
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.view import View
+from semmap.nodes.extern.web.views.trees import Node, place_tree
 
 
 def places(page: Page) -> None:

@@ -8,10 +8,10 @@ from typing import Final
 
 from nicegui import events, ui
 
-from nodes.extern.plan.floor import Floor, floor_of
-from nodes.extern.plan.svg import Drawing, draw
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.redrawing import Redrawing
+from semmap.nodes.extern.plan.floor import Floor, floor_of
+from semmap.nodes.extern.plan.svg import Drawing, draw
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.redrawing import Redrawing
 
 _MARKED: Final = 'fill="rgba(47,129,247,.25)" stroke="#2f81f7" stroke-width="2"'
 _PRINT: Final = """

@@ -6,9 +6,9 @@ from typing import Final
 
 from nicegui import ui
 
-from nodes.extern.web.views.steps import HOW, lines
-from nodes.kb_node.reasoner.explain.words import Words
-from schemas.explanations import Explanation
+from semmap.nodes.extern.web.views.steps import HOW, lines
+from semmap.nodes.kb_node.reasoner.explain.words import Words
+from semmap.schemas.explanations import Explanation
 
 _MOST_LINES: Final = 200
 _INDENT_PX: Final = 14

@@ -9,7 +9,7 @@ from typing import Final
 from nicegui import context, ui
 from nicegui.slot import Slot
 
-from nodes.extern.web.page import Page
+from semmap.nodes.extern.web.page import Page
 
 _PAUSE_S: Final = 0.4
 

@@ -6,13 +6,13 @@ from typing import Any
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.proof import proof
-from nodes.extern.web.panels.view import View
-from nodes.extern.web.views.mends import Mend, mends
-from nodes.extern.web.views.sentences import in_the_page
-from schemas import errors
-from schemas.commands import Command
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.proof import proof
+from semmap.nodes.extern.web.panels.view import View
+from semmap.nodes.extern.web.views.mends import Mend, mends
+from semmap.nodes.extern.web.views.sentences import in_the_page
+from semmap.schemas import errors
+from semmap.schemas.commands import Command
 
 
 def refused(page: Page, command: Command[Any], error: errors.SemmapError) -> None:

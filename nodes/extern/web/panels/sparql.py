@@ -7,14 +7,14 @@ from typing import Final
 
 from nicegui import ui
 
-from nodes.extern.cli.output.sparql_formats import text
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.tables import columns_of, names_of, table
-from nodes.extern.web.views.examples import FIRST, Example, examples
-from nodes.extern.web.views.sparql_rows import rows_of, summary
-from schemas import errors
-from schemas.commands import Sparql
-from schemas.sparql import SparqlResult
+from semmap.nodes.extern.cli.output.sparql_formats import text
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.tables import columns_of, names_of, table
+from semmap.nodes.extern.web.views.examples import FIRST, Example, examples
+from semmap.nodes.extern.web.views.sparql_rows import rows_of, summary
+from semmap.schemas import errors
+from semmap.schemas.commands import Sparql
+from semmap.schemas.sparql import SparqlResult
 
 _TIMEOUT_S: Final = 5.0
 _ROWS: Final = 10_000

@@ -7,13 +7,13 @@ from typing import Final
 
 from nicegui import ui
 
-from nodes.extern.sparql_client import StandingQuery
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.tables import columns_of, names_of, table
-from nodes.extern.web.standing import Following
-from nodes.extern.web.views.sparql_rows import Standing
-from schemas import errors, wording
-from schemas.sparql import RowsChanged
+from semmap.nodes.extern.sparql_client import StandingQuery
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.tables import columns_of, names_of, table
+from semmap.nodes.extern.web.standing import Following
+from semmap.nodes.extern.web.views.sparql_rows import Standing
+from semmap.schemas import errors, wording
+from semmap.schemas.sparql import RowsChanged
 
 MOST: Final = 8
 """Standing queries of one tab."""

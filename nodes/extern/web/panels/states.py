@@ -7,14 +7,14 @@ from typing import Any
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.choice import Choice
-from nodes.extern.web.panels.rows import Renew, Rows
-from nodes.extern.web.panels.view import View
-from nodes.extern.web.views import forms
-from nodes.extern.web.views.states import State, in_common, states
-from schemas import errors
-from schemas.entities import Entity
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.choice import Choice
+from semmap.nodes.extern.web.panels.rows import Renew, Rows
+from semmap.nodes.extern.web.panels.view import View
+from semmap.nodes.extern.web.views import forms
+from semmap.nodes.extern.web.views.states import State, in_common, states
+from semmap.schemas import errors
+from semmap.schemas.entities import Entity
 
 _UNSET = "not said"
 

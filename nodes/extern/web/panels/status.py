@@ -7,14 +7,14 @@ from typing import Any, Final
 
 from nicegui import ui
 
-from nodes.extern.web.live import Happening
-from nodes.extern.web.loads import loads_of
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.redrawing import Redrawing
-from nodes.extern.web.panels.tables import table
-from nodes.extern.web.views.rates import KEPT_S, Sample, degraded, headline, node_rows
-from schemas import errors
-from schemas.commands import Status
+from semmap.nodes.extern.web.live import Happening
+from semmap.nodes.extern.web.loads import loads_of
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.redrawing import Redrawing
+from semmap.nodes.extern.web.panels.tables import table
+from semmap.nodes.extern.web.views.rates import KEPT_S, Sample, degraded, headline, node_rows
+from semmap.schemas import errors
+from semmap.schemas.commands import Status
 
 _COLUMNS: Final = (
     ("node", "node"), ("state", "state"), ("detail", "says"), ("beat", "heartbeat"), ("up", "up for"),

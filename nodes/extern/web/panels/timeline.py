@@ -8,13 +8,13 @@ from typing import Any, Final
 
 from nicegui import ui
 
-from nodes.extern.cli.output.lines import touched
-from nodes.extern.phrasing import author, moment
-from nodes.extern.web.differences import Difference, Mark, counted
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.rows import Rows
-from nodes.runtime import rhythm
-from schemas import errors
+from semmap.nodes.extern.cli.output.lines import touched
+from semmap.nodes.extern.phrasing import author, moment
+from semmap.nodes.extern.web.differences import Difference, Mark, counted
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.rows import Rows
+from semmap.nodes.runtime import rhythm
+from semmap.schemas import errors
 
 _SPEEDS: Final = {0.1: "0.1 ×", 1.0: "1 ×", 10.0: "10 ×", 100.0: "100 ×", 1000.0: "1000 ×"}
 _COMPARED: Final = {"before": "the commit before", "now": "now", "": "nothing"}

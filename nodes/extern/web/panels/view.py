@@ -10,11 +10,11 @@ from typing import Any, Final
 from msgspec import structs
 from nicegui import ui
 
-from nodes.extern.web.knowing import Knowing
-from nodes.extern.web.page import Page
-from nodes.extern.web.views.entity_rows import Table, Wanted
-from nodes.extern.web.views.whereabouts import Whereabouts
-from schemas import errors
+from semmap.nodes.extern.web.knowing import Knowing
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.views.entity_rows import Table, Wanted
+from semmap.nodes.extern.web.views.whereabouts import Whereabouts
+from semmap.schemas import errors
 
 log = logging.getLogger(__name__)
 

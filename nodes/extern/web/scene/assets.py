@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from nodes.drawing.bending import Bends, bent
-from nodes.drawing.surfaces import Kind, SurfaceCache
-from nodes.extern.web.live import Live
-from nodes.extern.web.scene.meshes import glb
-from nodes.extern.web.scene.shown import BOX, Key
-from schemas import errors, keys
-from schemas.entities import Size
-from schemas.scenes import Scene, Surface, SurfaceQuery, WorldQuery
+from semmap.nodes.drawing.bending import Bends, bent
+from semmap.nodes.drawing.surfaces import Kind, SurfaceCache
+from semmap.nodes.extern.web.live import Live
+from semmap.nodes.extern.web.scene.meshes import glb
+from semmap.nodes.extern.web.scene.shown import BOX, Key
+from semmap.schemas import errors, keys
+from semmap.schemas.entities import Size
+from semmap.schemas.scenes import Scene, Surface, SurfaceQuery, WorldQuery
 
 _AT_ONCE: Final = 50
 

@@ -9,9 +9,9 @@ from typing import Any, Final
 import numpy as np
 from viser import BatchedGlbHandle, BatchedMeshHandle, SceneApi
 
-from nodes.extern.web.scene.meshes import cube, opacity_of
-from nodes.extern.web.scene.shown import BOX, Batch, Key, Shown, batch_of, by_key
-from schemas.entities import Pose
+from semmap.nodes.extern.web.scene.meshes import cube, opacity_of
+from semmap.nodes.extern.web.scene.shown import BOX, Batch, Key, Shown, batch_of, by_key
+from semmap.schemas.entities import Pose
 
 _MANY: Final = 400
 """Of more things, what is far away is drawn coarser, and nothing casts a shadow."""

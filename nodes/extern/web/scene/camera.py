@@ -12,9 +12,9 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from nodes.extern.web.scene.picking import corners_of
-from schemas.entities import Entity, Vector
-from schemas.relations import ViewPoint
+from semmap.nodes.extern.web.scene.picking import corners_of
+from semmap.schemas.entities import Entity, Vector
+from semmap.schemas.relations import ViewPoint
 
 Floats = NDArray[np.float64]
 

@@ -6,10 +6,10 @@ from typing import Final
 
 from nicegui import ui
 
-from nodes.extern.web.page import Page
-from nodes.extern.web.panels.redrawing import in_view
-from nodes.extern.web.proxy import PATH
-from nodes.extern.web.scene.tab import SWITCHES, Switch, TabScene
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.redrawing import in_view
+from semmap.nodes.extern.web.proxy import PATH
+from semmap.nodes.extern.web.scene.tab import SWITCHES, Switch, TabScene
 
 _ICONS: Final[dict[Switch, str]] = {
     "names": "label",

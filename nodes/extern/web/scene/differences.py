@@ -7,10 +7,10 @@ from typing import Final
 
 from msgspec import Struct
 
-from nodes.extern.phrasing import changed_in_short
-from nodes.extern.web import differences as of_maps
-from nodes.extern.web.differences import Mark
-from schemas.entities import Entity, Pose, Size
+from semmap.nodes.extern.phrasing import changed_in_short
+from semmap.nodes.extern.web import differences as of_maps
+from semmap.nodes.extern.web.differences import Mark
+from semmap.schemas.entities import Entity, Pose, Size
 
 _UNKNOWN_M: Final[Size] = (0.2, 0.2, 0.2)
 

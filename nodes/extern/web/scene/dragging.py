@@ -8,8 +8,8 @@ from typing import Any, Final, Literal
 
 from viser import SceneApi, TransformControlsHandle
 
-from nodes.extern.web.scene.picking import Solid, support_m
-from schemas.entities import Pose, Size, orientation_from_yaw
+from semmap.nodes.extern.web.scene.picking import Solid, support_m
+from semmap.schemas.entities import Pose, Size, orientation_from_yaw
 
 Phase = Literal["start", "update", "end"]
 Dragged = Callable[[Phase, Pose], None]

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from viser import LabelHandle, LineSegmentsHandle, SceneApi
 
-from nodes.extern.web.scene.meshes import linear
-from schemas.entities import Vector
+from semmap.nodes.extern.web.scene.meshes import linear
+from semmap.schemas.entities import Vector
 
 Rgb = tuple[int, int, int]
 Segments = NDArray[np.float32]

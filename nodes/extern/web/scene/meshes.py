@@ -9,7 +9,7 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.scenes import Surface
+from semmap.schemas.scenes import Surface
 
 Look = Literal["solid", "ghost", "believed", "past", "wall"]
 """`solid`: as it is. `ghost`: a body that does not collide. `believed`: an entity without a body. `past`: as

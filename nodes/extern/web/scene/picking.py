@@ -9,8 +9,8 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from schemas.entities import Pose, Size, Vector
-from schemas.scenes import Surface
+from semmap.schemas.entities import Pose, Size, Vector
+from semmap.schemas.scenes import Surface
 
 Floats = NDArray[np.float64]
 

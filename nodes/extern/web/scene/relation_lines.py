@@ -7,8 +7,8 @@ from typing import Final
 
 from msgspec import Struct
 
-from schemas.entities import Vector
-from schemas.relations import Relation, RelationName
+from semmap.schemas.entities import Vector
+from semmap.schemas.relations import Relation, RelationName
 
 _WORDS: Final[dict[RelationName, tuple[str, bool]]] = {
     "isOn": ("on", False),

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from viser import BatchedGlbHandle, MeshHandle, SceneApi
 
-from nodes.drawing.palette import colour_of
-from nodes.drawing.sheets import triangles_of
-from nodes.extern.web.scene.marks import Written
-from nodes.extern.web.scene.meshes import cube, glb, linear, srgb
-from schemas import errors
-from schemas.entities import Entity
-from schemas.polygons import Polygon, extent_of
-from schemas.scenes import Surface
+from semmap.nodes.drawing.palette import colour_of
+from semmap.nodes.drawing.sheets import triangles_of
+from semmap.nodes.extern.web.scene.marks import Written
+from semmap.nodes.extern.web.scene.meshes import cube, glb, linear, srgb
+from semmap.schemas import errors
+from semmap.schemas.entities import Entity
+from semmap.schemas.polygons import Polygon, extent_of
+from semmap.schemas.scenes import Surface
 
 _SHEET_M = 0.01
 _ROOMS_IN_ROOM = 2

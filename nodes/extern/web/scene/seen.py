@@ -14,15 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 from viser import SceneApi
 
-from nodes import bus
-from nodes.drawing.palette import GREY, colour_of
-from nodes.extern.web.live import Live
-from nodes.extern.web.scene.marks import Labels, Lines
-from nodes.extern.web.scene.picking import edges_of
-from schemas import keys
-from schemas.entities import Vector
-from schemas.perception import Observation, Observations, SegmentedCloud
-from schemas.scenes import CameraFrame
+from semmap.nodes import bus
+from semmap.nodes.drawing.palette import GREY, colour_of
+from semmap.nodes.extern.web.live import Live
+from semmap.nodes.extern.web.scene.marks import Labels, Lines
+from semmap.nodes.extern.web.scene.picking import edges_of
+from semmap.schemas import keys
+from semmap.schemas.entities import Vector
+from semmap.schemas.perception import Observation, Observations, SegmentedCloud
+from semmap.schemas.scenes import CameraFrame
 
 log = logging.getLogger(__name__)
 

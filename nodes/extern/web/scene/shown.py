@@ -9,14 +9,14 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from nodes.drawing.bending import Bends
-from nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of
-from nodes.drawing.palette import GREY, colour_of
-from nodes.drawing.surfaces import look_of
-from nodes.extern.web.scene.meshes import Look, linear, srgb, veiled
-from schemas.entities import Entity, Pose, Size
-from schemas.joints import JOINT_POSITIONS, positions_of
-from schemas.scenes import Body, Surface
+from semmap.nodes.drawing.bending import Bends
+from semmap.nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of
+from semmap.nodes.drawing.palette import GREY, colour_of
+from semmap.nodes.drawing.surfaces import look_of
+from semmap.nodes.extern.web.scene.meshes import Look, linear, srgb, veiled
+from semmap.schemas.entities import Entity, Pose, Size
+from semmap.schemas.joints import JOINT_POSITIONS, positions_of
+from semmap.schemas.scenes import Body, Surface
 
 Floats = NDArray[np.float32]
 

@@ -7,12 +7,12 @@ import contextlib
 
 from viser import ClientHandle
 
-from nodes.extern.web.live import Happening, Live
-from nodes.extern.web.page import Page
-from nodes.extern.web.scene.assets import Assets
-from nodes.extern.web.scene.controls import scene
-from nodes.extern.web.scene.tab import TabScene
-from nodes.extern.web.scene.viser_server import SceneServer
+from semmap.nodes.extern.web.live import Happening, Live
+from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.scene.assets import Assets
+from semmap.nodes.extern.web.scene.controls import scene
+from semmap.nodes.extern.web.scene.tab import TabScene
+from semmap.nodes.extern.web.scene.viser_server import SceneServer
 
 
 class Stage:

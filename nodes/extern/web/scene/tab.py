@@ -10,25 +10,25 @@ from typing import Any, Final, Literal
 from msgspec import structs
 from viser import ClientHandle
 
-from nodes.drawing.figures import still
-from nodes.extern.web.differences import Mark
-from nodes.extern.web.page import Page, Place
-from nodes.extern.web.scene.assets import Assets
-from nodes.extern.web.scene.bodies import Bodies
-from nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, uncrowded
-from nodes.extern.web.scene.differences import drawn
-from nodes.extern.web.scene.dragging import Gizmo, Phase, put_down
-from nodes.extern.web.scene.marks import Labels, Lines, Rgb, Written, dashed, joined, line
-from nodes.extern.web.scene.picking import Solid, edges_of, first_hit
-from nodes.extern.web.scene.relation_lines import relation_lines
-from nodes.extern.web.scene.rooms import Rooms
-from nodes.extern.web.scene.seen import Seen
-from nodes.extern.web.scene.shown import BOX, Key, Shown, shown
-from schemas import errors, keys
-from schemas.commands import Move, Relations
-from schemas.entities import Pose, Size, Vector
-from schemas.relations import Relation, ViewPoint
-from schemas.scenes import Body, SceneQuery
+from semmap.nodes.drawing.figures import still
+from semmap.nodes.extern.web.differences import Mark
+from semmap.nodes.extern.web.page import Page, Place
+from semmap.nodes.extern.web.scene.assets import Assets
+from semmap.nodes.extern.web.scene.bodies import Bodies
+from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, uncrowded
+from semmap.nodes.extern.web.scene.differences import drawn
+from semmap.nodes.extern.web.scene.dragging import Gizmo, Phase, put_down
+from semmap.nodes.extern.web.scene.marks import Labels, Lines, Rgb, Written, dashed, joined, line
+from semmap.nodes.extern.web.scene.picking import Solid, edges_of, first_hit
+from semmap.nodes.extern.web.scene.relation_lines import relation_lines
+from semmap.nodes.extern.web.scene.rooms import Rooms
+from semmap.nodes.extern.web.scene.seen import Seen
+from semmap.nodes.extern.web.scene.shown import BOX, Key, Shown, shown
+from semmap.schemas import errors, keys
+from semmap.schemas.commands import Move, Relations
+from semmap.schemas.entities import Pose, Size, Vector
+from semmap.schemas.relations import Relation, ViewPoint
+from semmap.schemas.scenes import Body, SceneQuery
 
 Switch = Literal["names", "walls", "relations", "from here", "boxes", "observations", "cloud", "cameras"]
 SWITCHES: Final[dict[Switch, str]] = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from schemas.language import Candidate, Found
+from semmap.schemas.language import Candidate, Found
 
 Tone = Literal["found", "question", "nothing"]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from schemas import wording
-from schemas.replies import Changed
+from semmap.schemas import wording
+from semmap.schemas.replies import Changed
 
 _FEW: Final = 4
 

@@ -7,10 +7,10 @@ from typing import Final, NamedTuple
 
 from msgspec import Struct
 
-from nodes.extern.phrasing import pose_cells
-from nodes.extern.web.views.whereabouts import Whereabouts
-from schemas.entities import Entity, Pose
-from schemas.scenes import Body
+from semmap.nodes.extern.phrasing import pose_cells
+from semmap.nodes.extern.web.views.whereabouts import Whereabouts
+from semmap.schemas.entities import Entity, Pose
+from semmap.schemas.scenes import Body
 
 Cells = dict[str, str | float | None]
 """One row, by column; `name` is its key."""

@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Final, NamedTuple
 
-from ontology import vocabulary as v
-from schemas.entities import ClassInfo, Entity
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import ClassInfo, Entity
 
 FIRST: Final = (
     "SELECT ?thing ?class WHERE {\n  ?thing a ?class ; dm:hasPosition ?position .\n}\nORDER BY ?thing"

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Final, NamedTuple, get_args
 
-from nodes.extern.phrasing import english
-from nodes.kb_node.reasoner.explain.sentences import said
-from nodes.kb_node.reasoner.explain.words import Words
-from ontology import vocabulary as v
-from schemas.changes import value_in_words
-from schemas.entities import Entity, PropertyInfo, Value
-from schemas.explanations import Triple
-from schemas.relations import Relation, RelationName
+from semmap.nodes.extern.phrasing import english
+from semmap.nodes.kb_node.reasoner.explain.sentences import said
+from semmap.nodes.kb_node.reasoner.explain.words import Words
+from semmap.ontology import vocabulary as v
+from semmap.schemas.changes import value_in_words
+from semmap.schemas.entities import Entity, PropertyInfo, Value
+from semmap.schemas.explanations import Triple
+from semmap.schemas.relations import Relation, RelationName
 
 _MEASURED: Final = frozenset(v.dm(name) for name in get_args(RelationName)) - {v.dm("isLocatedIn")}
 """Properties that poses tell; where a thing is located also follows from where others are."""

@@ -6,10 +6,10 @@ import re
 from collections.abc import Collection, Iterable, Iterator
 from typing import Final, Literal, NamedTuple
 
-from nodes.extern.web.views.steps import HOW, Line, lines, words_of
-from schemas.entities import ClassInfo, Entity
-from schemas.explanations import Explanation
-from schemas.replies import Checked
+from semmap.nodes.extern.web.views.steps import HOW, Line, lines, words_of
+from semmap.schemas.entities import ClassInfo, Entity
+from semmap.schemas.explanations import Explanation
+from semmap.schemas.replies import Checked
 
 Gravity = Literal["contradiction", "withheld", "denied", "doubt", "body", "crowd"]
 

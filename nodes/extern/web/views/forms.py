@@ -9,12 +9,12 @@ from typing import Final
 
 from msgspec import Struct
 
-from nodes.extern.phrasing import english
-from nodes.extern.web.views.states import State
-from schemas import errors
-from schemas.changes import value_in_words
-from schemas.commands import Add, Batch, Set, Unset, Update
-from schemas.entities import NAME_PATTERN, ClassInfo, Entity, Size, Stated, Value, Vector
+from semmap.nodes.extern.phrasing import english
+from semmap.nodes.extern.web.views.states import State
+from semmap.schemas import errors
+from semmap.schemas.changes import value_in_words
+from semmap.schemas.commands import Add, Batch, Set, Unset, Update
+from semmap.schemas.entities import NAME_PATTERN, ClassInfo, Entity, Size, Stated, Value, Vector
 
 Numbers = Sequence[float | None]
 Entered = str | float | bool | Sequence[str] | None

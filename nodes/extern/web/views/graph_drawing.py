@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any, Final, get_args
 
-from nodes.drawing.neighbourhood import Kind, Knot, Neighbourhood
-from nodes.drawing.palette import GREY, colour_of
-from ontology import vocabulary as v
-from schemas.entities import Entity
-from schemas.happenings import KeptRelation
-from schemas.sparql import Row
+from semmap.nodes.drawing.neighbourhood import Kind, Knot, Neighbourhood
+from semmap.nodes.drawing.palette import GREY, colour_of
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import Entity
+from semmap.schemas.happenings import KeptRelation
+from semmap.schemas.sparql import Row
 
 Relations = dict[str, tuple[tuple[str, str], ...]]
 

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.drawing.neighbourhood import Neighbourhood
+from semmap.nodes.drawing.neighbourhood import Neighbourhood
 
 Floats = NDArray[np.float64]
 Positions = dict[str, tuple[float, float]]

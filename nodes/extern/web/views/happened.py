@@ -6,10 +6,10 @@ from collections.abc import Collection, Iterable
 from datetime import datetime
 from typing import Any, Final, NamedTuple
 
-from nodes.extern.cli.output.lines import touched
-from nodes.extern.phrasing import author
-from schemas.health import Health
-from schemas.replies import LoggedCommit
+from semmap.nodes.extern.cli.output.lines import touched
+from semmap.nodes.extern.phrasing import author
+from semmap.schemas.health import Health
+from semmap.schemas.replies import LoggedCommit
 
 WARNING: Final = "warning"
 MOST: Final = 2000

@@ -7,12 +7,12 @@ from typing import Any, Final, NamedTuple
 
 from msgspec import structs
 
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.changes import value_in_words
-from schemas.commands import Add, Batch, Command, Remove, Set, Unset, Update
-from schemas.entities import ClassInfo, Entity, Value, free_name, name_stem
-from schemas.explanations import Explanation
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.changes import value_in_words
+from semmap.schemas.commands import Add, Batch, Command, Remove, Set, Unset, Update
+from semmap.schemas.entities import ClassInfo, Entity, Value, free_name, name_stem
+from semmap.schemas.explanations import Explanation
 
 _FORCE: Final = "add --force"
 _MOST: Final = 6

@@ -6,11 +6,11 @@ import math
 from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
 
-from nodes.extern.phrasing import author, moment, provenance_text
-from nodes.extern.web.views.whereabouts import footprint_m2
-from schemas.changes import Change
-from schemas.entities import Entity, Pose, distance_m
-from schemas.replies import LoggedCommit
+from semmap.nodes.extern.phrasing import author, moment, provenance_text
+from semmap.nodes.extern.web.views.whereabouts import footprint_m2
+from semmap.schemas.changes import Change
+from semmap.schemas.entities import Entity, Pose, distance_m
+from semmap.schemas.replies import LoggedCommit
 
 _STILL_M = 5e-4
 

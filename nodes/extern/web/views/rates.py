@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Iterable, Mapping
 from typing import Final, NamedTuple
 
-from schemas import keys, wording
-from schemas.health import Health
-from schemas.replies import SystemStatus
+from semmap.schemas import keys, wording
+from semmap.schemas.health import Health
+from semmap.schemas.replies import SystemStatus
 
 KEPT_S: Final = 600.0
 EVERY_S: Final = 2.0

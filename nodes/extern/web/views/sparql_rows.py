@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import Any, Final, NamedTuple
 
-from nodes.extern.cli.output.sparql_formats import spoken
-from ontology import vocabulary as v
-from schemas import wording
-from schemas.explanations import Term
-from schemas.sparql import Row, RowsChanged, SparqlResult
+from semmap.nodes.extern.cli.output.sparql_formats import spoken
+from semmap.ontology import vocabulary as v
+from semmap.schemas import wording
+from semmap.schemas.explanations import Term
+from semmap.schemas.sparql import Row, RowsChanged, SparqlResult
 
 ID: Final = "id"
 NAMES: Final = "names"

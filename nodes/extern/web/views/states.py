@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Final, Literal, NamedTuple
 
-from nodes.extern.phrasing import english, labelled
-from ontology import vocabulary as v
-from schemas.changes import stated_in_words
-from schemas.entities import Entity, PropertyInfo, Stated
+from semmap.nodes.extern.phrasing import english, labelled
+from semmap.ontology import vocabulary as v
+from semmap.schemas.changes import stated_in_words
+from semmap.schemas.entities import Entity, PropertyInfo, Stated
 
 Kind = Literal["switch", "number", "choice", "thing", "text"]
 

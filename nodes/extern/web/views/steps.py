@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Final, Literal, NamedTuple
 
-from nodes.kb_node.reasoner.explain.sentences import Clause, clauses
-from nodes.kb_node.reasoner.explain.words import Words
-from ontology import vocabulary as v
-from schemas.entities import ClassInfo, PropertyInfo
-from schemas.explanations import Explanation, Step, Term, Triple
+from semmap.nodes.kb_node.reasoner.explain.sentences import Clause, clauses
+from semmap.nodes.kb_node.reasoner.explain.words import Words
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import ClassInfo, PropertyInfo
+from semmap.schemas.explanations import Explanation, Step, Term, Triple
 
 How = Literal["follows", "asserted", "measured", "axiom", "supposed", "contradiction"]
 

@@ -6,10 +6,10 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from nodes.extern.phrasing import english
-from nodes.extern.web.views.whereabouts import Whereabouts, footprint_m2
-from ontology import vocabulary as v
-from schemas.entities import ClassInfo, Entity
+from semmap.nodes.extern.phrasing import english
+from semmap.nodes.extern.web.views.whereabouts import Whereabouts, footprint_m2
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import ClassInfo, Entity
 
 Node = dict[str, Any]
 """As a tree takes it: `id`, `label` and `children`. An id is unique in the tree; `name` is what it is of."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from schemas.packing import PACKED_FROM
+from semmap.schemas.packing import PACKED_FROM
 
 LARGEST: Final = 200 << 20
 """Bytes; what is larger is loaded with the command line, from a file."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from typing import Final
 
-from ontology import vocabulary as v
-from schemas.commits import Commit
-from schemas.entities import Entity
-from schemas.explanations import Term
-from schemas.sparql import Row
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Term
+from semmap.schemas.sparql import Row
 
 _ON: Final = v.dm("isOn")
 _INSIDE: Final = v.dm("isInside")

@@ -12,9 +12,9 @@ from typing import Any
 
 import pyhornedowl.model as m
 
-from nodes.kb_node.documents.owl.expression_triples import DATATYPE, Expressions, owl, swrl
-from ontology import vocabulary as v
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.documents.owl.expression_triples import DATATYPE, Expressions, owl, swrl
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term, Triple
 
 _AXIOM, _ANNOTATION = owl("Axiom"), owl("Annotation")
 _DECLARATIONS: dict[type, Term] = {

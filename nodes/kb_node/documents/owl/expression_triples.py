@@ -7,8 +7,8 @@ from typing import Any
 
 import pyhornedowl.model as m
 
-from ontology import vocabulary as v
-from schemas.explanations import Term, Triple
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term, Triple
 
 _SWRL = "http://www.w3.org/2003/11/swrl#"
 _PLAIN_LITERAL = f"{v.RDF}PlainLiteral"

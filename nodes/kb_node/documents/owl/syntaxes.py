@@ -9,9 +9,9 @@ from xml.parsers import expat
 
 import pyhornedowl
 
-from nodes.kb_node.documents.owl.axiom_triples import triples_of
-from ontology import vocabulary as v
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.documents.owl.axiom_triples import triples_of
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Triple
 
 OwlSyntax = Literal["functional", "manchester", "owlxml"]
 

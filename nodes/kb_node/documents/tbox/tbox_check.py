@@ -9,21 +9,21 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from statistics import median
 
-from nodes.kb_node.documents import ontology_files
-from nodes.kb_node.documents.abox_document import is_built_in
-from nodes.kb_node.documents.ontology_files import VERSION, Gathered
-from nodes.kb_node.documents.tbox import tbox_declarations
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.entailment.explaining import empty_classes
-from nodes.kb_node.reasoner.tbox.profile import outside_rl
-from nodes.kb_node.reasoner.tbox.split import is_schema
-from ontology import prefixes, stars
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.entities import Pose
-from schemas.explanations import Term, Triple
-from schemas.tbox_report import Quickness, TBoxReport, Unsatisfiable
+from semmap.nodes.kb_node.documents import ontology_files
+from semmap.nodes.kb_node.documents.abox_document import is_built_in
+from semmap.nodes.kb_node.documents.ontology_files import VERSION, Gathered
+from semmap.nodes.kb_node.documents.tbox import tbox_declarations
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.entailment.explaining import empty_classes
+from semmap.nodes.kb_node.reasoner.tbox.profile import outside_rl
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.ontology import prefixes, stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.entities import Pose
+from semmap.schemas.explanations import Term, Triple
+from semmap.schemas.tbox_report import Quickness, TBoxReport, Unsatisfiable
 
 _CLASSES = (v.OWL_CLASS, v.RDFS_CLASS)
 _PATIENCE_S = 60.0

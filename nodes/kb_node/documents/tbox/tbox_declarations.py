@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from types import MappingProxyType
 
-from nodes.kb_node.entities import alignments
-from nodes.kb_node.entities.class_table import ClassTable
-from ontology import prefixes
-from ontology import vocabulary as v
-from ontology.name_index import Ambiguous, Named, NameIndex
-from ontology.prefixes import Prefixes
-from schemas import errors
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.entities import alignments
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.ontology import prefixes
+from semmap.ontology import vocabulary as v
+from semmap.ontology.name_index import Ambiguous, Named, NameIndex
+from semmap.ontology.prefixes import Prefixes
+from semmap.schemas import errors
+from semmap.schemas.explanations import Term, Triple
 
 _TRUE = v.literal("true", v.XSD_BOOLEAN)
 

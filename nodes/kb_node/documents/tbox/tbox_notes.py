@@ -7,17 +7,17 @@ from collections import Counter
 from collections.abc import Iterable
 from contextlib import suppress
 
-from nodes.kb_node.documents import ontology_files, rdf
-from nodes.kb_node.documents.tbox import tbox_validation
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.tbox.profile import outside_rl
-from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.relations.facts.rules import COMPUTED
-from ontology import HOUSEHOLD_TTL
-from ontology import vocabulary as v
-from schemas import wording
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.documents import ontology_files, rdf
+from semmap.nodes.kb_node.documents.tbox import tbox_validation
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.tbox.profile import outside_rl
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
+from semmap.ontology import HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
+from semmap.schemas import wording
+from semmap.schemas.explanations import Triple
 
 _FEW = 5
 _SOMETHING = ("<urn:semmap:something>", v.RDF_TYPE, v.OWL_THING)

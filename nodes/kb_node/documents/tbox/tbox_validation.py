@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from nodes.kb_node import proofs
-from nodes.kb_node.documents import abox_document, ontology_files
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.explanations import Triple
+from semmap.nodes.kb_node import proofs
+from semmap.nodes.kb_node.documents import abox_document, ontology_files
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.explanations import Triple
 
 
 class DoesNotFit(errors.Refused):

@@ -11,16 +11,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import combinations, count
 
-from nodes.kb_node.reasoner import datatypes
-from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
-from nodes.kb_node.reasoner.abox.steps import Steps
-from nodes.kb_node.reasoner.abox.store import DERIVED, Store
-from nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, Group, Role
-from nodes.kb_node.reasoner.tbox.schema import Schema
-from nodes.kb_node.reasoner.terms import is_literal
+from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
+from semmap.nodes.kb_node.reasoner.abox.steps import Steps
+from semmap.nodes.kb_node.reasoner.abox.store import DERIVED, Store
+from semmap.nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, Group, Role
+from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
+from semmap.nodes.kb_node.reasoner.terms import is_literal
 
 MANY = 16
 """Pairs of nodes beyond which edges are searched by the one end only."""

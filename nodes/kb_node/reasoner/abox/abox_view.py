@@ -6,14 +6,14 @@ from collections.abc import Iterable, Iterator, Set
 from contextlib import suppress
 from itertools import chain
 
-from nodes.kb_node.reasoner import datatypes
-from nodes.kb_node.reasoner.abox.abox import ABox
-from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.abox.kinds import Kind
-from nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Role
-from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal
+from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.abox.abox import ABox
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kind
+from semmap.nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Role
+from semmap.nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal
 
 Further = tuple[tuple[int, Term], ...]
 """Properties with their names that an edge implies, at one of its ends."""

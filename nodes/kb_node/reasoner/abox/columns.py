@@ -11,9 +11,9 @@ from collections.abc import Iterator
 
 from msgspec import Struct
 
-from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.terms import TYPE
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 ASSERTED = 0
 """The source of an edge that is asserted."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nodes.kb_node.reasoner.abox.abox import ABox, Equals
-from nodes.kb_node.reasoner.explain.reasons import Claim, Clash, Edge, Member, Same, member
-from nodes.kb_node.reasoner.tbox.axioms import ANY, Key, Limit, NotCompilable, Role
-from nodes.kb_node.reasoner.terms import is_literal
+from semmap.nodes.kb_node.reasoner.abox.abox import ABox, Equals
+from semmap.nodes.kb_node.reasoner.explain.reasons import Claim, Clash, Edge, Member, Same, member
+from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, Key, Limit, NotCompilable, Role
+from semmap.nodes.kb_node.reasoner.terms import is_literal
 
 
 class Equality:

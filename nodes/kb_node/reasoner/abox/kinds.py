@@ -6,10 +6,10 @@ import re
 from array import array
 from collections.abc import Iterable, Iterator
 
-from nodes.kb_node.reasoner import datatypes
-from nodes.kb_node.reasoner.explanations import Term
-from nodes.kb_node.reasoner.tbox.schema import Schema
-from nodes.kb_node.reasoner.terms import iri
+from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.explanations import Term
+from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
+from semmap.nodes.kb_node.reasoner.terms import iri
 
 _FLOATING = (iri("xsd:float"), iri("xsd:double"))
 _NUMBER = re.compile(

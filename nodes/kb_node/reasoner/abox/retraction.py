@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from nodes.kb_node.reasoner.abox.abox import ABox, Equals
-from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.abox.kinds import Kind
-from nodes.kb_node.reasoner.abox.saturation import Saturation
-from nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED, GIVEN, VALUE
-from nodes.kb_node.reasoner.explain.reasons import Reason
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, Chain, Role
-from nodes.kb_node.reasoner.terms import TYPE
+from semmap.nodes.kb_node.reasoner.abox.abox import ABox, Equals
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kind
+from semmap.nodes.kb_node.reasoner.abox.saturation import Saturation
+from semmap.nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED, GIVEN, VALUE
+from semmap.nodes.kb_node.reasoner.explain.reasons import Reason
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, Chain, Role
+from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 
 class Retraction:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from nodes.kb_node.reasoner.abox.abox import ABox
-from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.abox.equality import Equality
-from nodes.kb_node.reasoner.abox.steps import EdgeRules, Step
-from nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED, DERIVED, VALUE
-from nodes.kb_node.reasoner.explain.reasons import Claim, Clash, Edge, Member, Same, member
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Chain, NotCompilable
-from nodes.kb_node.reasoner.terms import TYPE
+from semmap.nodes.kb_node.reasoner.abox.abox import ABox
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
+from semmap.nodes.kb_node.reasoner.abox.equality import Equality
+from semmap.nodes.kb_node.reasoner.abox.steps import EdgeRules, Step
+from semmap.nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED, DERIVED, VALUE
+from semmap.nodes.kb_node.reasoner.explain.reasons import Claim, Clash, Edge, Member, Same, member
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Chain, NotCompilable
+from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 
 class Saturation:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from array import array
 from collections.abc import Sequence
 
-from nodes.kb_node.reasoner.abox.abox import ABox
-from nodes.kb_node.reasoner.abox.adjacency import Adjacency
-from nodes.kb_node.reasoner.abox.columns import Claimed, Columns, KindSaid
-from nodes.kb_node.reasoner.abox.kinds import Kind, bits, mask_of
-from nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member
-from nodes.kb_node.reasoner.terms import is_named
+from semmap.nodes.kb_node.reasoner.abox.abox import ABox
+from semmap.nodes.kb_node.reasoner.abox.adjacency import Adjacency
+from semmap.nodes.kb_node.reasoner.abox.columns import Claimed, Columns, KindSaid
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kind, bits, mask_of
+from semmap.nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member
+from semmap.nodes.kb_node.reasoner.terms import is_named
 
 
 def columns_of(abox: ABox, *, schema: bytes, size: int) -> Columns | None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds, mask_of
-from nodes.kb_node.reasoner.tbox.axioms import ANY, SAME, Chain, Group, Key, Limit, Role
-from nodes.kb_node.reasoner.tbox.schema import Schema
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kind, Kinds, mask_of
+from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, SAME, Chain, Group, Key, Limit, Role
+from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,13 +12,13 @@ from collections.abc import Iterable, Mapping, MutableSequence, Sequence, Set
 from itertools import repeat
 from typing import Any, Final
 
-from nodes.kb_node.reasoner.abox.adjacency import NONE, Adjacency
-from nodes.kb_node.reasoner.abox.columns import ASSERTED as ASSERTED
-from nodes.kb_node.reasoner.abox.columns import Columns
-from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
-from nodes.kb_node.reasoner.explanations import Term
-from nodes.kb_node.reasoner.fastpaths.layout import Layout
-from nodes.kb_node.reasoner.terms import is_literal
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE, Adjacency
+from semmap.nodes.kb_node.reasoner.abox.columns import ASSERTED as ASSERTED
+from semmap.nodes.kb_node.reasoner.abox.columns import Columns
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
+from semmap.nodes.kb_node.reasoner.explanations import Term
+from semmap.nodes.kb_node.reasoner.fastpaths.layout import Layout
+from semmap.nodes.kb_node.reasoner.terms import is_literal
 
 BLOCK: Final = 256
 """Nodes or edges that room is made for at once."""

@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from itertools import combinations
 from typing import Final
 
-from nodes.kb_node.reasoner.entailment.expressions import Expression, Named, Or, Reader, Role
-from nodes.kb_node.reasoner.entailment.prover import Prover
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, TYPE, iri
+from semmap.nodes.kb_node.reasoner.entailment.expressions import Expression, Named, Or, Reader, Role
+from semmap.nodes.kb_node.reasoner.entailment.prover import Prover
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, TYPE, iri
 
 
 class Axioms:

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 
-from nodes.kb_node.reasoner.entailment.axiom_tests import Axioms
-from nodes.kb_node.reasoner.entailment.effort import Effort
-from nodes.kb_node.reasoner.entailment.expressions import Reader, Unreadable
-from nodes.kb_node.reasoner.entailment.prover import Prover
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.reasoner import Reasoner
-from nodes.kb_node.reasoner.rules.facts import Facts
-from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.reasoner.terms import FIRST, REST, TYPE, iri, iris, is_literal, is_named
+from semmap.nodes.kb_node.reasoner.entailment.axiom_tests import Axioms
+from semmap.nodes.kb_node.reasoner.entailment.effort import Effort
+from semmap.nodes.kb_node.reasoner.entailment.expressions import Reader, Unreadable
+from semmap.nodes.kb_node.reasoner.entailment.prover import Prover
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.nodes.kb_node.reasoner.terms import FIRST, REST, TYPE, iri, iris, is_literal, is_named
 
 _DECLARED = frozenset(
     iris(

@@ -6,8 +6,8 @@ import time
 from collections.abc import Iterable
 from math import inf
 
-from nodes.kb_node.reasoner.explanations import Triple
-from nodes.kb_node.reasoner.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.explanations import Triple
+from semmap.nodes.kb_node.reasoner.reasoner import Reasoner
 
 _MOST = 1000
 """Suppositions in one proof."""

@@ -6,15 +6,15 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 
-from nodes.kb_node.reasoner.entailment.conclusions import entails
-from nodes.kb_node.reasoner.entailment.effort import Effort
-from nodes.kb_node.reasoner.entailment.prover import Prover
-from nodes.kb_node.reasoner.explain.sentences import denial, following
-from nodes.kb_node.reasoner.explain.words import Words
-from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
-from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS, TYPE, iri, is_literal
+from semmap.nodes.kb_node.reasoner.entailment.conclusions import entails
+from semmap.nodes.kb_node.reasoner.entailment.effort import Effort
+from semmap.nodes.kb_node.reasoner.entailment.prover import Prover
+from semmap.nodes.kb_node.reasoner.explain.sentences import denial, following
+from semmap.nodes.kb_node.reasoner.explain.words import Words
+from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
+from semmap.nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS, TYPE, iri, is_literal
 
 _LABEL, _SUB_CLASS_OF = iri("rdfs:label"), iri("rdfs:subClassOf")
 _DENIED = "_:denied"

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import count
 
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.terms import FIRST, NIL, REST, THING, TYPE, iri, is_named, literal
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.terms import FIRST, NIL, REST, THING, TYPE, iri, is_named, literal
 
 Match = Callable[[Term | None, Term | None, Term | None], Iterable[Triple]]
 """The triples of a pattern, in which None is a wildcard."""

@@ -13,9 +13,9 @@ from contextlib import ExitStack
 from functools import cached_property
 from itertools import combinations, islice
 
-from nodes.kb_node.reasoner import datatypes
-from nodes.kb_node.reasoner.entailment.effort import Effort
-from nodes.kb_node.reasoner.entailment.expressions import (
+from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.entailment.effort import Effort
+from semmap.nodes.kb_node.reasoner.entailment.expressions import (
     And,
     AtLeast,
     AtMost,
@@ -33,12 +33,12 @@ from nodes.kb_node.reasoner.entailment.expressions import (
     Writer,
     negated,
 )
-from nodes.kb_node.reasoner.entailment.suppositions import WIDEST, Alternatives, given
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
-from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.reasoner.terms import (
+from semmap.nodes.kb_node.reasoner.entailment.suppositions import WIDEST, Alternatives, given
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
     NOTHING,
     SAME_AS,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import combinations, islice, product
 
-from nodes.kb_node.reasoner.entailment.expressions import (
+from semmap.nodes.kb_node.reasoner.entailment.expressions import (
     ANYTHING,
     And,
     AtLeast,
@@ -19,8 +19,8 @@ from nodes.kb_node.reasoner.entailment.expressions import (
     Unreadable,
     Writer,
 )
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS, THING, TYPE, iri, is_literal
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS, THING, TYPE, iri, is_literal
 
 WIDEST = 24
 """Alternatives that are told apart; of more nothing is supposed, which is sound."""

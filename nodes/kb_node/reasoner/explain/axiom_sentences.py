@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from nodes.kb_node.reasoner.explain.words import Verb, Words, article, is_uncountable
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.terms import (
+from semmap.nodes.kb_node.reasoner.explain.words import Verb, Words, article, is_uncountable
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.terms import (
     FIRST,
     NIL,
     NOTHING,

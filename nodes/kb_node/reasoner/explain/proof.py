@@ -9,13 +9,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
-from nodes.kb_node.reasoner import datatypes
-from nodes.kb_node.reasoner.explain.sentences import sentence
-from nodes.kb_node.reasoner.explain.words import Words
-from nodes.kb_node.reasoner.explanations import Explanation, Step, Term, Triple
-from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.reasoner.terms import TYPE, iri, is_literal, is_named, literal
+from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.explain.sentences import sentence
+from semmap.nodes.kb_node.reasoner.explain.words import Words
+from semmap.nodes.kb_node.reasoner.explanations import Explanation, Step, Term, Triple
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.nodes.kb_node.reasoner.terms import TYPE, iri, is_literal, is_named, literal
 
 _MOST = 2000
 """Shapes remembered."""

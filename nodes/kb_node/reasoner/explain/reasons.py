@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.tbox.axioms import ANY, Role
+from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, Role
 
 
 class Edge(NamedTuple):

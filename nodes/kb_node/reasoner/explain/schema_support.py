@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable
 from itertools import chain
 from typing import TypeVar
 
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.tbox.axioms import Axioms
-from nodes.kb_node.reasoner.tbox.schema import Schema
-from nodes.kb_node.reasoner.terms import TYPE, iri
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.tbox.axioms import Axioms
+from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
+from semmap.nodes.kb_node.reasoner.terms import TYPE, iri
 
 Found = dict[Triple, None]
 """A set of triples that keeps its order, so that like explanations are found alike."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
-from nodes.kb_node.reasoner.explain.axiom_sentences import Axioms
-from nodes.kb_node.reasoner.explain.words import Words, base_form
-from nodes.kb_node.reasoner.explanations import Step, Term, Triple
-from nodes.kb_node.reasoner.terms import (
+from semmap.nodes.kb_node.reasoner.explain.axiom_sentences import Axioms
+from semmap.nodes.kb_node.reasoner.explain.words import Words, base_form
+from semmap.nodes.kb_node.reasoner.explanations import Step, Term, Triple
+from semmap.nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
     SAME_AS,
     TYPE,

@@ -9,14 +9,14 @@ from collections.abc import Iterable, Iterator
 from math import inf
 from typing import TypeVar
 
-from nodes.kb_node.reasoner.abox.abox import ABox
-from nodes.kb_node.reasoner.abox.kinds import bits
-from nodes.kb_node.reasoner.abox.store import DERIVED, GIVEN
-from nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
-from nodes.kb_node.reasoner.explain.schema_support import Found, SchemaSupport, union
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.tbox.axioms import ANY, Role
-from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, iri
+from semmap.nodes.kb_node.reasoner.abox.abox import ABox
+from semmap.nodes.kb_node.reasoner.abox.kinds import bits
+from semmap.nodes.kb_node.reasoner.abox.store import DERIVED, GIVEN
+from semmap.nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
+from semmap.nodes.kb_node.reasoner.explain.schema_support import Found, SchemaSupport, union
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, Role
+from semmap.nodes.kb_node.reasoner.terms import SAME_AS, TYPE, iri
 
 _T = TypeVar("_T")
 _DEEPEST = 200

@@ -13,8 +13,8 @@ from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import Final, Literal, NamedTuple
 
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.terms import PREFIXES, TYPE, iri, iris, is_literal, is_named, literal
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.terms import PREFIXES, TYPE, iri, iris, is_literal, is_named, literal
 
 _LABEL: Final = iri("rdfs:label")
 _DATA: Final = iri("owl:DatatypeProperty")

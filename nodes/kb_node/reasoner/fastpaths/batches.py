@@ -10,9 +10,9 @@ from collections.abc import Iterable, Sequence
 from itertools import chain, compress
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.abox.kinds import Kind
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.fastpaths.runs import Form, Runs, Terms
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kind
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.fastpaths.runs import Form, Runs, Terms
 
 _MANY = 16
 """Runs that are worth it."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence, Set
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.abox.adjacency import NONE, Adjacency
-from nodes.kb_node.reasoner.abox.store import Store
-from nodes.kb_node.reasoner.explain.reasons import Edge
-from nodes.kb_node.reasoner.explanations import Triple
-from nodes.kb_node.reasoner.tbox.axioms import Group
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE, Adjacency
+from semmap.nodes.kb_node.reasoner.abox.store import Store
+from semmap.nodes.kb_node.reasoner.explain.reasons import Edge
+from semmap.nodes.kb_node.reasoner.explanations import Triple
+from semmap.nodes.kb_node.reasoner.tbox.axioms import Group
 
 
 class Column(NamedTuple):

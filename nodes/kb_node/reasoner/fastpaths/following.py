@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from nodes.kb_node.reasoner.abox.abox import ABox
-from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.abox.kinds import Kind
-from nodes.kb_node.reasoner.abox.steps import EdgeRules, Step
-from nodes.kb_node.reasoner.abox.store import DERIVED, VALUE
-from nodes.kb_node.reasoner.explain.reasons import Edge
-from nodes.kb_node.reasoner.explanations import Term
-from nodes.kb_node.reasoner.fastpaths.edge_columns import Column, Ends
-from nodes.kb_node.reasoner.tbox.axioms import Chain, Role
+from semmap.nodes.kb_node.reasoner.abox.abox import ABox
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kind
+from semmap.nodes.kb_node.reasoner.abox.steps import EdgeRules, Step
+from semmap.nodes.kb_node.reasoner.abox.store import DERIVED, VALUE
+from semmap.nodes.kb_node.reasoner.explain.reasons import Edge
+from semmap.nodes.kb_node.reasoner.explanations import Term
+from semmap.nodes.kb_node.reasoner.fastpaths.edge_columns import Column, Ends
+from semmap.nodes.kb_node.reasoner.tbox.axioms import Chain, Role
 
 Pair = tuple[int, int]
 

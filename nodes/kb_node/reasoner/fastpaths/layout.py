@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.abox.kinds import Kind
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kind
 
 
 class Layout(NamedTuple):

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from nodes.kb_node.reasoner.abox.abox import ABox
-from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.abox.store import Store
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.fastpaths.edge_columns import Column, Ends, ends_of
-from nodes.kb_node.reasoner.fastpaths.following import Following, looked_for
-from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT
-from nodes.kb_node.reasoner.terms import TYPE
+from semmap.nodes.kb_node.reasoner.abox.abox import ABox
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
+from semmap.nodes.kb_node.reasoner.abox.store import Store
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.fastpaths.edge_columns import Column, Ends, ends_of
+from semmap.nodes.kb_node.reasoner.fastpaths.following import Following, looked_for
+from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT
+from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 
 class ManyEdges:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from nodes.kb_node.reasoner.abox.abox import ABox
-from nodes.kb_node.reasoner.abox.store import COMPUTED
-from nodes.kb_node.reasoner.explain.proof import Proof
-from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
-from nodes.kb_node.reasoner.fastpaths.many_edges import ManyEdges
-from nodes.kb_node.reasoner.fastpaths.shapes import Alike, Contradiction, Shapes, Written
-from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, depart_among, exchange
+from semmap.nodes.kb_node.reasoner.abox.abox import ABox
+from semmap.nodes.kb_node.reasoner.abox.store import COMPUTED
+from semmap.nodes.kb_node.reasoner.explain.proof import Proof
+from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
+from semmap.nodes.kb_node.reasoner.fastpaths.many_edges import ManyEdges
+from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Alike, Contradiction, Shapes, Written
+from semmap.nodes.kb_node.reasoner.fastpaths.shortcuts import depart, depart_among, exchange
 
 MANY = 32
 """Computed facts that are worth being taken together."""

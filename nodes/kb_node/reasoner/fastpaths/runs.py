@@ -11,10 +11,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from operator import itemgetter
 from typing import NamedTuple, TypeVar
 
-from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
-from nodes.kb_node.reasoner.abox.store import Store
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.terms import TYPE, is_literal
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
+from semmap.nodes.kb_node.reasoner.abox.store import Store
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.terms import TYPE, is_literal
 
 Words = tuple[tuple[int, Term, int | Term | None], ...]
 """A run without its names, triple by triple: an individual is its place, None is any other object."""

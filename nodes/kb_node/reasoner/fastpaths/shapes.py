@@ -11,16 +11,16 @@ from dataclasses import dataclass
 from itertools import count, repeat
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.abox.abox import ABox
-from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.abox.store import VALUE
-from nodes.kb_node.reasoner.explain.proof import Proof
-from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
-from nodes.kb_node.reasoner.fastpaths.batches import batches
-from nodes.kb_node.reasoner.fastpaths.layout import Layout
-from nodes.kb_node.reasoner.fastpaths.runs import Form, Run, Runs, Shape, Terms
-from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.reasoner.terms import TYPE
+from semmap.nodes.kb_node.reasoner.abox.abox import ABox
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
+from semmap.nodes.kb_node.reasoner.abox.store import VALUE
+from semmap.nodes.kb_node.reasoner.explain.proof import Proof
+from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
+from semmap.nodes.kb_node.reasoner.fastpaths.batches import batches
+from semmap.nodes.kb_node.reasoner.fastpaths.layout import Layout
+from semmap.nodes.kb_node.reasoner.fastpaths.runs import Form, Run, Runs, Shape, Terms
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 _MOST = 2000
 """Shapes remembered."""

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence, Set
 
-from nodes.kb_node.reasoner.abox.abox import ABox
-from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.abox.store import ASSERTED, DERIVED
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.terms import TYPE
+from semmap.nodes.kb_node.reasoner.abox.abox import ABox
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
+from semmap.nodes.kb_node.reasoner.abox.store import ASSERTED, DERIVED
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 _MOST = 256
 """Edges that are looked at besides those asked for: who has more, as values or computed, is no plain case."""

@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from itertools import chain
 
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.terms import TYPE, is_literal
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.terms import TYPE, is_literal
 
 
 def in_stars(triples: Iterable[Triple]) -> list[Triple]:

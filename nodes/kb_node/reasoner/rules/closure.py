@@ -12,12 +12,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from itertools import combinations
 
-from nodes.kb_node.reasoner import datatypes
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.rules.facts import Facts, Reason
-from nodes.kb_node.reasoner.rules.matching import Pattern, Plan, bind, pattern, patterns, plan, unify
-from nodes.kb_node.reasoner.rules.rule_table import AXIOMS, NUMBERS, RULES, Atom, Rule
-from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, FIRST, REST, SAME_AS, TYPE, is_literal
+from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts, Reason
+from semmap.nodes.kb_node.reasoner.rules.matching import Pattern, Plan, bind, pattern, patterns, plan, unify
+from semmap.nodes.kb_node.reasoner.rules.rule_table import AXIOMS, NUMBERS, RULES, Atom, Rule
+from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, FIRST, REST, SAME_AS, TYPE, is_literal
 
 
 class Closure(Facts):

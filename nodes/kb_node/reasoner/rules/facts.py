@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 from msgspec import Struct, msgpack
 
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.rules.matching import Pattern, indexed
-from nodes.kb_node.reasoner.rules.rule_table import DECLARATIONS
-from nodes.kb_node.reasoner.terms import FIRST, NIL, REST, SAME_AS
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.rules.matching import Pattern, indexed
+from semmap.nodes.kb_node.reasoner.rules.rule_table import DECLARATIONS
+from semmap.nodes.kb_node.reasoner.terms import FIRST, NIL, REST, SAME_AS
 
 
 class Reason(NamedTuple):

@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Set
 from functools import cached_property
 
-from nodes.kb_node.reasoner import datatypes
-from nodes.kb_node.reasoner.explain.proof import Prover
-from nodes.kb_node.reasoner.explain.words import Words
-from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
-from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.reasoner.terms import TYPE, is_literal, is_named
+from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.explain.proof import Prover
+from semmap.nodes.kb_node.reasoner.explain.words import Words
+from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.nodes.kb_node.reasoner.terms import TYPE, is_literal, is_named
 
 
 class GeneralEngine:

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.rules.rule_table import Atom, Rule
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.rules.rule_table import Atom, Rule
 
 Pattern = tuple[Term | None, Term | None, Term | None]
 """Subject, predicate, object; None is a wildcard."""

@@ -17,8 +17,8 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.terms import iri, iris
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.terms import iri, iris
 
 TABLE: Final = """
 eq-sym       |                                                    | ?x owl:sameAs ?y                           | ?y owl:sameAs ?x

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from nodes.kb_node.reasoner.explanations import Term
+from semmap.nodes.kb_node.reasoner.explanations import Term
 
 Role = tuple[int, bool]
 """A property's number, and whether it is read backwards."""

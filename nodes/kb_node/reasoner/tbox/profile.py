@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
-from nodes.kb_node.reasoner import datatypes
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.rules.facts import Facts
-from nodes.kb_node.reasoner.rules.rule_table import NUMBERS
-from nodes.kb_node.reasoner.tbox.split import METACLASSES, UNIVERSAL, is_datatype
-from nodes.kb_node.reasoner.terms import TYPE, iri, iris
+from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
+from semmap.nodes.kb_node.reasoner.rules.rule_table import NUMBERS
+from semmap.nodes.kb_node.reasoner.tbox.split import METACLASSES, UNIVERSAL, is_datatype
+from semmap.nodes.kb_node.reasoner.terms import TYPE, iri, iris
 
 _SUBCLASS, _SUPERCLASS, _BOTH = "as a subclass", "as a superclass", "in an equivalence"
 _CARDINALITIES = iris(

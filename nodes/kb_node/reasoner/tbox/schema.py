@@ -13,13 +13,13 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 from itertools import combinations
 
-from nodes.kb_node.reasoner import datatypes
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.rules.facts import Facts
-from nodes.kb_node.reasoner.rules.rule_table import NUMBERS
-from nodes.kb_node.reasoner.tbox.axioms import ANY, Axioms, Chain, Group, Key, Limit, Role
-from nodes.kb_node.reasoner.tbox.transitive import compile_transitive
-from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS, THING, TYPE, iri, is_literal
+from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
+from semmap.nodes.kb_node.reasoner.rules.rule_table import NUMBERS
+from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, Axioms, Chain, Group, Key, Limit, Role
+from semmap.nodes.kb_node.reasoner.tbox.transitive import compile_transitive
+from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS, THING, TYPE, iri, is_literal
 
 
 class Schema:

@@ -9,11 +9,11 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Final
 
-from nodes.kb_node.reasoner import datatypes
-from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.rules.rule_table import ANNOTATIONS
-from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
-from nodes.kb_node.reasoner.terms import (
+from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.rules.rule_table import ANNOTATIONS
+from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from semmap.nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
     NIL,
     NOTHING,

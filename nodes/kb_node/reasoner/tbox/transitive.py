@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from nodes.kb_node.reasoner.tbox.axioms import ANY, DIFFERENT
+from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, DIFFERENT
 
 if TYPE_CHECKING:
-    from nodes.kb_node.reasoner.tbox.schema import Schema
+    from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 
 
 def compile_transitive(schema: Schema) -> Iterator[int]:

@@ -10,12 +10,12 @@ from contextlib import ExitStack
 from tempfile import TemporaryFile
 from typing import Final
 
-from nodes.kb_node.relations.facts.foreseen import Foreseen, Found, WorkedOut
-from nodes.kb_node.relations.geometry.placed import Placed
-from schemas import codec
-from schemas.entities import Entity
+from semmap.nodes.kb_node.relations.facts.foreseen import Foreseen, Found, WorkedOut
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.schemas import codec
+from semmap.schemas.entities import Entity
 
-_COMMAND: Final = (sys.executable, "-P", "-m", "nodes.kb_node.relations.facts.working_ahead")
+_COMMAND: Final = (sys.executable, "-P", "-m", "semmap.nodes.kb_node.relations.facts.working_ahead")
 _STEP_S: Final = 0.05
 
 log = logging.getLogger(__name__)

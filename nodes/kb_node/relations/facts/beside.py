@@ -9,16 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Set
 from typing import Final
 
-from nodes.kb_node.relations.facts.place_facts import Changed, Fact
-from nodes.kb_node.relations.geometry.forms import Bounds
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.arrangement import next_to
-from nodes.kb_node.relations.measuring.measures import Measure
-from nodes.kb_node.relations.measuring.space import Space
-from schemas.entities import Entity
-from schemas.relations import RelationName
+from semmap.nodes.kb_node.relations.facts.place_facts import Changed, Fact
+from semmap.nodes.kb_node.relations.geometry.forms import Bounds
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.arrangement import next_to
+from semmap.nodes.kb_node.relations.measuring.measures import Measure
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.schemas.entities import Entity
+from semmap.schemas.relations import RelationName
 
 MIRRORED: Final[dict[RelationName, RelationName]] = {
     "touches": "touches",

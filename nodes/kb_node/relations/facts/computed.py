@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Set
 from typing import Final, NamedTuple
 
-from nodes.kb_node.relations.facts.place_facts import Fact, Facts
-from nodes.kb_node.relations.facts.rules import COMPUTED
-from nodes.kb_node.relations.facts.said import PROPERTIES, denial, fact_of
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from ontology import vocabulary as v
-from schemas.entities import Entity
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact, Facts
+from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
+from semmap.nodes.kb_node.relations.facts.said import PROPERTIES, denial, fact_of
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Term, Triple
 
 _MANY: Final = 32
 """Facts that are worth being turned into triples together."""

@@ -6,11 +6,11 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Set
 from typing import Final
 
-from nodes.kb_node.relations.facts.beside import MIRRORED, Beside
-from nodes.kb_node.relations.facts.place_facts import Fact
-from ontology import vocabulary as v
-from schemas.explanations import Term, Triple
-from schemas.relations import RelationName
+from semmap.nodes.kb_node.relations.facts.beside import MIRRORED, Beside
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term, Triple
+from semmap.schemas.relations import RelationName
 
 _SUB: Final = v.iri(v.RDFS + "subPropertyOf")
 _EQUIVALENT: Final = v.iri(v.OWL + "equivalentProperty")

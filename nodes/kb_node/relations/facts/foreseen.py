@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 
 from msgspec import Struct
 
-from nodes.kb_node.relations.facts.rules import About
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from ontology import vocabulary as v
-from ontology.model_choice import chosen
-from schemas import codec
-from schemas.entities import IDENTITY, Entity, Pose
-from schemas.explanations import Term
+from semmap.nodes.kb_node.relations.facts.rules import About
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.ontology import vocabulary as v
+from semmap.ontology.model_choice import chosen
+from semmap.schemas import codec
+from semmap.schemas.entities import IDENTITY, Entity, Pose
+from semmap.schemas.explanations import Term
 
 
 class Look(NamedTuple):

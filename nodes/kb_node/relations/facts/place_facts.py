@@ -10,18 +10,18 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from typing import NamedTuple
 
-from nodes.kb_node.progress import parts
-from nodes.kb_node.relations.facts.ahead import Ahead
-from nodes.kb_node.relations.facts.foreseen import Found
-from nodes.kb_node.relations.facts.rules import RULES, About, Rule
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.geometry.solids import Solid, solid_of
-from nodes.kb_node.relations.measuring.broad_phase import by_place
-from nodes.kb_node.relations.measuring.space import MANY, Space
-from nodes.kb_node.relations.measuring.survey import Survey
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from schemas.entities import Entity
-from schemas.relations import RelationName
+from semmap.nodes.kb_node.progress import parts
+from semmap.nodes.kb_node.relations.facts.ahead import Ahead
+from semmap.nodes.kb_node.relations.facts.foreseen import Found
+from semmap.nodes.kb_node.relations.facts.rules import RULES, About, Rule
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
+from semmap.nodes.kb_node.relations.measuring.broad_phase import by_place
+from semmap.nodes.kb_node.relations.measuring.space import MANY, Space
+from semmap.nodes.kb_node.relations.measuring.survey import Survey
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.schemas.entities import Entity
+from semmap.schemas.relations import RelationName
 
 Fact = tuple[str, RelationName, str]
 """Name, relation, name: ("cup1", "isOn", "table1")."""

@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Final, NamedTuple
 
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring.arrangement import attachments
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.measuring.survey import NOBODY, Survey
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from ontology import vocabulary as v
-from schemas.explanations import Term
-from schemas.relations import RelationName
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring.arrangement import attachments
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.survey import NOBODY, Survey
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term
+from semmap.schemas.relations import RelationName
 
 About = tuple[RelationName, str]
 """What a fact says of its subject: ("isOn", "table1")."""

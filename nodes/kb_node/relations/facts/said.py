@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from nodes.geometry.polygons import distance
-from nodes.kb_node.entities.alignments import shipped
-from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.phrases import SPOKEN, metres, why
-from nodes.kb_node.relations.measuring.space import Space
-from ontology import vocabulary as v
-from schemas.explanations import Term, Triple
-from schemas.relations import Relation, RelationName
+from semmap.nodes.geometry.polygons import distance
+from semmap.nodes.kb_node.entities.alignments import shipped
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN, metres, why
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term, Triple
+from semmap.schemas.relations import Relation, RelationName
 
 PROPERTIES: Final[dict[Term, tuple[RelationName, bool]]] = {
     v.dm("isOn"): ("isOn", False),

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
+from semmap.schemas.explanations import Term, Triple
 
 _SAY_WHERE = frozenset(PROPERTIES)
 

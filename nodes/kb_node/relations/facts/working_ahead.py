@@ -1,4 +1,4 @@
-"""Works out where everything will be: `python -m nodes.kb_node.relations.facts.working_ahead`.
+"""Works out where everything will be: `python -m semmap.nodes.kb_node.relations.facts.working_ahead`.
 
 What is foreseen comes on stdin, and the facts go to stdout.
 """
@@ -8,9 +8,9 @@ from __future__ import annotations
 import gc
 import sys
 
-from nodes.kb_node.relations.facts.foreseen import Foreseen, WorkedOut, mark_of
-from nodes.kb_node.relations.facts.place_facts import Facts
-from schemas import codec
+from semmap.nodes.kb_node.relations.facts.foreseen import Foreseen, WorkedOut, mark_of
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.schemas import codec
 
 
 def worked_out(foreseen: Foreseen) -> WorkedOut:

@@ -7,11 +7,18 @@ from typing import Final
 
 import numpy as np
 
-from nodes.kb_node.relations.geometry.form_columns import Bools, Extents, Floats, FormColumns, Ints, flat
-from nodes.kb_node.relations.geometry.forms import Form
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.geometry.solids import Solid, form_in, shape_of
-from schemas.entities import Entity, Vector
+from semmap.nodes.kb_node.relations.geometry.form_columns import (
+    Bools,
+    Extents,
+    Floats,
+    FormColumns,
+    Ints,
+    flat,
+)
+from semmap.nodes.kb_node.relations.geometry.forms import Form
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.solids import Solid, form_in, shape_of
+from semmap.schemas.entities import Entity, Vector
 
 _FAR_M = 2e4
 """Beyond this, rounding is no longer far below all margins."""

@@ -20,10 +20,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.geometry.polygons import Point, contains, hull
-from nodes.kb_node.relations.geometry.lazily import lazily
-from nodes.kb_node.relations.geometry.shadows import Shadow, depth, shadow_of
-from schemas.entities import Vector
+from semmap.nodes.geometry.polygons import Point, contains, hull
+from semmap.nodes.kb_node.relations.geometry.lazily import lazily
+from semmap.nodes.kb_node.relations.geometry.shadows import Shadow, depth, shadow_of
+from semmap.schemas.entities import Vector
 
 Floats = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ import numpy as np
 from msgspec import structs
 from numpy.typing import NDArray
 
-from ontology.model_shapes import ConvexPart, Interior, LeafShape, ModelShape, Surface, shapes
-from schemas.entities import Size, Vector
+from semmap.ontology.model_shapes import ConvexPart, Interior, LeafShape, ModelShape, Surface, shapes
+from semmap.schemas.entities import Size, Vector
 
 
 @lru_cache(maxsize=8192)

@@ -14,9 +14,9 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.kb_node.relations.geometry.fitting import are_turned, box, own_shape, quarter_turned
-from nodes.kb_node.relations.geometry.forms import LOWEST_M, Form
-from ontology.model_shapes import ConvexPart, Corner, ModelShape
+from semmap.nodes.kb_node.relations.geometry.fitting import are_turned, box, own_shape, quarter_turned
+from semmap.nodes.kb_node.relations.geometry.forms import LOWEST_M, Form
+from semmap.ontology.model_shapes import ConvexPart, Corner, ModelShape
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

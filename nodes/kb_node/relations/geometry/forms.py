@@ -7,16 +7,16 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Final
 
-from nodes.geometry.polygons import Point, area, hull
-from nodes.geometry.regions import Region
-from nodes.kb_node.relations.geometry.convex import Convex, convex
-from nodes.kb_node.relations.geometry.fitting import fitted
-from nodes.kb_node.relations.geometry.lazily import lazily
-from nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, opened
-from ontology.model_shapes import ModelShape
-from schemas import errors
-from schemas.entities import IDENTITY, Quaternion, Size, Vector
-from schemas.polygons import Polygon, read_wkt
+from semmap.nodes.geometry.polygons import Point, area, hull
+from semmap.nodes.geometry.regions import Region
+from semmap.nodes.kb_node.relations.geometry.convex import Convex, convex
+from semmap.nodes.kb_node.relations.geometry.fitting import fitted
+from semmap.nodes.kb_node.relations.geometry.lazily import lazily
+from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, opened
+from semmap.ontology.model_shapes import ModelShape
+from semmap.schemas import errors
+from semmap.schemas.entities import IDENTITY, Quaternion, Size, Vector
+from semmap.schemas.polygons import Polygon, read_wkt
 
 UPRIGHT = math.cos(math.radians(15.0))
 """A thing that leans more has no level surfaces."""

@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterator, Mapping
 
 from msgspec import structs
 
-from nodes.kb_node.relations.geometry.fitting import fitted, own_shape
-from ontology.model_shapes import ConvexPart, Interior, LeafShape, ModelShape, Surface
-from schemas.entities import Size, Vector
-from schemas.joints import OPENING, Joint, stated
+from semmap.nodes.kb_node.relations.geometry.fitting import fitted, own_shape
+from semmap.ontology.model_shapes import ConvexPart, Interior, LeafShape, ModelShape, Surface
+from semmap.schemas.entities import Size, Vector
+from semmap.schemas.joints import OPENING, Joint, stated
 
 Positions = tuple[float, ...]
 """Where the leaves of a shape stand, in their order [rad, m]; () where all are as they are drawn."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from msgspec import Struct
 
-from nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, positions_of
-from ontology.model_shapes import own_size_m
-from schemas.entities import Entity, Pose, Size
-from schemas.grips import holder_of
-from schemas.polygons import EXTENT
+from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, positions_of
+from semmap.ontology.model_shapes import own_size_m
+from semmap.schemas.entities import Entity, Pose, Size
+from semmap.schemas.grips import holder_of
+from semmap.schemas.polygons import EXTENT
 
 
 class Placed(Struct, frozen=True, kw_only=True, array_like=True):

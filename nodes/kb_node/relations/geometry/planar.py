@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nodes.kb_node.relations.geometry.form_columns import Bools, Floats
+from semmap.nodes.kb_node.relations.geometry.form_columns import Bools, Floats
 
 GUARD = 1e-6
 """Lengths [m], shares and multiples of `u` and `v` that are this near to a limit are not plain."""

@@ -9,8 +9,8 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from nodes.geometry.polygons import Point
-from schemas.entities import Vector
+from semmap.nodes.geometry.polygons import Point
+from semmap.schemas.entities import Vector
 
 _SQUARE = 1e-9
 """The cosine of what is no right angle, if it is more."""

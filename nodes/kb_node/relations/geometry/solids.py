@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from nodes.geometry.polygons import Point
-from nodes.kb_node.relations.geometry.convex import Convex, moved
-from nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, expanse, form_of
-from nodes.kb_node.relations.geometry.lazily import lazily
-from nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions
-from nodes.kb_node.relations.geometry.placed import Placed, extent_in, joints_in
-from ontology.model_shapes import Interior, own_size_m
-from schemas.entities import Entity, Pose, Size, Vector
+from semmap.nodes.geometry.polygons import Point
+from semmap.nodes.kb_node.relations.geometry.convex import Convex, moved
+from semmap.nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, expanse, form_of
+from semmap.nodes.kb_node.relations.geometry.lazily import lazily
+from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions
+from semmap.nodes.kb_node.relations.geometry.placed import Placed, extent_in, joints_in
+from semmap.ontology.model_shapes import Interior, own_size_m
+from semmap.schemas.entities import Entity, Pose, Size, Vector
 
 Shape = tuple[str | None, Size | None, Positions]
 Extent = tuple[Bounds, float, float]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from nodes.geometry.polygons import area, clipped, distance, hull
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.measures import Measure
-from nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.geometry.polygons import area, clipped, distance, hull
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.measures import Measure
+from semmap.nodes.kb_node.relations.measuring.space import Space
 
 _OPPOSITE = -math.cos(math.radians(60.0))
 """What is between two sees them in directions this far from one another: 120 degrees or more."""

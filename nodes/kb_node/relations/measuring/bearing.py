@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nodes.kb_node.relations.geometry.columns import Columns
-from nodes.kb_node.relations.geometry.convex import DEEPEST_M
-from nodes.kb_node.relations.geometry.form_columns import Bools, Floats, FormColumns, Ints
-from nodes.kb_node.relations.geometry.forms import LOWEST_M
-from nodes.kb_node.relations.geometry.planar import GUARD, along, are_on_top, reach
-from nodes.kb_node.relations.measuring.broad_phase import differs, repeated
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.nodes.kb_node.relations.geometry.columns import Columns
+from semmap.nodes.kb_node.relations.geometry.convex import DEEPEST_M
+from semmap.nodes.kb_node.relations.geometry.form_columns import Bools, Floats, FormColumns, Ints
+from semmap.nodes.kb_node.relations.geometry.forms import LOWEST_M
+from semmap.nodes.kb_node.relations.geometry.planar import GUARD, along, are_on_top, reach
+from semmap.nodes.kb_node.relations.measuring.broad_phase import differs, repeated
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 
 
 class Bearing(NamedTuple):

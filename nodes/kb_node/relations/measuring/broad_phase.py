@@ -11,9 +11,9 @@ from typing import Final
 
 import numpy as np
 
-from nodes.kb_node.relations.geometry.form_columns import Bools, Floats, Ints
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring.grid import CELL_M, MOST_CELLS, Cell, Grid
+from semmap.nodes.kb_node.relations.geometry.form_columns import Bools, Floats, Ints
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring.grid import CELL_M, MOST_CELLS, Cell, Grid
 
 _FURTHEST: Final = 2**31 - 1
 """Cells are numbered up to here; what is further away is not looked for."""

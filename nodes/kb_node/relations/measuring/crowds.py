@@ -6,7 +6,7 @@ from bisect import bisect_left, insort
 from collections.abc import Collection, Iterable
 from typing import Final
 
-from nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
 
 MOST: Final = 100
 """Things in one cell of the grid that others look at; the rest bears, holds and is near nothing.

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 
-from nodes.kb_node.relations.geometry.forms import Bounds
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import crowds
-from nodes.kb_node.relations.measuring.crowds import Crowd
+from semmap.nodes.kb_node.relations.geometry.forms import Bounds
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import crowds
+from semmap.nodes.kb_node.relations.measuring.crowds import Crowd
 
 CELL_M = 1.0
 MOST_CELLS = 1024

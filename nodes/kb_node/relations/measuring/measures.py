@@ -9,13 +9,13 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from nodes.geometry.polygons import Point, area, clipped, contains, covers, distance, hull
-from nodes.geometry.regions import Region
-from nodes.kb_node.relations.geometry.convex import Convex, contact, over_flat_top
-from nodes.kb_node.relations.geometry.forms import LOWEST_M, Bounds
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from ontology.model_shapes import Interior
+from semmap.nodes.geometry.polygons import Point, area, clipped, contains, covers, distance, hull
+from semmap.nodes.geometry.regions import Region
+from semmap.nodes.kb_node.relations.geometry.convex import Convex, contact, over_flat_top
+from semmap.nodes.kb_node.relations.geometry.forms import LOWEST_M, Bounds
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.ontology.model_shapes import Interior
 
 _ROUNDING = 1e-9
 """0.80 - 0.75 is more than 0.05 in floats."""

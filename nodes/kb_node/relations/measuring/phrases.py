@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Final
 
-from nodes.kb_node.relations.geometry.opening import joint_at
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring.measures import Measure, hollow_around
-from schemas.joints import OPEN_FROM, Joint, in_words
-from schemas.relations import RelationName
+from semmap.nodes.kb_node.relations.geometry.opening import joint_at
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring.measures import Measure, hollow_around
+from semmap.schemas.joints import OPEN_FROM, Joint, in_words
+from semmap.schemas.relations import RelationName
 
 SPOKEN: Final[dict[RelationName, str]] = {
     "isOn": "is on",

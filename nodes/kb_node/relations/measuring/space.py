@@ -7,17 +7,17 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Final, NamedTuple
 
-from nodes.kb_node.progress import parts
-from nodes.kb_node.relations.geometry.columns import solids_of
-from nodes.kb_node.relations.geometry.forms import Bounds
-from nodes.kb_node.relations.geometry.placed import Placed, holder_in
-from nodes.kb_node.relations.geometry.solids import Solid, solid_of
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.broad_phase import beside, file
-from nodes.kb_node.relations.measuring.grid import Grid
-from nodes.kb_node.relations.measuring.measures import Measure
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from schemas.entities import Entity
+from semmap.nodes.kb_node.progress import parts
+from semmap.nodes.kb_node.relations.geometry.columns import solids_of
+from semmap.nodes.kb_node.relations.geometry.forms import Bounds
+from semmap.nodes.kb_node.relations.geometry.placed import Placed, holder_in
+from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.broad_phase import beside, file
+from semmap.nodes.kb_node.relations.measuring.grid import Grid
+from semmap.nodes.kb_node.relations.measuring.measures import Measure
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.schemas.entities import Entity
 
 Found = tuple[Solid, Measure]
 _STEP = 2000

@@ -14,17 +14,23 @@ from typing import Final
 
 import numpy as np
 
-from nodes.kb_node.relations.geometry import planar
-from nodes.kb_node.relations.geometry.columns import Columns
-from nodes.kb_node.relations.geometry.form_columns import Bools, Floats, Ints
-from nodes.kb_node.relations.geometry.planar import GUARD
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.arrangement import ALONGSIDE, BESIDE_M
-from nodes.kb_node.relations.measuring.bearing import bearing
-from nodes.kb_node.relations.measuring.broad_phase import BroadPhase, covered, differs, distinct, repeated
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.nodes.kb_node.relations.geometry import planar
+from semmap.nodes.kb_node.relations.geometry.columns import Columns
+from semmap.nodes.kb_node.relations.geometry.form_columns import Bools, Floats, Ints
+from semmap.nodes.kb_node.relations.geometry.planar import GUARD
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.arrangement import ALONGSIDE, BESIDE_M
+from semmap.nodes.kb_node.relations.measuring.bearing import bearing
+from semmap.nodes.kb_node.relations.measuring.broad_phase import (
+    BroadPhase,
+    covered,
+    differs,
+    distinct,
+    repeated,
+)
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 
 NOBODY: Final = -1
 _NEAREST_M = 0.01

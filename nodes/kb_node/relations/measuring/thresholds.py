@@ -8,9 +8,9 @@ from typing import Final, NamedTuple
 
 from msgspec import Struct
 
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.explanations import Term
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.explanations import Term
 
 
 class Thresholds(Struct, frozen=True, kw_only=True):

@@ -6,12 +6,12 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from nodes.kb_node.relations.geometry.convex import contact, convex
-from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.space import Space
-from schemas.entities import Vector
-from schemas.relations import RelationName
+from semmap.nodes.kb_node.relations.geometry.convex import contact, convex
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.schemas.entities import Vector
+from semmap.schemas.relations import RelationName
 
 _SLOPE = math.tan(math.radians(50.0))
 """A direction counts within 50 degrees of its axis."""

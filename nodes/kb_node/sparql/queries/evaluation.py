@@ -7,14 +7,14 @@ from typing import Final
 
 import pyoxigraph as ox
 
-from nodes.kb_node.sparql.queries.text import query_prefixes, syntax_error
-from nodes.kb_node.sparql.queries.unknown import unknown
-from nodes.kb_node.sparql.triples.dataset import ASSERTED, INFERRED, MEASURED, Dataset
-from ontology import prefixes
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.explanations import Term
-from schemas.sparql import Row, SparqlResult
+from semmap.nodes.kb_node.sparql.queries.text import query_prefixes, syntax_error
+from semmap.nodes.kb_node.sparql.queries.unknown import unknown
+from semmap.nodes.kb_node.sparql.triples.dataset import ASSERTED, INFERRED, MEASURED, Dataset
+from semmap.ontology import prefixes
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.explanations import Term
+from semmap.schemas.sparql import Row, SparqlResult
 
 _PREFERRED_PREFIX: Final = ox.NamedNode(v.bare(prefixes.PREFERRED_PREFIX))
 _ZERO: Final = f'"0"^^<{v.XSD}integer>'

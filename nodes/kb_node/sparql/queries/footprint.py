@@ -13,9 +13,9 @@ from rdflib.paths import AlternativePath, InvPath, MulPath, Path, SequencePath
 from rdflib.plugins.sparql import prepareQuery
 from rdflib.plugins.sparql.parserutils import CompValue
 
-from nodes.kb_node.sparql.queries.text import PREFIXES
-from ontology import vocabulary as v
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.sparql.queries.text import PREFIXES
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term, Triple
 
 logging.getLogger("rdflib").setLevel(logging.ERROR)
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from types import MappingProxyType
 from typing import Final
 
-from ontology.prefixes import WELL_KNOWN, Prefixes
-from schemas import errors
+from semmap.ontology.prefixes import WELL_KNOWN, Prefixes
+from semmap.schemas import errors
 
 PREFIXES: Final = dict(WELL_KNOWN)
 """The prefixes that a query need not declare, whatever the TBox; those of its namespaces come on top."""

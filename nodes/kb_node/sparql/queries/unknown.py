@@ -11,11 +11,11 @@ import rapidfuzz.fuzz
 import rapidfuzz.process
 import rapidfuzz.utils  # noqa: F401  a reader is without files, so what `did_you_mean` needs is there before
 
-from nodes.kb_node.sparql.queries.naming import terms_of
-from nodes.kb_node.sparql.triples.dataset import Dataset
-from ontology import prefixes
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.kb_node.sparql.queries.naming import terms_of
+from semmap.nodes.kb_node.sparql.triples.dataset import Dataset
+from semmap.ontology import prefixes
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 
 _OTHERS = frozenset({v.RDF, v.RDFS, v.OWL, v.XSD, prefixes.WELL_KNOWN["vann"]})
 """Namespaces of which the map does not hold all terms."""

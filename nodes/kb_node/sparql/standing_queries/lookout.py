@@ -20,15 +20,15 @@ from typing import Any, Final
 
 from msgspec import Raw, msgpack
 
-from nodes.kb_node.sparql.protocol import Answered, FromWorker, News, Question, outcomes
-from nodes.kb_node.sparql.queries import text
-from nodes.kb_node.sparql.readers import Reader, cause_of_death
-from nodes.kb_node.sparql.standing_queries.standing import Standing
-from nodes.kb_node.sparql.triples.dataset import Delta
-from schemas import codec, errors
-from schemas.commands import Renew, Watch
-from schemas.replies import Done
-from schemas.sparql import RowsChanged, SparqlResult, Watching
+from semmap.nodes.kb_node.sparql.protocol import Answered, FromWorker, News, Question, outcomes
+from semmap.nodes.kb_node.sparql.queries import text
+from semmap.nodes.kb_node.sparql.readers import Reader, cause_of_death
+from semmap.nodes.kb_node.sparql.standing_queries.standing import Standing
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.schemas import codec, errors
+from semmap.schemas.commands import Renew, Watch
+from semmap.schemas.replies import Done
+from semmap.schemas.sparql import RowsChanged, SparqlResult, Watching
 
 STANDING: Final = 64
 """How many standing queries there may be."""

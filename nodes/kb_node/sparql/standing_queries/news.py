@@ -6,9 +6,9 @@ from typing import Any, Final
 
 from msgspec import structs
 
-from nodes import bus
-from nodes.kb_node.sparql.protocol import News
-from schemas import codec, keys
+from semmap.nodes import bus
+from semmap.nodes.kb_node.sparql.protocol import News
+from semmap.schemas import codec, keys
 
 _TOO_MUCH: Final = (
     f"its rows changed by more than {bus.PUBLISHED >> 20} MB, which is more than is told at once; ask again"

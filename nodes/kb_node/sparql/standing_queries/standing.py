@@ -8,13 +8,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from nodes.kb_node.sparql.triples.dataset import Delta
-from schemas import errors
-from schemas.commands import Watch
-from schemas.sparql import Row, RowsChanged
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.schemas import errors
+from semmap.schemas.commands import Watch
+from semmap.schemas.sparql import Row, RowsChanged
 
 if TYPE_CHECKING:
-    from nodes.kb_node.sparql.queries.footprint import Footprint
+    from semmap.nodes.kb_node.sparql.queries.footprint import Footprint
 
 
 @dataclass
@@ -35,7 +35,7 @@ class Standing:
     def of(cls, command: Watch, name: str, demand: int) -> Standing:
         """The one that a command asks for, without its rows."""
         # rdflib's parser takes longer to load than all else that the first look-up waits for
-        from nodes.kb_node.sparql.queries.footprint import footprint
+        from semmap.nodes.kb_node.sparql.queries.footprint import footprint
 
         if command.query is None:
             raise errors.InternalError("a standing query has no text")

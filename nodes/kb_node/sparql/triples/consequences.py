@@ -14,12 +14,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import chain
 
-from nodes.kb_node.beliefs import UNCHANGED, Believed
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.sparql.triples.dataset import Dataset, Delta, as_stored
-from ontology import vocabulary as v
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta, as_stored
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term, Triple
 
 _OF_THE_SCHEMA = tuple(
     v.iri(name)

@@ -15,9 +15,9 @@ from pathlib import Path
 import pyoxigraph as ox
 from msgspec import Struct
 
-from nodes.kb_node.sparql.triples.kept import cloned
-from ontology import vocabulary as v
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.sparql.triples.kept import cloned
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term, Triple
 
 ASSERTED = ox.DefaultGraph()
 INFERRED = ox.NamedNode("urn:semmap:inferred")

@@ -1,4 +1,4 @@
-"""Fills a store on disk from stdin: `python -m nodes.kb_node.sparql.triples.filling PATH [BASE [packed]]`.
+"""Fills a store on disk from stdin: `python -m semmap.nodes.kb_node.sparql.triples.filling PATH [BASE [packed]]`.
 
 There are triples in frames, each a MessagePack list behind its length. With a base IRI, a Turtle document
 follows behind an empty frame, with gzip if it is packed. Says on stdout how many triples the store has: fewer
@@ -17,7 +17,7 @@ from typing import IO, Any, BinaryIO, Final
 import pyoxigraph as ox
 from msgspec import msgpack
 
-from schemas import codec
+from semmap.schemas import codec
 
 Triples = Sequence[tuple[str, str, str]]
 _LENGTH_BYTES: Final = 4

@@ -18,15 +18,15 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.sparql.triples.dataset import Delta
-from nodes.kb_node.sparql.triples.kept import KeptStores
-from nodes.kb_node.sparql.triples.store_filler import StoreFiller
-from nodes.kb_node.storage.journal import Journal
-from nodes.runtime.futures import settle
-from schemas import errors
-from schemas.commits import Commit
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.nodes.kb_node.sparql.triples.kept import KeptStores
+from semmap.nodes.kb_node.sparql.triples.store_filler import StoreFiller
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.runtime.futures import settle
+from semmap.schemas import errors
+from semmap.schemas.commits import Commit
+from semmap.schemas.explanations import Triple
 
 LARGE: Final = 200_000
 """Triples: a map of more has its store on disk; of fewer in memory, which is as soon made."""

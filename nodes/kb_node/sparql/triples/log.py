@@ -8,8 +8,8 @@ from typing import Final
 
 from msgspec import msgpack
 
-from nodes.kb_node.sparql.triples.dataset import Delta
-from schemas import codec
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.schemas import codec
 
 _LENGTH_BYTES: Final = 4
 _deltas = codec.decoder(Delta)

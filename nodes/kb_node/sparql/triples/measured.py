@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
-from nodes.kb_node.relations.facts.beside import MIRRORED, Beside
-from nodes.kb_node.relations.facts.derived import Derived
-from nodes.kb_node.relations.facts.place_facts import Changed, Fact
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.sparql.protocol import Surrounded
-from nodes.kb_node.sparql.triples.dataset import Dataset, Delta
-from ontology import vocabulary as v
-from schemas.explanations import Term, Triple
-from schemas.relations import RelationName
+from semmap.nodes.kb_node.relations.facts.beside import MIRRORED, Beside
+from semmap.nodes.kb_node.relations.facts.derived import Derived
+from semmap.nodes.kb_node.relations.facts.place_facts import Changed, Fact
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.sparql.protocol import Surrounded
+from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta
+from semmap.ontology import vocabulary as v
+from semmap.schemas.explanations import Term, Triple
+from semmap.schemas.relations import RelationName
 
 if TYPE_CHECKING:
-    from nodes.kb_node.sparql.queries.footprint import Pattern
+    from semmap.nodes.kb_node.sparql.queries.footprint import Pattern
 
 
 class Needs(NamedTuple):

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final, NamedTuple
 
-from nodes.kb_node.storage.journal import Journal, beginning
-from nodes.kb_node.storage.journal.rows import Row
-from schemas import errors
-from schemas.backups import MAGIC, BackupPart, End, Kind, Opening, Piece, framed
+from semmap.nodes.kb_node.storage.journal import Journal, beginning
+from semmap.nodes.kb_node.storage.journal.rows import Row
+from semmap.schemas import errors
+from semmap.schemas.backups import MAGIC, BackupPart, End, Kind, Opening, Piece, framed
 
 PART_BYTES: Final = 4 << 20
 _STORED: Final[dict[Kind, str]] = {

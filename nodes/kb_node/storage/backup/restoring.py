@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
 
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage import seed
-from nodes.kb_node.storage.encoding import dense
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.journal.beginning import TABLE
-from nodes.kb_node.storage.journal.layout import COMPACTED, FORMAT, SCHEMA
-from schemas import backups, errors
-from schemas.backups import Opening, Piece, Restored
-from schemas.commits import Commit
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage import seed
+from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.journal.beginning import TABLE
+from semmap.nodes.kb_node.storage.journal.layout import COMPACTED, FORMAT, SCHEMA
+from semmap.schemas import backups, errors
+from semmap.schemas.backups import Opening, Piece, Restored
+from semmap.schemas.commits import Commit
 
 
 def restore(

@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 from msgspec import Struct
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.storage.compaction import leftovers
-from nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.journal.beginning import Beginning
-from nodes.kb_node.storage.journal.sqlite_file import NotWritten
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.storage.compaction import leftovers
+from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.storage.journal.beginning import Beginning
+from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
+from semmap.schemas.explanations import Triple
 
 
 class Share(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.storage.journal import Journal
 
 _ROWS: Final = 2000
 """At a time: to delete them takes some tens of milliseconds."""

@@ -15,15 +15,15 @@ from typing import Final
 
 from msgspec import Struct, msgpack
 
-from nodes.kb_node.progress import parts
-from nodes.kb_node.reasoner.abox.columns import Columns
-from nodes.kb_node.storage.encoding import columns_encoding, dense
-from nodes.kb_node.storage.encoding.columns_encoding import StoredColumns
-from nodes.kb_node.storage.encoding.frames import Compressing, unpacked
-from nodes.runtime.shared_parts import SharedParts
-from schemas import codec, errors
-from schemas.entities import Entity
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.progress import parts
+from semmap.nodes.kb_node.reasoner.abox.columns import Columns
+from semmap.nodes.kb_node.storage.encoding import columns_encoding, dense
+from semmap.nodes.kb_node.storage.encoding.columns_encoding import StoredColumns
+from semmap.nodes.kb_node.storage.encoding.frames import Compressing, unpacked
+from semmap.nodes.runtime.shared_parts import SharedParts
+from semmap.schemas import codec, errors
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Triple
 
 _MARK: Final = b"\xc1checkpoint 1"
 """How such a body begins; nothing in MessagePack begins with its first byte."""

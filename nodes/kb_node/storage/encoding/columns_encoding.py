@@ -9,9 +9,9 @@ from typing import Final
 
 from msgspec import Struct, msgpack
 
-from nodes.kb_node.reasoner.abox.columns import Claimed, Columns, KindSaid
-from nodes.kb_node.storage.encoding.frames import Compressing, unpacked
-from schemas import codec, errors
+from semmap.nodes.kb_node.reasoner.abox.columns import Claimed, Columns, KindSaid
+from semmap.nodes.kb_node.storage.encoding.frames import Compressing, unpacked
+from semmap.schemas import codec, errors
 
 _TERMS: Final = 100_000
 _NUMBERS: Final = 1 << 20

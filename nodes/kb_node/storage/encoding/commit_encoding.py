@@ -15,11 +15,11 @@ from typing import Any, Final
 
 from msgspec import structs
 
-from nodes.kb_node.progress import parts
-from nodes.kb_node.storage.encoding import dense
-from schemas import codec
-from schemas.commits import Commit
-from schemas.entities import Entity
+from semmap.nodes.kb_node.progress import parts
+from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.schemas import codec
+from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Entity
 
 _MANY: Final = 1000
 """Triples; a thread for fewer takes longer than it saves."""

@@ -8,8 +8,8 @@ from __future__ import annotations
 import zlib
 from typing import Any, Final
 
-from schemas import codec
-from schemas.errors import BadRequest
+from semmap.schemas import codec
+from semmap.schemas.errors import BadRequest
 
 LARGEST: Final = 4 << 30
 """Bytes that a body may unfold to."""

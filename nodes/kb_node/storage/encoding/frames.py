@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from types import TracebackType
 
-from nodes.kb_node.storage.encoding import dense
+from semmap.nodes.kb_node.storage.encoding import dense
 
 
 class Compressing:

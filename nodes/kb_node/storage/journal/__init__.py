@@ -1,7 +1,7 @@
 """The truth on disk: an append-only SQLite file of commits, each with a digest chained to the one before."""
 
-from nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
-from nodes.kb_node.storage.journal.journal import Journal
-from nodes.kb_node.storage.journal.layout import FILENAME
+from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
+from semmap.nodes.kb_node.storage.journal.journal import Journal
+from semmap.nodes.kb_node.storage.journal.layout import FILENAME
 
 __all__ = ["FILENAME", "Checkpoint", "Journal"]

@@ -8,7 +8,7 @@ from typing import Final
 
 from msgspec import MsgspecError, Struct, msgpack
 
-from schemas import codec
+from semmap.schemas import codec
 
 TABLE: Final = """CREATE TABLE beginning (
     seq INTEGER PRIMARY KEY, head BLOB NOT NULL, body BLOB NOT NULL, digest BLOB NOT NULL

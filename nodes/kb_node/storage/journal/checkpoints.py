@@ -5,11 +5,11 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 
-from nodes.kb_node.storage.encoding import checkpoint_encoding
-from nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
-from nodes.kb_node.storage.journal import index_check
-from nodes.kb_node.storage.journal.digests import chained, is_sound
-from nodes.kb_node.storage.journal.sqlite_file import JournalFile
+from semmap.nodes.kb_node.storage.encoding import checkpoint_encoding
+from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
+from semmap.nodes.kb_node.storage.journal import index_check
+from semmap.nodes.kb_node.storage.journal.digests import chained, is_sound
+from semmap.nodes.kb_node.storage.journal.sqlite_file import JournalFile
 
 log = logging.getLogger(__name__)
 

@@ -12,8 +12,8 @@ from typing import Final
 
 from msgspec import Struct, msgpack
 
-from schemas import codec
-from schemas.commits import Commit
+from semmap.schemas import codec
+from semmap.schemas.commits import Commit
 
 _RECORD: Final = "index"
 """The key in the table `meta`."""

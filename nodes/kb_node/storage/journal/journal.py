@@ -15,17 +15,17 @@ from typing import TypeVar
 
 from msgspec import Struct, structs
 
-from nodes.kb_node.storage.encoding import checkpoint_encoding, commit_encoding, dense
-from nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
-from nodes.kb_node.storage.journal import beginning, checkpoints, index_check, rows
-from nodes.kb_node.storage.journal.beginning import Beginning
-from nodes.kb_node.storage.journal.digests import chained, is_sound
-from nodes.kb_node.storage.journal.layout import COMPACTED, FORMAT, SCHEMA
-from nodes.kb_node.storage.journal.rows import Damaged, Row
-from nodes.kb_node.storage.journal.sqlite_file import ANEW, JournalFile, mend
-from nodes.kb_node.storage.journal.stamps import Stamps
-from schemas import errors
-from schemas.commits import Commit
+from semmap.nodes.kb_node.storage.encoding import checkpoint_encoding, commit_encoding, dense
+from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
+from semmap.nodes.kb_node.storage.journal import beginning, checkpoints, index_check, rows
+from semmap.nodes.kb_node.storage.journal.beginning import Beginning
+from semmap.nodes.kb_node.storage.journal.digests import chained, is_sound
+from semmap.nodes.kb_node.storage.journal.layout import COMPACTED, FORMAT, SCHEMA
+from semmap.nodes.kb_node.storage.journal.rows import Damaged, Row
+from semmap.nodes.kb_node.storage.journal.sqlite_file import ANEW, JournalFile, mend
+from semmap.nodes.kb_node.storage.journal.stamps import Stamps
+from semmap.schemas import errors
+from semmap.schemas.commits import Commit
 
 T = TypeVar("T")
 

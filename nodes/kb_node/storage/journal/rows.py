@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from nodes.kb_node.storage.journal.digests import is_sound
-from nodes.kb_node.storage.journal.sqlite_file import JournalFile, mend
-from schemas import errors
+from semmap.nodes.kb_node.storage.journal.digests import is_sound
+from semmap.nodes.kb_node.storage.journal.sqlite_file import JournalFile, mend
+from semmap.schemas import errors
 
 PAGE: Final = 256
 

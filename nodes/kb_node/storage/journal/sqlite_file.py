@@ -11,8 +11,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
-from nodes.kb_node.storage.journal import write_ahead
-from schemas import errors
+from semmap.nodes.kb_node.storage.journal import write_ahead
+from semmap.schemas import errors
 
 _PAGE_BYTES: Final = 4096
 _LOG_BYTES: Final = 1025 * _PAGE_BYTES

@@ -9,10 +9,10 @@ from itertools import accumulate
 
 from msgspec import Struct
 
-from nodes.kb_node.storage.encoding import dense
-from nodes.kb_node.storage.journal import rows
-from nodes.kb_node.storage.journal.beginning import Beginning
-from nodes.kb_node.storage.journal.sqlite_file import JournalFile
+from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.nodes.kb_node.storage.journal import rows
+from semmap.nodes.kb_node.storage.journal.beginning import Beginning
+from semmap.nodes.kb_node.storage.journal.sqlite_file import JournalFile
 
 
 class Stamps:

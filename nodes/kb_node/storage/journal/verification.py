@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 from msgspec import MsgspecError
 
-from nodes.kb_node.storage.journal import beginning, index_check
-from nodes.kb_node.storage.journal.journal import Journal, signed
-from nodes.kb_node.storage.journal.rows import Damaged
+from semmap.nodes.kb_node.storage.journal import beginning, index_check
+from semmap.nodes.kb_node.storage.journal.journal import Journal, signed
+from semmap.nodes.kb_node.storage.journal.rows import Damaged
 
 
 def verify(journal: Journal, progress: Callable[[], None] = lambda: None) -> None:

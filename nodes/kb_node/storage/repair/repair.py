@@ -18,17 +18,17 @@ from pathlib import Path
 
 from msgspec import structs
 
-from nodes.kb_node.documents import ontology_files, rdf
-from nodes.kb_node.documents.tbox import tbox_validation
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage import seed
-from nodes.kb_node.storage.journal import FILENAME, Checkpoint, Journal, write_ahead
-from nodes.kb_node.storage.journal.sqlite_file import InUse, NotWritten
-from nodes.kb_node.storage.journal.verification import verify
-from nodes.kb_node.storage.repair import salvage
-from nodes.kb_node.storage.repair.restating import DoesNotFit, fitted
-from schemas import errors
-from schemas.commits import Commit
+from semmap.nodes.kb_node.documents import ontology_files, rdf
+from semmap.nodes.kb_node.documents.tbox import tbox_validation
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage import seed
+from semmap.nodes.kb_node.storage.journal import FILENAME, Checkpoint, Journal, write_ahead
+from semmap.nodes.kb_node.storage.journal.sqlite_file import InUse, NotWritten
+from semmap.nodes.kb_node.storage.journal.verification import verify
+from semmap.nodes.kb_node.storage.repair import salvage
+from semmap.nodes.kb_node.storage.repair.restating import DoesNotFit, fitted
+from semmap.schemas import errors
+from semmap.schemas.commits import Commit
 
 _TOLD_EVERY_S = 2.0
 _MAGIC = b"SQLite format 3\0"

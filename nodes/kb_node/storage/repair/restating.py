@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 from msgspec import structs
 
-from nodes.kb_node.entities import entity_writing
-from nodes.kb_node.map_state import MapState
-from ontology import vocabulary as v
-from schemas.commits import Commit
-from schemas.explanations import Term, Triple
+from semmap.nodes.kb_node.entities import entity_writing
+from semmap.nodes.kb_node.map_state import MapState
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Commit
+from semmap.schemas.explanations import Term, Triple
 
 
 class DoesNotFit(Exception):

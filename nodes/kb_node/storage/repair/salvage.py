@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.storage.encoding import dense
-from nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
-from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.journal.digests import chained
-from nodes.kb_node.storage.journal.rows import Row
-from schemas import errors
-from schemas.commits import Commit
-from schemas.explanations import Triple
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.storage.journal.digests import chained
+from semmap.nodes.kb_node.storage.journal.rows import Row
+from semmap.schemas import errors
+from semmap.schemas.commits import Commit
+from semmap.schemas.explanations import Triple
 
 
 def commits(journal: Journal) -> Iterator[tuple[int, Commit | None, bytes | None]]:

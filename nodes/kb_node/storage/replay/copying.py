@@ -13,8 +13,8 @@ from contextlib import closing
 from pathlib import Path
 from typing import Final
 
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from schemas import errors
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.schemas import errors
 
 _LOG: Final = "-wal"
 _HEAD_BYTES: Final = 32

@@ -7,11 +7,11 @@ from contextlib import closing
 from pathlib import Path
 from typing import Final
 
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.replay import copying
-from nodes.kb_node.storage.replay.spans import Span, span_of
-from schemas import errors
-from schemas.moments import When
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.replay import copying
+from semmap.nodes.kb_node.storage.replay.spans import Span, span_of
+from semmap.schemas import errors
+from semmap.schemas.moments import When
 
 SOURCE: Final = f"replayed-{FILENAME}"
 """The copy that the commits come from, in the folder of the replay."""

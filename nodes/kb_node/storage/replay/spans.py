@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import Journal
-from schemas import errors
-from schemas.moments import When
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.schemas import errors
+from semmap.schemas.moments import When
 
 
 class Span(NamedTuple):

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from importlib import resources
 from typing import Any, Final, Literal
 
-from nodes.language import lexicon
-from nodes.language.words import lemma
+from semmap.nodes.language import lexicon
+from semmap.nodes.language.words import lemma
 
 Language = Literal["english", "italian"]
 LANGUAGES: Final[tuple[Language, ...]] = ("english", "italian")

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
-from nodes.perception_node.input.files import image_files, open3d_clouds, pcd, ply
-from nodes.perception_node.input.files.columns import OtherVariant
-from schemas.errors import BadFile, BadRequest
-from schemas.wording import counted
+from semmap.nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
+from semmap.nodes.perception_node.input.files import image_files, open3d_clouds, pcd, ply
+from semmap.nodes.perception_node.input.files.columns import OtherVariant
+from semmap.schemas.errors import BadFile, BadRequest
+from semmap.schemas.wording import counted
 
 _DECODERS: dict[str, Callable[[bytes], Cloud]] = {".pcd": pcd.decode, ".ply": ply.decode}
 _PICTURES = (".png", ".tif", ".tiff")

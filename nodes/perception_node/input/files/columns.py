@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Cloud
-from nodes.perception_node.input.files import units
+from semmap.nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Cloud
+from semmap.nodes.perception_node.input.files import units
 
 MAX_POINTS = 50_000_000
 """No frame has more; a header that says so is damaged."""

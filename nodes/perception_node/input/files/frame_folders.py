@@ -11,13 +11,13 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud, Floats
-from nodes.perception_node.input.files import units
-from nodes.perception_node.input.files.image_files import opened, pose_of
-from nodes.perception_node.input.projection import cloud_of, fits, thinned, thinning
-from schemas import codec
-from schemas.errors import BadFile
-from schemas.wording import few, sentence
+from semmap.nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud, Floats
+from semmap.nodes.perception_node.input.files import units
+from semmap.nodes.perception_node.input.files.image_files import opened, pose_of
+from semmap.nodes.perception_node.input.projection import cloud_of, fits, thinned, thinning
+from semmap.schemas import codec
+from semmap.schemas.errors import BadFile
+from semmap.schemas.wording import few, sentence
 
 COLOUR, DEPTH, CAMERA = "rgb.png", "depth.png", "camera.json"
 _FILES = (COLOUR, DEPTH, CAMERA)

@@ -11,11 +11,11 @@ from msgspec import Struct
 from numpy.typing import NDArray
 from PIL import Image
 
-from nodes.perception_node.input.cloud import Cloud, Transform
-from nodes.perception_node.input.files import units
-from nodes.perception_node.input.projection import cloud_of, fits, is_pose
-from schemas import codec
-from schemas.wording import sentence
+from semmap.nodes.perception_node.input.cloud import Cloud, Transform
+from semmap.nodes.perception_node.input.files import units
+from semmap.nodes.perception_node.input.projection import cloud_of, fits, is_pose
+from semmap.schemas import codec
+from semmap.schemas.wording import sentence
 
 _DEPTH_MODES = ("I;16", "I;16B", "I", "F")
 _MOST_PIXELS = 50_000_000

@@ -9,12 +9,12 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from nodes.perception_node.input.files.image_files import opened
-from nodes.perception_node.input.files.mask_polygons import counts_of
-from nodes.perception_node.input.masks import Masks, of_numbers, of_runs
-from schemas.errors import BadFile
-from schemas.perception import MaskRun
-from schemas.wording import sentence
+from semmap.nodes.perception_node.input.files.image_files import opened
+from semmap.nodes.perception_node.input.files.mask_polygons import counts_of
+from semmap.nodes.perception_node.input.masks import Masks, of_numbers, of_runs
+from semmap.schemas.errors import BadFile
+from semmap.schemas.perception import MaskRun
+from semmap.schemas.wording import sentence
 
 _WANTED = (
     "a list of masks as COCO writes results, a dataset with annotations and categories, or a label image"

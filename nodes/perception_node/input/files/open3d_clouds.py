@@ -8,9 +8,9 @@ from typing import BinaryIO
 
 import numpy as np
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.files.columns import MAX_POINTS, Column, cloud_of
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.files.columns import MAX_POINTS, Column, cloud_of
+from semmap.schemas.errors import BadFile
 
 SUFFIXES = (".xyz", ".xyzn", ".xyzrgb", ".pts")
 _FIRST_LINE = 80

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.files import lzf
-from nodes.perception_node.input.files.columns import (
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.files import lzf
+from semmap.nodes.perception_node.input.files.columns import (
     MAX_POINTS,
     Column,
     Field,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.input.files.columns import (
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.files.columns import (
     MAX_POINTS,
     Column,
     OtherVariant,

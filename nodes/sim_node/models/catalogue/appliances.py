@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from nodes.sim_node.models.forms import (
+from semmap.nodes.sim_node.models.forms import (
     BLACK,
     DARK,
     GREY,
@@ -20,8 +20,8 @@ from nodes.sim_node.models.forms import (
     solid,
     turned,
 )
-from nodes.sim_node.models.openings import WIDE, cabinet_box, flap, framed_box, side_door
-from nodes.sim_node.models.parts import (
+from semmap.nodes.sim_node.models.openings import WIDE, cabinet_box, flap, framed_box, side_door
+from semmap.nodes.sim_node.models.parts import (
     ALONG_X,
     ALONG_Y,
     Colour,

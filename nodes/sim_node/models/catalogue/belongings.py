@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
-from nodes.sim_node.models.forms import (
+from semmap.nodes.sim_node.models.forms import (
     BLACK,
     BRASS,
     DARK,
@@ -20,7 +20,7 @@ from nodes.sim_node.models.forms import (
     slab,
     turned,
 )
-from nodes.sim_node.models.parts import (
+from semmap.nodes.sim_node.models.parts import (
     ALONG_X,
     Colour,
     Part,

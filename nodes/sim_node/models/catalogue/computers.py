@@ -4,8 +4,30 @@ from __future__ import annotations
 
 import math
 
-from nodes.sim_node.models.forms import BLACK, DARK, GREY, LIGHT, STEEL, WHITE, front, shade, slab, solid
-from nodes.sim_node.models.parts import ALONG_X, Colour, Joint, Parts, Vec3, about, box, moving, rod, seen
+from semmap.nodes.sim_node.models.forms import (
+    BLACK,
+    DARK,
+    GREY,
+    LIGHT,
+    STEEL,
+    WHITE,
+    front,
+    shade,
+    slab,
+    solid,
+)
+from semmap.nodes.sim_node.models.parts import (
+    ALONG_X,
+    Colour,
+    Joint,
+    Parts,
+    Vec3,
+    about,
+    box,
+    moving,
+    rod,
+    seen,
+)
 
 
 def monitor(x: float, y: float, z: float, colour: Colour) -> Parts:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
-from nodes.sim_node.models.forms import (
+from semmap.nodes.sim_node.models.forms import (
     BLACK,
     BRASS,
     DARK,
@@ -17,8 +17,8 @@ from nodes.sim_node.models.forms import (
     shade,
     slab,
 )
-from nodes.sim_node.models.openings import GAP_M, SIDES, cabinet_box, side_door
-from nodes.sim_node.models.parts import (
+from semmap.nodes.sim_node.models.openings import GAP_M, SIDES, cabinet_box, side_door
+from semmap.nodes.sim_node.models.parts import (
     ALONG_Y,
     Colour,
     Joint,

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 
-from nodes.sim_node.models.forms import (
+from semmap.nodes.sim_node.models.forms import (
     WHITE,
     column,
     shade,
     slab,
     turned,
 )
-from nodes.sim_node.models.parts import (
+from semmap.nodes.sim_node.models.parts import (
     ALONG_X,
     ALONG_Y,
     Colour,

@@ -4,8 +4,19 @@ from __future__ import annotations
 
 import math
 
-from nodes.sim_node.models.forms import BLACK, GREY, PAPER, WHITE, shade, slab
-from nodes.sim_node.models.parts import ALONG_X, ALONG_Y, Colour, Parts, ball, box, felt, pill, rod, seen
+from semmap.nodes.sim_node.models.forms import BLACK, GREY, PAPER, WHITE, shade, slab
+from semmap.nodes.sim_node.models.parts import (
+    ALONG_X,
+    ALONG_Y,
+    Colour,
+    Parts,
+    ball,
+    box,
+    felt,
+    pill,
+    rod,
+    seen,
+)
 
 
 def board(x: float, y: float, z: float, colour: Colour) -> Parts:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from nodes.sim_node.models.forms import DARK, STEEL, WHITE, column, legs, shade, slab
-from nodes.sim_node.models.openings import cabinet_box, pull_out, wall_of
-from nodes.sim_node.models.parts import ALONG_X, Colour, Parts, ball, box, rod, seen
+from semmap.nodes.sim_node.models.forms import DARK, STEEL, WHITE, column, legs, shade, slab
+from semmap.nodes.sim_node.models.openings import cabinet_box, pull_out, wall_of
+from semmap.nodes.sim_node.models.parts import ALONG_X, Colour, Parts, ball, box, rod, seen
 
 
 def chair(x: float, y: float, z: float, colour: Colour) -> Parts:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from nodes.sim_node.models.forms import BLACK, BRASS, DARK, column, turned
-from nodes.sim_node.models.parts import Colour, Parts, ball, felt, seen
+from semmap.nodes.sim_node.models.forms import BLACK, BRASS, DARK, column, turned
+from semmap.nodes.sim_node.models.parts import Colour, Parts, ball, felt, seen
 
 
 def lamp(x: float, y: float, z: float, colour: Colour) -> Parts:

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 
-from nodes.sim_node.models.catalogue.tableware import glass
-from nodes.sim_node.models.forms import PAPER, column, hollow_box, shade, shifted, slab, turned
-from nodes.sim_node.models.openings import GAP_M, SIDES
-from nodes.sim_node.models.parts import (
+from semmap.nodes.sim_node.models.catalogue.tableware import glass
+from semmap.nodes.sim_node.models.forms import PAPER, column, hollow_box, shade, shifted, slab, turned
+from semmap.nodes.sim_node.models.openings import GAP_M, SIDES
+from semmap.nodes.sim_node.models.parts import (
     ALONG_X,
     Colour,
     Joint,

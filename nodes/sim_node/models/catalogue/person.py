@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from nodes.sim_node.models.forms import DARK
-from nodes.sim_node.models.parts import Colour, Parts, about, ball, box, felt, pill, seen
+from semmap.nodes.sim_node.models.forms import DARK
+from semmap.nodes.sim_node.models.parts import Colour, Parts, about, ball, box, felt, pill, seen
 
 
 def figure(x: float, y: float, z: float, colour: Colour) -> Parts:

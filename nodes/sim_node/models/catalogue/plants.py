@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from nodes.sim_node.models.forms import WOOD, column, shade, turned
-from nodes.sim_node.models.parts import Colour, Parts, about, ball, felt, product, seen
+from semmap.nodes.sim_node.models.forms import WOOD, column, shade, turned
+from semmap.nodes.sim_node.models.parts import Colour, Parts, about, ball, felt, product, seen
 
 LEAF: Colour = (0.25, 0.50, 0.20)
 

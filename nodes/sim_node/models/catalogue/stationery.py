@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from nodes.sim_node.models.forms import BLACK, BRASS, DARK, GREY, PAPER, WHITE, shade, slab
-from nodes.sim_node.models.parts import ALONG_X, Colour, Parts, about, box, felt, rod, seen
+from semmap.nodes.sim_node.models.forms import BLACK, BRASS, DARK, GREY, PAPER, WHITE, shade, slab
+from semmap.nodes.sim_node.models.parts import ALONG_X, Colour, Parts, about, box, felt, rod, seen
 
 
 def book(x: float, y: float, z: float, colour: Colour) -> Parts:

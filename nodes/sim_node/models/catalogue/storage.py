@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from nodes.sim_node.models.forms import (
+from semmap.nodes.sim_node.models.forms import (
     BRASS,
     DARK,
     STEEL,
@@ -16,8 +16,19 @@ from nodes.sim_node.models.forms import (
     shade,
     slab,
 )
-from nodes.sim_node.models.openings import SIDES, cabinet_box, pull_out, side_door, wall_of
-from nodes.sim_node.models.parts import ALONG_Y, Colour, Parts, about, ball, box, felt, product, rod, seen
+from semmap.nodes.sim_node.models.openings import SIDES, cabinet_box, pull_out, side_door, wall_of
+from semmap.nodes.sim_node.models.parts import (
+    ALONG_Y,
+    Colour,
+    Parts,
+    about,
+    ball,
+    box,
+    felt,
+    product,
+    rod,
+    seen,
+)
 
 
 def counter(x: float, y: float, z: float, colour: Colour) -> Parts:

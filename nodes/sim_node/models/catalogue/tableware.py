@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nodes.sim_node.models.forms import (
+from semmap.nodes.sim_node.models.forms import (
     BLACK,
     DARK,
     STEEL,
@@ -14,7 +14,7 @@ from nodes.sim_node.models.forms import (
     slab,
     turned,
 )
-from nodes.sim_node.models.parts import (
+from semmap.nodes.sim_node.models.parts import (
     ALONG_Y,
     Colour,
     Parts,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from nodes.sim_node.models.forms import PAPER, WHITE, column, shade, slab
-from nodes.sim_node.models.parts import ALONG_Y, Colour, Parts, ball, box, felt, rod, seen
+from semmap.nodes.sim_node.models.forms import PAPER, WHITE, column, shade, slab
+from semmap.nodes.sim_node.models.parts import ALONG_Y, Colour, Parts, ball, box, felt, rod, seen
 
 
 def soap(x: float, y: float, z: float, colour: Colour) -> Parts:

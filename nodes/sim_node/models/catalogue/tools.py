@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from nodes.sim_node.models.forms import STEEL, WOOD, column, ring, shifted, slab
-from nodes.sim_node.models.parts import ALONG_X, ALONG_Y, Colour, Parts, about, box, felt, rod, seen
+from semmap.nodes.sim_node.models.forms import STEEL, WOOD, column, ring, shifted, slab
+from semmap.nodes.sim_node.models.parts import ALONG_X, ALONG_Y, Colour, Parts, about, box, felt, rod, seen
 
 
 def scissors(x: float, y: float, z: float, colour: Colour) -> Parts:

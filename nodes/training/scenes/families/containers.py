@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from nodes.sim_node.models.parts import Colour, Parts
-from nodes.training.scenes.families.lots import Lots
-from nodes.training.scenes.solids import full, hollow, lathe, smooth
+from semmap.nodes.sim_node.models.parts import Colour, Parts
+from semmap.nodes.training.scenes.families.lots import Lots
+from semmap.nodes.training.scenes.solids import full, hollow, lathe, smooth
 
 
 def bottle(lots: Lots, colour: Colour) -> Parts:

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from nodes.sim_node.models.forms import shade
-from nodes.sim_node.models.parts import Colour, Parts
-from nodes.training.scenes.families.lots import Lots
-from nodes.training.scenes.families.walls import handle, radius_at, wall
-from nodes.training.scenes.solids import full, hollow, lathe, lump, smooth, tube
+from semmap.nodes.sim_node.models.forms import shade
+from semmap.nodes.sim_node.models.parts import Colour, Parts
+from semmap.nodes.training.scenes.families.lots import Lots
+from semmap.nodes.training.scenes.families.walls import handle, radius_at, wall
+from semmap.nodes.training.scenes.solids import full, hollow, lathe, lump, smooth, tube
 
 
 def pot(lots: Lots, colour: Colour) -> Parts:

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from nodes.sim_node.models.forms import shade
-from nodes.sim_node.models.parts import Colour
+from semmap.nodes.sim_node.models.forms import shade
+from semmap.nodes.sim_node.models.parts import Colour
 
 
 class Lots:

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from nodes.sim_node.models.parts import Colour, Parts
-from nodes.training.scenes.families.lots import Lots
-from nodes.training.scenes.solids import lathe, lump, smooth, tube
+from semmap.nodes.sim_node.models.parts import Colour, Parts
+from semmap.nodes.training.scenes.families.lots import Lots
+from semmap.nodes.training.scenes.solids import lathe, lump, smooth, tube
 
 
 def apple(lots: Lots, colour: Colour) -> Parts:

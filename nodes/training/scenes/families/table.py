@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nodes.sim_node.models.model_files import keyed
-from nodes.sim_node.models.parts import Colour, Parts
-from nodes.training.scenes.families.containers import (
+from semmap.nodes.sim_node.models.model_files import keyed
+from semmap.nodes.sim_node.models.parts import Colour, Parts
+from semmap.nodes.training.scenes.families.containers import (
     bottle,
     drink_can,
     flower_pot,
@@ -18,12 +18,20 @@ from nodes.training.scenes.families.containers import (
     vase,
     wine_bottle,
 )
-from nodes.training.scenes.families.cookware import pan, pot, teapot
-from nodes.training.scenes.families.lots import Lots
-from nodes.training.scenes.families.produce import apple, lemon, onion, orange, other_fruit, pear, potato
-from nodes.training.scenes.families.tableware import bowl, cup, glass, pitcher, plate, stem_glass
-from nodes.training.scenes.families.utensils import ladle, screwdriver, spatula, sponge
-from nodes.training.scenes.simulated_scenes import foreign_label
+from semmap.nodes.training.scenes.families.cookware import pan, pot, teapot
+from semmap.nodes.training.scenes.families.lots import Lots
+from semmap.nodes.training.scenes.families.produce import (
+    apple,
+    lemon,
+    onion,
+    orange,
+    other_fruit,
+    pear,
+    potato,
+)
+from semmap.nodes.training.scenes.families.tableware import bowl, cup, glass, pitcher, plate, stem_glass
+from semmap.nodes.training.scenes.families.utensils import ladle, screwdriver, spatula, sponge
+from semmap.nodes.training.scenes.simulated_scenes import foreign_label
 
 Draw = Callable[[Lots, Colour], Parts]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from nodes.sim_node.models.parts import Colour, Parts
-from nodes.training.scenes.families.lots import Lots
-from nodes.training.scenes.families.walls import handle, wall
-from nodes.training.scenes.solids import Profile, full, hollow, lathe, smooth
+from semmap.nodes.sim_node.models.parts import Colour, Parts
+from semmap.nodes.training.scenes.families.lots import Lots
+from semmap.nodes.training.scenes.families.walls import handle, wall
+from semmap.nodes.training.scenes.solids import Profile, full, hollow, lathe, smooth
 
 
 def cup(lots: Lots, colour: Colour) -> Parts:

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from nodes.sim_node.models.parts import Colour, Parts, box
-from nodes.training.scenes.families.lots import Lots
-from nodes.training.scenes.solids import full, hollow, lathe, lump, smooth, tube
+from semmap.nodes.sim_node.models.parts import Colour, Parts, box
+from semmap.nodes.training.scenes.families.lots import Lots
+from semmap.nodes.training.scenes.solids import full, hollow, lathe, lump, smooth, tube
 
 
 def spatula(lots: Lots, colour: Colour) -> Parts:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nodes.training.scenes.solids import Profile, Solid, smooth, tube
+from semmap.nodes.training.scenes.solids import Profile, Solid, smooth, tube
 
 
 def wall(top: float, bottom: float, z: float, bulge: float) -> list[tuple[float, ...]]:

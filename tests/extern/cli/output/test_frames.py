@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from nodes.extern.cli.output.show import console, frame_tree
-from schemas.entities import Pose
-from schemas.frames import Frame
+from semmap.nodes.extern.cli.output.show import console, frame_tree
+from semmap.schemas.entities import Pose
+from semmap.schemas.frames import Frame
 
 _HERE = Pose(position_m=(1.0, 0.0, 0.0))
 _LEANING = Pose(position_m=(0.0, 0.0, 1.0), orientation_wxyz=(0.6, 0.8, 0.0, 0.0))

@@ -2,9 +2,9 @@
 
 import pytest
 
-from nodes.extern.cli.output import lines
-from schemas.relations import Relation
-from schemas.replies import Changed
+from semmap.nodes.extern.cli.output import lines
+from semmap.schemas.relations import Relation
+from semmap.schemas.replies import Changed
 
 
 @pytest.mark.parametrize(("count", "shown"), [(0, 0), (1, 1), (20, 20), (21, 19), (700, 19)])

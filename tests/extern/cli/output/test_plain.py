@@ -1,7 +1,7 @@
 """Tables for pipes and files."""
 
-from nodes.extern.cli.output import plain, sparql_formats
-from ontology import vocabulary as v
+from semmap.nodes.extern.cli.output import plain, sparql_formats
+from semmap.ontology import vocabulary as v
 
 
 def test_columns_are_as_wide_as_what_is_widest_in_them():

@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from nodes.extern.cli.calling import complain, print_json, print_lines
-from nodes.extern.cli.output.printable import say, write
+from semmap.nodes.extern.cli.calling import complain, print_json, print_lines
+from semmap.nodes.extern.cli.output.printable import say, write
 
 CLEAR = "\x1b[2J\x1b]0;owned\x07 \x9b31m \x7f \u202e"
 

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from nodes.extern.cli.output import progress as module
-from schemas.health import Health
+from semmap.nodes.extern.cli.output import progress as module
+from semmap.schemas.health import Health
 
 HEALTH = partial(Health, node="kb_node", pid=1, started_ns=1, stamp_ns=1, state="ready")
 

@@ -3,10 +3,10 @@ import json
 import pyoxigraph as ox
 import pytest
 
-from nodes.extern.cli.output import sparql_formats as formats
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.sparql import RowsChanged, SparqlResult
+from semmap.nodes.extern.cli.output import sparql_formats as formats
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.sparql import RowsChanged, SparqlResult
 
 CHAIR = v.entity_iri("chair1")
 ROWS = SparqlResult(

@@ -8,10 +8,10 @@ import pytest
 from msgspec import structs
 from rich.console import Console
 
-from nodes.extern.cli.output import show, show_past, tables
-from schemas.entities import BodyState, Entity, Pose, Provenance
-from schemas.relations import Described
-from schemas.replies import LoggedCommit, NodeStatus, SystemStatus
+from semmap.nodes.extern.cli.output import show, show_past, tables
+from semmap.schemas.entities import BodyState, Entity, Pose, Provenance
+from semmap.schemas.relations import Described
+from semmap.schemas.replies import LoggedCommit, NodeStatus, SystemStatus
 
 
 def entity(name, size_m=(0.0802, 0.125, 0.095)):

@@ -6,8 +6,8 @@ from contextlib import redirect_stdout
 
 import pytest
 
-from nodes.extern.cli.app import execute
-from schemas import errors, keys
+from semmap.nodes.extern.cli.app import execute
+from semmap.schemas import errors, keys
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,9 @@ import json
 
 import pytest
 
-from nodes.extern.cli.verbs.batch import written
-from schemas import commands as c
-from schemas import errors
+from semmap.nodes.extern.cli.verbs.batch import written
+from semmap.schemas import commands as c
+from semmap.schemas import errors
 
 
 def test_each_line_is_the_command_that_it_would_be_alone():

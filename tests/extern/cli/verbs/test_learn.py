@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nodes.extern.cli.app import execute
+from semmap.nodes.extern.cli.app import execute
 from tests.extern.cli.verbs.test_perceive import SEEN, write_frame
 
 

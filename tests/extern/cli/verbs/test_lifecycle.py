@@ -5,11 +5,11 @@ import pytest
 from click.testing import CliRunner
 from msgspec import structs
 
-from nodes.extern.cli.app import execute
-from nodes.extern.cli.verbs.lifecycle import _settings_before, settings_options
-from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings
-from ontology import EMPTY_WORLD, FLAT_WORLD
-from schemas import codec
+from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.extern.cli.verbs.lifecycle import _settings_before, settings_options
+from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS, Settings
+from semmap.ontology import EMPTY_WORLD, FLAT_WORLD
+from semmap.schemas import codec
 
 
 @pytest.fixture

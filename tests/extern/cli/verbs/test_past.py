@@ -7,10 +7,10 @@ import re
 
 import pytest
 
-from nodes.extern.client import connect
-from ontology import HOUSEHOLD_TTL
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.extern.client import connect
+from semmap.ontology import HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from tests.conftest import until
 
 DM = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#"

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.extern.cli.app import execute
-from nodes.perception_node.fitting import fit
+from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.perception_node.fitting import fit
 from tests.perception_node.files.made import header
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.test_patches import SCENES

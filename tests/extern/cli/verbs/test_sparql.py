@@ -7,7 +7,7 @@ import signal
 
 import pytest
 
-from schemas import errors, keys
+from semmap.schemas import errors, keys
 from tests.conftest import until
 
 CHAIRS = "SELECT ?c { ?c a dm:Chair } ORDER BY ?c"

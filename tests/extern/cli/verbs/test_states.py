@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from schemas import codec, commands, errors, replies
+from semmap.schemas import codec, commands, errors, replies
 
 
 @pytest.fixture(scope="module")

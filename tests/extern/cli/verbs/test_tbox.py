@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from nodes.extern.cli.app import execute
+from semmap.nodes.extern.cli.app import execute
 
 SOUND = "Ontology(<http://o.org/o> <http://o.org/o/1> Import(<http://o.org/m>) Declaration(Class(<http://o.org/o#A>)))"
 UNSOUND = SOUND[:-1] + " SubClassOf(<http://o.org/o#A> owl:Nothing))"

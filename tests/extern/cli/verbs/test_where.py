@@ -2,7 +2,7 @@
 
 import pytest
 
-from ontology import HOUSEHOLD_TTL
+from semmap.ontology import HOUSEHOLD_TTL
 
 ON_SHELVES = """
 dm:Milk rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:isOn ; owl:allValuesFrom dm:Shelf ] .

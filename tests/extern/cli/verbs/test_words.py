@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from schemas import errors
+from semmap.schemas import errors
 from tests.extern.cli.verbs.test_ask import said
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nodes.extern.web.panels.choice import Choice
+from semmap.nodes.extern.web.panels.choice import Choice
 from tests.extern.web.panels.tabs import in_a_tab, tell
 
 TOLD = "update:modelValue"

@@ -6,12 +6,12 @@ from types import SimpleNamespace
 import pytest
 from nicegui import ElementFilter, ui
 
-from nodes.extern.web.moments import NOW
-from nodes.extern.web.panels import asking, fact_list
-from nodes.extern.web.panels import detail as detail_module
-from nodes.extern.web.panels import states as states_module
-from nodes.extern.web.panels.detail import detail
-from nodes.extern.web.views.facts import Fact, Facts
+from semmap.nodes.extern.web.moments import NOW
+from semmap.nodes.extern.web.panels import asking, fact_list
+from semmap.nodes.extern.web.panels import detail as detail_module
+from semmap.nodes.extern.web.panels import states as states_module
+from semmap.nodes.extern.web.panels.detail import detail
+from semmap.nodes.extern.web.views.facts import Fact, Facts
 from tests.conftest import PATIENCE_S
 from tests.extern.web.panels.tabs import in_a_tab
 from tests.extern.web.views.worlds import thing

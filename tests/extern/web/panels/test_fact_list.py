@@ -4,10 +4,10 @@ from types import SimpleNamespace
 
 from nicegui import ElementFilter, ui
 
-from nodes.extern.web.moments import NOW
-from nodes.extern.web.panels.fact_list import FactList
-from nodes.extern.web.views.facts import Fact, Facts, Question
-from schemas import errors
+from semmap.nodes.extern.web.moments import NOW
+from semmap.nodes.extern.web.panels.fact_list import FactList
+from semmap.nodes.extern.web.views.facts import Fact, Facts, Question
+from semmap.schemas import errors
 from tests.extern.web.panels.tabs import in_a_tab, tell
 
 

@@ -2,7 +2,7 @@
 
 from nicegui import ui
 
-from nodes.extern.web.panels.rows import Rows, keyed
+from semmap.nodes.extern.web.panels.rows import Rows, keyed
 from tests.extern.web.panels.tabs import in_a_tab
 
 

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import pytest
 from nicegui import ElementFilter, ui
 
-from nodes.extern.web.moments import NOW
-from nodes.extern.web.panels import states as states_module
-from nodes.extern.web.panels.states import States
-from schemas.entities import PropertyInfo
+from semmap.nodes.extern.web.moments import NOW
+from semmap.nodes.extern.web.panels import states as states_module
+from semmap.nodes.extern.web.panels.states import States
+from semmap.schemas.entities import PropertyInfo
 from tests.extern.web.panels.tabs import in_a_tab, tell
 from tests.extern.web.views.worlds import thing
 

@@ -6,9 +6,9 @@ import asyncio
 
 import pytest
 
-from nodes.extern.web.scene.assets import Assets
-from schemas import errors
-from schemas.scenes import SurfaceQuery, Surfaces
+from semmap.nodes.extern.web.scene.assets import Assets
+from semmap.schemas import errors
+from semmap.schemas.scenes import SurfaceQuery, Surfaces
 from tests.extern.web.scene.things import body, scene, surface
 
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from nodes.extern.web.scene.bodies import Bodies
-from nodes.extern.web.scene.shown import Shown
+from semmap.nodes.extern.web.scene.bodies import Bodies
+from semmap.nodes.extern.web.scene.shown import Shown
 from tests.extern.web.scene.things import pose
 
 

@@ -6,8 +6,8 @@ import random
 import numpy as np
 import pytest
 
-from nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, uncrowded
-from nodes.extern.web.scene.seen import wxyz_of
+from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, uncrowded
+from semmap.nodes.extern.web.scene.seen import wxyz_of
 from tests.extern.web.scene.things import entity, pose
 
 

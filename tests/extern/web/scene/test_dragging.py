@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from nodes.extern.web.scene.dragging import Gizmo, arm_m
+from semmap.nodes.extern.web.scene.dragging import Gizmo, arm_m
 from tests.extern.web.scene.things import pose
 
 

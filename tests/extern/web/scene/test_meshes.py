@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.extern.web.scene.meshes import cube, glb, linear, opacity_of, srgb, veiled
+from semmap.nodes.extern.web.scene.meshes import cube, glb, linear, opacity_of, srgb, veiled
 from tests.extern.web.scene.things import surface
 
 

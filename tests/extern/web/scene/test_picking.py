@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.extern.web.scene.dragging import put_down
-from nodes.extern.web.scene.picking import (
+from semmap.nodes.extern.web.scene.dragging import put_down
+from semmap.nodes.extern.web.scene.picking import (
     Solid,
     corners_of,
     edges_of,

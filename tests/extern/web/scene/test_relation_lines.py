@@ -1,7 +1,7 @@
 """Relations as lines."""
 
-from nodes.extern.web.scene.relation_lines import relation_lines
-from schemas.relations import Relation
+from semmap.nodes.extern.web.scene.relation_lines import relation_lines
+from semmap.schemas.relations import Relation
 
 MIDDLES = {
     "cup1": (0.0, 0.0, 1.0),

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from nodes.extern.web.scene.rooms import Rooms
-from schemas.polygons import EXTENT, box_around, read_wkt
+from semmap.nodes.extern.web.scene.rooms import Rooms
+from semmap.schemas.polygons import EXTENT, box_around, read_wkt
 from tests.extern.web.scene.things import entity, pose
 
 L = "POLYGON ((2 1, 6 1, 6 3, 4 3, 4 5, 2 5, 2 1))"

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from nodes.extern.web.scene.picking import rotation_of
-from nodes.extern.web.scene.seen import picture_of, stand_of, wxyz_of
-from schemas.entities import Pose
-from schemas.scenes import CameraFrame
+from semmap.nodes.extern.web.scene.picking import rotation_of
+from semmap.nodes.extern.web.scene.seen import picture_of, stand_of, wxyz_of
+from semmap.schemas.entities import Pose
+from semmap.schemas.scenes import CameraFrame
 
 
 def frame(width=640, height=480, rotation=None):

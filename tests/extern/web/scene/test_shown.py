@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from nodes.extern.web.scene.shown import BOX, batch_of, by_key, shown
+from semmap.nodes.extern.web.scene.shown import BOX, batch_of, by_key, shown
 from tests.extern.web.scene.things import body, entity, pose, surface
 
 

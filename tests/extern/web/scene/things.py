@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from nodes.extern.web.scene.meshes import cube
-from schemas.entities import BodyState, Entity, Pose, Provenance, orientation_from_yaw
-from schemas.scenes import Body, Scene, Surface
+from semmap.nodes.extern.web.scene.meshes import cube
+from semmap.schemas.entities import BodyState, Entity, Pose, Provenance, orientation_from_yaw
+from semmap.schemas.scenes import Body, Scene, Surface
 
 _SAID = Provenance(commit=1, stamp_ns=1, source="operator")
 

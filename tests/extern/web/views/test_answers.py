@@ -1,5 +1,5 @@
-from nodes.extern.web.views.answers import answer, reasons
-from schemas.language import Candidate, Found
+from semmap.nodes.extern.web.views.answers import answer, reasons
+from semmap.schemas.language import Candidate, Found
 
 
 def candidate(name, *why):

@@ -1,5 +1,5 @@
-from nodes.extern.web.views.consequences import consequences, facts_of
-from schemas.replies import Changed
+from semmap.nodes.extern.web.views.consequences import consequences, facts_of
+from semmap.schemas.replies import Changed
 
 
 def tried(*facts, names=("table1",), notes=()):

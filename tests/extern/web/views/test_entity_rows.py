@@ -1,9 +1,9 @@
 import pytest
 
-from nodes.extern.web.views.entity_rows import Table, Wanted, changes, counted
-from nodes.extern.web.views.whereabouts import Whereabouts
-from schemas.entities import Pose
-from schemas.scenes import Body
+from semmap.nodes.extern.web.views.entity_rows import Table, Wanted, changes, counted
+from semmap.nodes.extern.web.views.whereabouts import Whereabouts
+from semmap.schemas.entities import Pose
+from semmap.schemas.scenes import Body
 from tests.extern.web.views.worlds import by_name, fact, place, thing
 
 ENTITIES = by_name(

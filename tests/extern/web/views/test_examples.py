@@ -1,8 +1,8 @@
 import pyoxigraph as ox
 
-from nodes.extern.web.views.examples import examples
-from ontology import vocabulary as v
-from schemas.entities import ClassInfo
+from semmap.nodes.extern.web.views.examples import examples
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import ClassInfo
 from tests.recorder.messages import entity
 
 PREFIXES = "".join(

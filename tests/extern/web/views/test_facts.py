@@ -1,8 +1,8 @@
-from nodes.extern.web.views.facts import Question, asserted, facts, followed
-from nodes.extern.web.views.steps import words_of
-from ontology import vocabulary as v
-from schemas.entities import PropertyInfo
-from schemas.relations import Relation
+from semmap.nodes.extern.web.views.facts import Question, asserted, facts, followed
+from semmap.nodes.extern.web.views.steps import words_of
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import PropertyInfo
+from semmap.schemas.relations import Relation
 from tests.extern.web.views.worlds import class_, fact, thing
 
 COLOR = PropertyInfo(

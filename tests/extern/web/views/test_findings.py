@@ -1,11 +1,11 @@
 from msgspec import structs
 
-from nodes.extern.web.views.findings import findings, names_in, verdict
-from ontology import vocabulary as v
-from schemas.entities import BodyState
-from schemas.explanations import Explanation, Step
-from schemas.relations import Relation
-from schemas.replies import Checked
+from semmap.nodes.extern.web.views.findings import findings, names_in, verdict
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import BodyState
+from semmap.schemas.explanations import Explanation, Step
+from semmap.schemas.relations import Relation
+from semmap.schemas.replies import Checked
 from tests.recorder.messages import SINCE, entity
 
 SOUND = Checked(

@@ -3,11 +3,11 @@ import math
 import pytest
 from msgspec import structs
 
-from nodes.extern.web.views import forms
-from nodes.extern.web.views.forms import Filled
-from nodes.extern.web.views.states import State
-from schemas import codec, errors
-from schemas.commands import Add, Batch, Set, Unset, Update
+from semmap.nodes.extern.web.views import forms
+from semmap.nodes.extern.web.views.forms import Filled
+from semmap.nodes.extern.web.views.states import State
+from semmap.schemas import codec, errors
+from semmap.schemas.commands import Add, Batch, Set, Unset, Update
 from tests.extern.web.views.worlds import class_, thing
 
 CUP = thing(

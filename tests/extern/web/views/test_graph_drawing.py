@@ -1,6 +1,6 @@
-from nodes.drawing.neighbourhood import around, by_class
-from nodes.extern.web.views.graph_drawing import QUERY, options, relations_of, rows_of
-from ontology import vocabulary as v
+from semmap.nodes.drawing.neighbourhood import around, by_class
+from semmap.nodes.extern.web.views.graph_drawing import QUERY, options, relations_of, rows_of
+from semmap.ontology import vocabulary as v
 from tests.recorder.messages import entity
 
 ENTITIES = {

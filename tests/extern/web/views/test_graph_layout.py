@@ -1,8 +1,8 @@
 import itertools
 import math
 
-from nodes.drawing.neighbourhood import around
-from nodes.extern.web.views.graph_layout import arranged
+from semmap.nodes.drawing.neighbourhood import around
+from semmap.nodes.extern.web.views.graph_layout import arranged
 from tests.recorder.messages import entity
 
 ENTITIES = {f"book{i:02}": entity(f"book{i:02}", "Book") for i in range(40)} | {

@@ -1,8 +1,8 @@
-from nodes.extern.web.views import happened
-from nodes.extern.web.views.happened import WARNING, Log, line_of, rows_of
-from schemas.changes import Change
-from schemas.health import Health
-from schemas.replies import LoggedCommit
+from semmap.nodes.extern.web.views import happened
+from semmap.nodes.extern.web.views.happened import WARNING, Log, line_of, rows_of
+from semmap.schemas.changes import Change
+from semmap.schemas.health import Health
+from semmap.schemas.replies import LoggedCommit
 
 
 def logged(seq, **others):

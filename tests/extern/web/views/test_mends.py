@@ -1,8 +1,8 @@
-from nodes.extern.web.views.mends import mends
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Add, Batch, Remove, Set, Unset, Update
-from schemas.explanations import Explanation
+from semmap.nodes.extern.web.views.mends import mends
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Add, Batch, Remove, Set, Unset, Update
+from semmap.schemas.explanations import Explanation
 from tests.extern.web.views.worlds import by_name, class_, fact, place, thing
 
 CLASSES = (class_("Chair"), class_("Table"))

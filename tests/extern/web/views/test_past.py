@@ -3,10 +3,10 @@ import math
 import pytest
 from msgspec import structs
 
-from nodes.extern.web.views.past import events, place_at, provenance
-from schemas.changes import Change
-from schemas.entities import Pose, Provenance, orientation_from_yaw
-from schemas.replies import LoggedCommit
+from semmap.nodes.extern.web.views.past import events, place_at, provenance
+from semmap.schemas.changes import Change
+from semmap.schemas.entities import Pose, Provenance, orientation_from_yaw
+from semmap.schemas.replies import LoggedCommit
 from tests.extern.web.views.worlds import SAID, place, thing
 
 

@@ -1,9 +1,9 @@
 import pytest
 from msgspec import structs
 
-from nodes.extern.web.views.rates import KEPT_S, Load, Rates, degraded, headline, node_rows
-from schemas.health import Health
-from schemas.replies import SystemStatus
+from semmap.nodes.extern.web.views.rates import KEPT_S, Load, Rates, degraded, headline, node_rows
+from semmap.schemas.health import Health
+from semmap.schemas.replies import SystemStatus
 
 NOW_NS = 1_000_000_000_000
 BEAT = Health(node="kb_node", host="lab", pid=7, started_ns=0, stamp_ns=NOW_NS - 500_000_000, state="ready")

@@ -1,6 +1,6 @@
 import pytest
 
-from nodes.extern.web.views.sentences import in_the_page
+from semmap.nodes.extern.web.views.sentences import in_the_page
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
-from nodes.extern.web.views.sparql_rows import Standing, rows_of, summary
-from ontology import vocabulary as v
-from schemas.sparql import RowsChanged, SparqlResult
+from semmap.nodes.extern.web.views.sparql_rows import Standing, rows_of, summary
+from semmap.ontology import vocabulary as v
+from semmap.schemas.sparql import RowsChanged, SparqlResult
 
 CUP, TABLE = v.entity_iri("cup1"), v.entity_iri("table1")
 

@@ -1,8 +1,8 @@
 from msgspec import structs
 
-from nodes.extern.web.views.states import in_common, states
-from ontology import vocabulary as v
-from schemas.entities import PropertyInfo
+from semmap.nodes.extern.web.views.states import in_common, states
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import PropertyInfo
 from tests.extern.web.views.worlds import by_name, thing
 
 

@@ -1,11 +1,11 @@
 import pytest
 
-from nodes.extern.web.views.steps import lines, words_of
-from nodes.kb_node import proofs
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from ontology import vocabulary as v
-from schemas.entities import PropertyInfo
-from schemas.explanations import Explanation
+from semmap.nodes.extern.web.views.steps import lines, words_of
+from semmap.nodes.kb_node import proofs
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import PropertyInfo
+from semmap.schemas.explanations import Explanation
 from tests.extern.web.views.worlds import class_, fact
 
 SUB = "<http://www.w3.org/2000/01/rdf-schema#subClassOf>"

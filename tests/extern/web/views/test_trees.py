@@ -1,5 +1,5 @@
-from nodes.extern.web.views.trees import class_tree, place_tree
-from nodes.extern.web.views.whereabouts import Whereabouts
+from semmap.nodes.extern.web.views.trees import class_tree, place_tree
+from semmap.nodes.extern.web.views.whereabouts import Whereabouts
 from tests.extern.web.views.worlds import by_name, class_, fact, place, thing
 
 CLASSES = (

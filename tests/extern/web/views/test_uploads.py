@@ -2,7 +2,7 @@ import gzip
 
 import pytest
 
-from nodes.extern.web.views.uploads import LARGEST, megabytes, refusal, spatial_roots
+from semmap.nodes.extern.web.views.uploads import LARGEST, megabytes, refusal, spatial_roots
 
 
 @pytest.mark.parametrize(

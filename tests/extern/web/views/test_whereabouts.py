@@ -1,4 +1,4 @@
-from nodes.extern.web.views.whereabouts import Whereabouts
+from semmap.nodes.extern.web.views.whereabouts import Whereabouts
 from tests.extern.web.views.worlds import by_name, commit, fact, place, thing
 
 FLAT = place("flat1", (10.0, 8.0, 2.5))

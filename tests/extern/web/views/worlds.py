@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ontology import vocabulary as v
-from schemas.commits import Commit, PlaceChanges
-from schemas.entities import ClassInfo, Entity, Pose, Provenance
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Commit, PlaceChanges
+from semmap.schemas.entities import ClassInfo, Entity, Pose, Provenance
 
 SAID = Provenance(commit=1, stamp_ns=1_000_000_000, source="operator", reason="test")
 

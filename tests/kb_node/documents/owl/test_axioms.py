@@ -6,8 +6,8 @@ import pyhornedowl
 import pyoxigraph
 import pytest
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.documents.blank_nodes import labelled_like
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents.blank_nodes import labelled_like
 from tests.data import data_folder
 
 HEAD = "Prefix(:=<urn:t:>)\nOntology(<urn:t>\n"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.documents.blank_nodes import labelled_like
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents.blank_nodes import labelled_like
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 
 FUNCTIONAL = """# a kitchen
 Prefix(:=<http://k.org/kitchen#>)

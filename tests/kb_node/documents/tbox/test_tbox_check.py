@@ -2,9 +2,9 @@ from pathlib import Path
 
 import pytest
 
-from nodes.kb_node.documents.tbox.tbox_check import check
-from ontology import HOUSEHOLD_TTL
-from schemas import errors
+from semmap.nodes.kb_node.documents.tbox.tbox_check import check
+from semmap.ontology import HOUSEHOLD_TTL
+from semmap.schemas import errors
 from tests.data import data_folder
 
 PREFIXES = "@prefix : <http://o.org/o#> . @prefix owl: <http://www.w3.org/2002/07/owl#> .\n"

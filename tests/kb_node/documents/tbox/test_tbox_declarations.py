@@ -2,13 +2,13 @@
 
 import pytest
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.documents.tbox import tbox_notes
-from nodes.kb_node.documents.tbox.tbox_declarations import declared, keeping_roots
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Reasoner
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents.tbox import tbox_notes
+from semmap.nodes.kb_node.documents.tbox.tbox_declarations import declared, keeping_roots
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 
 ZOO = """
 @prefix z: <http://zoo.org/zoo#> . @prefix owl: <http://www.w3.org/2002/07/owl#> .

@@ -1,11 +1,11 @@
 import re
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.documents.tbox import tbox_notes
-from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Reasoner
-from ontology import HOUSEHOLD_TTL
-from ontology import vocabulary as v
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents.tbox import tbox_notes
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
 from tests.kb_node import home
 
 

@@ -2,12 +2,12 @@
 
 import pytest
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.documents.tbox import tbox_validation
-from nodes.kb_node.storage.history import Past
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import History
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents.tbox import tbox_validation
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import History
 from tests.kb_node import home
 from tests.kb_node.home import TBOX_TURTLE, chair, state, transaction, turtle
 from tests.kb_node.test_semantic_map import full_by_page_count

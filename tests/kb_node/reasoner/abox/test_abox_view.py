@@ -7,9 +7,9 @@ from itertools import product
 
 import pytest
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.rules.general import GeneralEngine
-from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.rules.general import GeneralEngine
+from semmap.nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal
 from tests.kb_node.reasoner.graphs import triple, triples
 from tests.kb_node.reasoner.test_worlds import THEMES, follow
 from tests.kb_node.reasoner.worlds import World

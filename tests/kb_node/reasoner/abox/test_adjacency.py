@@ -3,7 +3,7 @@ from array import array
 
 import pytest
 
-from nodes.kb_node.reasoner.abox.adjacency import NONE, Adjacency
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE, Adjacency
 
 NODES, EDGES = 6, 120
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.abox.kinds import Kinds
-from nodes.kb_node.reasoner.terms import iri
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kinds
+from semmap.nodes.kb_node.reasoner.terms import iri
 from tests.kb_node.reasoner.graphs import triples
 
 

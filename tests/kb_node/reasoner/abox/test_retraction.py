@@ -2,8 +2,8 @@
 
 import pytest
 
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.reasoner.terms import TYPE
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.terms import TYPE
 from tests.kb_node.reasoner.graphs import triples
 
 X, A, B = (f"<http://example.org/{name}>" for name in "xAB")

@@ -4,9 +4,9 @@ import random
 
 import pytest
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.reasoner.tbox.split import is_schema
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from tests.kb_node.reasoner.graphs import triples
 from tests.kb_node.reasoner.test_worlds import check, refused
 from tests.kb_node.reasoner.worlds import AXIOMS, NOMINALS, TRANSITIVE, World

@@ -1,11 +1,11 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.abox.kinds import Kinds
-from nodes.kb_node.reasoner.abox.store import ASSERTED, Store
-from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.reasoner.tbox.schema import Schema
+from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kinds
+from semmap.nodes.kb_node.reasoner.abox.store import ASSERTED, Store
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 
 SCHEMA = Schema(Closure())
 EDGES = st.tuples(st.integers(0, 3), st.integers(2, 4), st.integers(0, 3))

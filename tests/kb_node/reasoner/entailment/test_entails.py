@@ -8,8 +8,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.entailment import contradictory, entails
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.entailment import contradictory, entails
 from tests.kb_node.reasoner.entailment.models import MEANINGS, where
 from tests.kb_node.reasoner.graphs import triples
 

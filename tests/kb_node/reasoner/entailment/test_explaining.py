@@ -4,16 +4,16 @@ import time
 
 import pytest
 
-from nodes.kb_node.reasoner import Reasoner, entails
-from nodes.kb_node.reasoner.entailment.explaining import (
+from semmap.nodes.kb_node.reasoner import Reasoner, entails
+from semmap.nodes.kb_node.reasoner.entailment.explaining import (
     _contrary,
     _shrunk,
     nearby,
     why_entailed,
     why_excluded,
 )
-from nodes.kb_node.reasoner.refutation import refute
-from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS
+from semmap.nodes.kb_node.reasoner.refutation import refute
+from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS
 from tests.kb_node.reasoner.graphs import household, triple, triples
 
 TBOX = """

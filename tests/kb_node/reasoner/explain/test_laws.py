@@ -4,8 +4,8 @@ import random
 
 import pytest
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.test_worlds import THEMES
 from tests.kb_node.reasoner.worlds import World

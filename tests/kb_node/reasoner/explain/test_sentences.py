@@ -4,9 +4,9 @@ import functools
 
 import pytest
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.explain.sentences import Clause, clauses
-from nodes.kb_node.reasoner.explain.words import Words, article
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.explain.sentences import Clause, clauses
+from semmap.nodes.kb_node.reasoner.explain.words import Words, article
 from tests.kb_node.reasoner.graphs import household, triple, triples
 
 

@@ -5,11 +5,11 @@ from functools import partial
 
 import pytest
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.abox.saturation import Saturation
-from nodes.kb_node.reasoner.fastpaths import paths
-from nodes.kb_node.reasoner.fastpaths.many_edges import ManyEdges
-from nodes.kb_node.reasoner.terms import TYPE
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.abox.saturation import Saturation
+from semmap.nodes.kb_node.reasoner.fastpaths import paths
+from semmap.nodes.kb_node.reasoner.fastpaths.many_edges import ManyEdges
+from semmap.nodes.kb_node.reasoner.terms import TYPE
 from tests.depth import tries
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.graphs import triple, triples

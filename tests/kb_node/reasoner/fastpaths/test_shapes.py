@@ -4,11 +4,11 @@ import pytest
 from hypothesis import given, note
 from hypothesis import strategies as st
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.abox.store import Store
-from nodes.kb_node.reasoner.explain.sentences import sentence
-from nodes.kb_node.reasoner.fastpaths import batches
-from nodes.kb_node.reasoner.fastpaths.shapes import Contradiction, Shapes, Written
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.abox.store import Store
+from semmap.nodes.kb_node.reasoner.explain.sentences import sentence
+from semmap.nodes.kb_node.reasoner.fastpaths import batches
+from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Contradiction, Shapes, Written
 from tests.depth import tries
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.facts import prefixed

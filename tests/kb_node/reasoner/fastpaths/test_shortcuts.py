@@ -2,10 +2,10 @@ import random
 
 import pytest
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.fastpaths import paths
-from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, depart_among, exchange
-from nodes.kb_node.reasoner.terms import TYPE
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.fastpaths import paths
+from semmap.nodes.kb_node.reasoner.fastpaths.shortcuts import depart, depart_among, exchange
+from semmap.nodes.kb_node.reasoner.terms import TYPE
 from tests.kb_node.reasoner.fastpaths.test_many_edges import THEMES
 from tests.kb_node.reasoner.graphs import EVERYTHING, triple, triples
 from tests.kb_node.reasoner.test_reasoner import BASE, asserted_in, check_same

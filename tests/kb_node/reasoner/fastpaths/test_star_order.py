@@ -3,9 +3,9 @@ import random
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.reasoner.fastpaths.shapes import Shapes
-from nodes.kb_node.reasoner.fastpaths.star_order import in_stars
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Shapes
+from semmap.nodes.kb_node.reasoner.fastpaths.star_order import in_stars
 from tests.kb_node.reasoner.graphs import triple, triples
 
 TERMS = st.sampled_from(["<a:a>", "<a:b>", "<a:c>", "<a:d>", "_:e"])

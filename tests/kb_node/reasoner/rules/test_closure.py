@@ -6,9 +6,9 @@ import random
 
 import pytest
 
-from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.reasoner.rules.general import GeneralEngine
-from nodes.kb_node.reasoner.terms import SAME_AS
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.rules.general import GeneralEngine
+from semmap.nodes.kb_node.reasoner.terms import SAME_AS
 from tests.kb_node.reasoner.graphs import EVERYTHING, triple, triples
 from tests.kb_node.reasoner.test_owlrl import WRONG, _about_individuals, _expanded
 from tests.kb_node.reasoner.test_worlds import THEMES

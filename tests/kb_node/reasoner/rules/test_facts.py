@@ -1,5 +1,5 @@
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.reasoner.rules.facts import pack, unpack
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.rules.facts import pack, unpack
 from tests.kb_node.reasoner.graphs import triples
 from tests.kb_node.reasoner.test_reasoner import BASE, asserted_in
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.rules.rule_table import RULES
-from nodes.kb_node.reasoner.terms import iri
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.rules.rule_table import RULES
+from semmap.nodes.kb_node.reasoner.terms import iri
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.graphs import triple, triples
 

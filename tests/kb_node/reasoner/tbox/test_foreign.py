@@ -3,9 +3,9 @@
 # ruff: noqa: E501
 import pytest
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.reasoner.terms import iri
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.terms import iri
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.graphs import triple, triples
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.graphs import triple, triples
 

@@ -8,14 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.kb_node.relations.facts.ahead import Ahead
-from nodes.kb_node.relations.facts.foreseen import Arrival, Coming, Foreseen, Look
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.facts.working_ahead import worked_out
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from schemas import codec
-from schemas.entities import orientation_from_yaw
+from semmap.nodes.kb_node.relations.facts.ahead import Ahead
+from semmap.nodes.kb_node.relations.facts.foreseen import Arrival, Coming, Foreseen, Look
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.facts.working_ahead import worked_out
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.schemas import codec
+from semmap.schemas.entities import orientation_from_yaw
 from tests.kb_node.relations.made import TABLE, TOP, thing
 
 FAR = Thresholds(gap_m=0.1)
@@ -100,7 +100,7 @@ class AtOnce:
 @pytest.fixture
 def many():
     """Few are many."""
-    with patch("nodes.kb_node.relations.facts.place_facts.MANY", 1):
+    with patch("semmap.nodes.kb_node.relations.facts.place_facts.MANY", 1):
         yield
 
 
@@ -109,7 +109,7 @@ def many():
 def test_with_a_process_and_without_the_facts_are_the_same(there, rows):
     there, wanted = [structs.replace(e, name=f"old_{e.name}") for e in world(there)], world(rows)
     come = looking(wanted)
-    with patch("nodes.kb_node.relations.facts.place_facts.MANY", 1):
+    with patch("semmap.nodes.kb_node.relations.facts.place_facts.MANY", 1):
         alone, helped = Facts(FAR), Facts(FAR)
         for facts in (alone, helped):
             facts.update(there)
@@ -194,7 +194,7 @@ def test_few_need_none(many):
     facts = Facts(FAR)
     ahead = Ahead(foreseen([], [CUP]), lambda: None)
     facts.work_ahead(ahead)
-    with patch("nodes.kb_node.relations.facts.place_facts.MANY", 100):
+    with patch("semmap.nodes.kb_node.relations.facts.place_facts.MANY", 100):
         assert facts.update([TABLE, CUP]).come >= ON
     facts.give_up_ahead()
     assert ahead._process.poll() is not None

@@ -5,13 +5,13 @@ import random
 import pytest
 from msgspec import structs
 
-from nodes.kb_node.relations.facts.beside import MIRRORED, Beside, beside
-from nodes.kb_node.relations.facts.derived import Derived
-from nodes.kb_node.relations.measuring import crowds
-from nodes.kb_node.relations.measuring.crowds import MOST
-from nodes.kb_node.relations.measuring.space import Space
-from ontology import vocabulary as v
-from schemas.entities import Pose
+from semmap.nodes.kb_node.relations.facts.beside import MIRRORED, Beside, beside
+from semmap.nodes.kb_node.relations.facts.derived import Derived
+from semmap.nodes.kb_node.relations.measuring import crowds
+from semmap.nodes.kb_node.relations.measuring.crowds import MOST
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import Pose
 from tests.depth import tries
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 

@@ -4,12 +4,12 @@ import random
 
 from msgspec import structs
 
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.geometry.solids import solid_of
-from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.space import Space
-from schemas.entities import Pose
-from schemas.polygons import EXTENT, box_around, read_wkt
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.solids import solid_of
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.schemas.entities import Pose
+from semmap.schemas.polygons import EXTENT, box_around, read_wkt
 from tests.kb_node.relations.facts.test_many_at_once import at_once, kept, one_by_one
 from tests.kb_node.relations.made import thing
 

@@ -10,18 +10,18 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.kb_node.relations.facts import place_facts
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.geometry.columns import solids_of
-from nodes.kb_node.relations.geometry.fitting import fitted
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.geometry.solids import solid_of
-from nodes.kb_node.relations.measuring import crowds, space
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.measuring.survey import NOBODY, Survey
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from ontology.model_shapes import own_size_m, shapes
-from schemas.entities import Pose, orientation_from_yaw
+from semmap.nodes.kb_node.relations.facts import place_facts
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.geometry.columns import solids_of
+from semmap.nodes.kb_node.relations.geometry.fitting import fitted
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.solids import solid_of
+from semmap.nodes.kb_node.relations.measuring import crowds, space
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.survey import NOBODY, Survey
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.ontology.model_shapes import own_size_m, shapes
+from semmap.schemas.entities import Pose, orientation_from_yaw
 from tests.depth import tries
 
 MODELS = [*sorted(shapes()), "odd"]

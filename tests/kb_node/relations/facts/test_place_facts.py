@@ -3,8 +3,8 @@
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
 
 CUP_ON_TABLE = ("cup1", "isOn", "table1")

@@ -6,13 +6,13 @@ import pytest
 from msgspec import structs
 
 from benchmarks.relations.rightness import FLAT_BY_HAND
-from nodes.kb_node.answers import answers
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.relations.facts.said import denial, denied, fact_of
-from nodes.kb_node.relations.measuring.space import Space
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
-from ontology import vocabulary as v
-from schemas.entities import Pose
+from semmap.nodes.kb_node.answers import answers
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.relations.facts.said import denial, denied, fact_of
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import Pose
 from tests.kb_node import home
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
 

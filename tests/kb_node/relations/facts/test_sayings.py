@@ -3,8 +3,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.kb_node.relations.facts.sayings import Sayings
-from ontology import vocabulary as v
+from semmap.nodes.kb_node.relations.facts.sayings import Sayings
+from semmap.ontology import vocabulary as v
 
 CUP, TABLE, TRAY = map(v.entity_iri, ("cup1", "table1", "tray1"))
 IS_ON, SUPPORTS, COLOR = map(v.dm, ("isOn", "supports", "hasColor"))

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.relations.geometry.convex import _searched, contact, convex
-from nodes.kb_node.relations.geometry.solids import solid_of
+from semmap.nodes.kb_node.relations.geometry.convex import _searched, contact, convex
+from semmap.nodes.kb_node.relations.geometry.solids import solid_of
 from tests.kb_node.relations.made import thing
 
 AT = st.tuples(*[st.sampled_from([-0.7, -0.4, -0.1, 0.0, 0.05, 0.3, 0.5, 0.8])] * 3)

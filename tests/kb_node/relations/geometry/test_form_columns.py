@@ -8,10 +8,10 @@ import random
 import numpy as np
 import pytest
 
-from nodes.kb_node.relations.geometry.form_columns import Extents, FormColumns
-from nodes.kb_node.relations.geometry.forms import form_of
-from ontology.model_shapes import own_size_m, shapes
-from schemas.entities import orientation_from_yaw
+from semmap.nodes.kb_node.relations.geometry.form_columns import Extents, FormColumns
+from semmap.nodes.kb_node.relations.geometry.forms import form_of
+from semmap.ontology.model_shapes import own_size_m, shapes
+from semmap.schemas.entities import orientation_from_yaw
 
 MODELS = [
     "table",

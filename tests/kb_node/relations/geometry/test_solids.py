@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.kb_node.relations.geometry.forms import form_of
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.geometry.solids import solid_of
-from schemas.entities import Pose, Size
+from semmap.nodes.kb_node.relations.geometry.forms import form_of
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.solids import solid_of
+from semmap.schemas.entities import Pose, Size
 
 TURNED = (0.9238795325112867, 0.0, 0.0, 0.3826834323650898)
 LEANING = (0.9961946980917455, 0.08715574274765817, 0.0, 0.0)

@@ -2,9 +2,9 @@
 
 import pytest
 
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.measuring.arrangement import attached, attachments, between, next_to
-from nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.measuring.arrangement import attached, attachments, between, next_to
+from semmap.nodes.kb_node.relations.measuring.space import Space
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 
 WALL = thing("wall1", (0.0, 2.0, 0.0), size=(0.1, 4.0, 2.5), turn=(0.7071068, 0.0, 0.0, 0.7071068))

@@ -5,10 +5,10 @@ from unittest.mock import patch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.facts.said import denial
-from nodes.kb_node.relations.measuring import crowds, measures
-from nodes.kb_node.relations.measuring.broad_phase import BroadPhase
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.facts.said import denial
+from semmap.nodes.kb_node.relations.measuring import crowds, measures
+from semmap.nodes.kb_node.relations.measuring.broad_phase import BroadPhase
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 
 NAMES = [

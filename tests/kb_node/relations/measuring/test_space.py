@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.surroundings import Surroundings
-from ontology.model_shapes import shapes
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.surroundings import Surroundings
+from semmap.ontology.model_shapes import shapes
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
 
 LYING = (math.cos(math.pi / 4), 0.0, math.sin(math.pi / 4), 0.0)

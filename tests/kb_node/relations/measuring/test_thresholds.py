@@ -2,12 +2,12 @@
 
 import pytest
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.relations.facts.place_facts import Facts
-from nodes.kb_node.relations.measuring.thresholds import ANNOTATIONS, Thresholds, of_tbox
-from ontology import HOUSEHOLD_TTL
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.measuring.thresholds import ANNOTATIONS, Thresholds, of_tbox
+from semmap.ontology import HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from tests.kb_node.relations.made import TABLE, TOP, thing
 
 

@@ -3,11 +3,11 @@
 import pytest
 from msgspec import structs
 
-from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.support import on_nothing
-from ontology.model_shapes import own_size_m
-from schemas.entities import Pose
+from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.support import on_nothing
+from semmap.ontology.model_shapes import own_size_m
+from semmap.schemas.entities import Pose
 from tests.kb_node.relations.facts.test_many_at_once import require_alike
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 

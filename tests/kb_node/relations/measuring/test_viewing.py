@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from nodes.kb_node.relations.measuring.space import Space
-from nodes.kb_node.relations.telling import relations
-from schemas.commands import Relations
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.telling import relations
+from semmap.schemas.commands import Relations
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 
 CUP = thing("cup1", (0.0, 0.0, TOP))

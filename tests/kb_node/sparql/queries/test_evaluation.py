@@ -1,9 +1,9 @@
 import pytest
 
-from nodes.kb_node.sparql.queries.evaluation import answer
-from nodes.kb_node.sparql.triples.dataset import Dataset, Delta
-from ontology import vocabulary as v
-from schemas import errors
+from semmap.nodes.kb_node.sparql.queries.evaluation import answer
+from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from tests.kb_node.home import turtle
 
 CHAIR = v.dm("Chair")

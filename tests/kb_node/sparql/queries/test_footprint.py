@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.sparql.queries.evaluation import answer
-from nodes.kb_node.sparql.queries.footprint import Footprint, footprint
-from nodes.kb_node.sparql.triples.dataset import Dataset, Delta
-from ontology import vocabulary as v
+from semmap.nodes.kb_node.sparql.queries.evaluation import answer
+from semmap.nodes.kb_node.sparql.queries.footprint import Footprint, footprint
+from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta
+from semmap.ontology import vocabulary as v
 
 QUERIES = [
     "SELECT ?x { ?x a dm:Chair }",

@@ -2,9 +2,9 @@
 
 import pytest
 
-from nodes.kb_node.sparql.queries.footprint import patterns_of
-from nodes.kb_node.sparql.queries.naming import has_variable_predicate, may_name
-from ontology import vocabulary as v
+from semmap.nodes.kb_node.sparql.queries.footprint import patterns_of
+from semmap.nodes.kb_node.sparql.queries.naming import has_variable_predicate, may_name
+from semmap.ontology import vocabulary as v
 
 WITH = [
     "SELECT * {?s ?p ?o}",

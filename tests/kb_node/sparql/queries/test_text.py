@@ -1,9 +1,9 @@
 import pytest
 
-from nodes.kb_node.sparql.queries import text
-from nodes.kb_node.sparql.queries.evaluation import answer
-from nodes.kb_node.sparql.triples.dataset import Dataset
-from schemas import errors
+from semmap.nodes.kb_node.sparql.queries import text
+from semmap.nodes.kb_node.sparql.queries.evaluation import answer
+from semmap.nodes.kb_node.sparql.triples.dataset import Dataset
+from semmap.schemas import errors
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,10 @@ from multiprocessing.connection import Connection
 
 from msgspec import Raw, msgpack
 
-from nodes.kb_node.sparql.protocol import Answered, News, Outcome, questions
-from nodes.kb_node.sparql.standing_queries.lookout import Lookout
-from schemas.commands import Watch
-from schemas.sparql import SparqlResult
+from semmap.nodes.kb_node.sparql.protocol import Answered, News, Outcome, questions
+from semmap.nodes.kb_node.sparql.standing_queries.lookout import Lookout
+from semmap.schemas.commands import Watch
+from semmap.schemas.sparql import SparqlResult
 
 
 class Slow:

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner, compiled
-from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.sparql.triples.consequences import Consequences, inferred
-from nodes.kb_node.sparql.triples.dataset import INFERRED, Dataset, Delta
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner, compiled
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.sparql.triples.consequences import Consequences, inferred
+from semmap.nodes.kb_node.sparql.triples.dataset import INFERRED, Dataset, Delta
 from tests.kb_node.reasoner import graphs
 from tests.kb_node.reasoner.facts import ANY_FACT
 

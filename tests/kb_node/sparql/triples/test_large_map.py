@@ -6,19 +6,19 @@ import queue
 import pyoxigraph as ox
 import pytest
 
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql import worker
-from nodes.kb_node.sparql.service import SparqlService
-from nodes.kb_node.sparql.triples import large_map
-from nodes.kb_node.sparql.triples.dataset import Delta
-from nodes.kb_node.sparql.triples.kept import FOLDER, clone_of, cloned
-from nodes.kb_node.sparql.triples.large_map import LargeMap
-from nodes.kb_node.storage import seed
-from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.journal.sqlite_file import NotWritten
-from ontology import vocabulary as v
-from schemas import errors
-from schemas.commands import Sparql, Watch
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.sparql import worker
+from semmap.nodes.kb_node.sparql.service import SparqlService
+from semmap.nodes.kb_node.sparql.triples import large_map
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.nodes.kb_node.sparql.triples.kept import FOLDER, clone_of, cloned
+from semmap.nodes.kb_node.sparql.triples.large_map import LargeMap
+from semmap.nodes.kb_node.storage import seed
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.commands import Sparql, Watch
 from tests.conftest import until
 from tests.kb_node.home import chair, new_map, transaction
 

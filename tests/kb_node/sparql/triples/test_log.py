@@ -2,9 +2,9 @@
 
 import os
 
-from nodes.kb_node.sparql.triples.dataset import Delta
-from nodes.kb_node.sparql.triples.log import Log
-from ontology import vocabulary as v
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.nodes.kb_node.sparql.triples.log import Log
+from semmap.ontology import vocabulary as v
 
 
 def delta(seq):

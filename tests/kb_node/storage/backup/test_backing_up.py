@@ -5,15 +5,15 @@ import shutil
 
 import pytest
 
-from nodes.extern import backup as client_backup
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.backup import backing_up
-from nodes.kb_node.storage.backup.restoring import restore
-from nodes.kb_node.storage.compaction import compaction
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.repair.repair import repair
-from schemas import backups, errors
+from semmap.nodes.extern import backup as client_backup
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.backup import backing_up
+from semmap.nodes.kb_node.storage.backup.restoring import restore
+from semmap.nodes.kb_node.storage.compaction import compaction
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.repair.repair import repair
+from semmap.schemas import backups, errors
 from tests.kb_node import home
 from tests.kb_node.documents.tbox.test_tbox_validation import NEW_CLASSES, replace
 from tests.kb_node.home import chair, state, transaction

@@ -5,16 +5,16 @@ import time
 
 import pytest
 
-from nodes.kb_node import undo
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.compaction import compaction, leftovers
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import FILENAME, Journal, index_check
-from nodes.kb_node.storage.journal.verification import verify
-from nodes.kb_node.storage.repair.repair import repair
-from schemas import errors
-from schemas.bridge import TakeBack
-from schemas.commands import History
+from semmap.nodes.kb_node import undo
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.compaction import compaction, leftovers
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal, index_check
+from semmap.nodes.kb_node.storage.journal.verification import verify
+from semmap.nodes.kb_node.storage.repair.repair import repair
+from semmap.schemas import errors
+from semmap.schemas.bridge import TakeBack
+from semmap.schemas.commands import History
 from tests.kb_node import home
 from tests.kb_node.documents.tbox.test_tbox_validation import NEW_CLASSES, replace
 from tests.kb_node.home import chair, state, transaction

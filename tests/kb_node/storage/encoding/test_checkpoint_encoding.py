@@ -1,9 +1,9 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.kb_node.storage.encoding import checkpoint_encoding, dense
-from nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint, decode, encode
-from schemas import codec
+from semmap.nodes.kb_node.storage.encoding import checkpoint_encoding, dense
+from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint, decode, encode
+from semmap.schemas import codec
 from tests.recorder.messages import entity
 
 TERMS = st.sampled_from(["<urn:a>", "<urn:b>", '"a text"@en', '"é\\n"', "_:b1"])

@@ -1,8 +1,8 @@
 import pytest
 
-from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.storage.encoding import checkpoint_encoding, columns_encoding
-from nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.storage.encoding import checkpoint_encoding, columns_encoding
+from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
 from tests.kb_node.reasoner.graphs import triples
 
 SCHEMA = triples(":isAt owl:propertyChainAxiom ( :isOn :isIn ) . :Mug rdfs:subClassOf :Cup .")

@@ -3,10 +3,10 @@ import zlib
 
 import pytest
 
-from nodes.kb_node.storage.encoding import commit_encoding, dense
-from ontology import vocabulary as v
-from schemas import codec
-from schemas.commits import Commit, Departed
+from semmap.nodes.kb_node.storage.encoding import commit_encoding, dense
+from semmap.ontology import vocabulary as v
+from semmap.schemas import codec
+from semmap.schemas.commits import Commit, Departed
 from tests.kb_node.home import chair, transaction
 
 LONG = "x" * (64 << 20)

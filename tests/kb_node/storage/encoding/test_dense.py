@@ -5,9 +5,9 @@ import zlib
 import msgpack
 import pytest
 
-from nodes.kb_node.storage.encoding import dense
-from schemas import codec, errors
-from schemas.commits import Departed
+from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.schemas import codec, errors
+from semmap.schemas.commits import Departed
 
 
 def test_what_is_large_is_compressed():

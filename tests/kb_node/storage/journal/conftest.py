@@ -1,6 +1,6 @@
 import pytest
 
-from nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 
 
 @pytest.fixture

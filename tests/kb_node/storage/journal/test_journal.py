@@ -8,10 +8,10 @@ from contextlib import contextmanager
 import pytest
 from msgspec import structs
 
-from nodes.kb_node.storage.journal import Checkpoint, Journal
-from nodes.kb_node.storage.journal.sqlite_file import InUse
-from schemas import errors
-from schemas.commits import Commit
+from semmap.nodes.kb_node.storage.journal import Checkpoint, Journal
+from semmap.nodes.kb_node.storage.journal.sqlite_file import InUse
+from semmap.schemas import errors
+from semmap.schemas.commits import Commit
 
 
 def commit(seq, text="x"):
@@ -210,7 +210,7 @@ def test_a_full_disk_refuses_and_nothing_is_half_there(journal, path, full):
 WRITER = """
 import sys
 from pathlib import Path
-from nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.storage.journal import Journal
 from tests.kb_node.storage.journal.test_journal import commit
 journal = Journal(Path(sys.argv[1]))
 for seq in range(1, 100_000):

@@ -4,8 +4,8 @@ import threading
 
 import pytest
 
-from nodes.kb_node.storage.journal.sqlite_file import InUse, JournalFile, NotWritten
-from schemas import errors
+from semmap.nodes.kb_node.storage.journal.sqlite_file import InUse, JournalFile, NotWritten
+from semmap.schemas import errors
 
 
 @pytest.fixture

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.journal.write_ahead import Log
-from nodes.kb_node.storage.repair.repair import repair
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.journal.write_ahead import Log
+from semmap.nodes.kb_node.storage.repair.repair import repair
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction
 from tests.kb_node.storage.repair.test_repair import attempt

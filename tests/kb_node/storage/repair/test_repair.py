@@ -6,12 +6,12 @@ import shutil
 
 import pytest
 
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.journal.sqlite_file import NotWritten
-from nodes.kb_node.storage.repair import repair as repair_module
-from nodes.kb_node.storage.repair.repair import repair
-from schemas import errors
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
+from semmap.nodes.kb_node.storage.repair import repair as repair_module
+from semmap.nodes.kb_node.storage.repair.repair import repair
+from semmap.schemas import errors
 from tests.kb_node import home
 from tests.kb_node.documents.tbox.test_tbox_validation import NEW_CLASSES, replace
 from tests.kb_node.home import chair, state, transaction

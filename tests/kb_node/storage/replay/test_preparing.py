@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.compaction.compaction import compact
-from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.replay import copying
-from nodes.kb_node.storage.replay.preparing import SOURCE, prepare
-from schemas import errors
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.compaction.compaction import compact
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.replay import copying
+from semmap.nodes.kb_node.storage.replay.preparing import SOURCE, prepare
+from semmap.schemas import errors
 from tests.kb_node import home
 from tests.kb_node.documents.tbox.test_tbox_validation import NEW_CLASSES, replace
 from tests.kb_node.home import chair, state, transaction

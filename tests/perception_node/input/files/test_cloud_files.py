@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.perception_node.input.files.cloud_files import read_cloud, read_frames
-from schemas.errors import BadFile, BadRequest
+from semmap.nodes.perception_node.input.files.cloud_files import read_cloud, read_frames
+from semmap.schemas.errors import BadFile, BadRequest
 from tests.perception_node.files.made import COLORS, POINTS, header, pcd, ply
 
 CAMERA = {"fx": 50.0, "fy": 50.0, "cx": 3.5, "cy": 2.5}

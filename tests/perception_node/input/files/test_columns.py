@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.files.columns import cloud_of, columns_of_text
+from semmap.nodes.perception_node.input.files.columns import cloud_of, columns_of_text
 
 SEEN = np.array([(0.1, 0.2, 1.0), (-0.3, 0.4, 2.0), (0.5, -0.6, 3.0), (-0.7, -0.8, 4.0)])
 

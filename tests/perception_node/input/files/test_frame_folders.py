@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.perception_node.input.files.frame_folders import frames_in, read_frame
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.input.files.frame_folders import frames_in, read_frame
+from semmap.schemas.errors import BadFile
 
 CAMERA = {"fx": 60.0, "fy": 60.0, "cx": 32.0, "cy": 24.0}
 

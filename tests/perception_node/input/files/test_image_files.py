@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.perception_node.input.files.image_files import (
+from semmap.nodes.perception_node.input.files.image_files import (
     PinholeCamera,
     is_depth,
     opened,
@@ -126,6 +126,8 @@ def test_what_is_no_picture_or_a_truncated_or_huge_one_is_told(tmp_path, monkeyp
             opened(path)
     with pytest.raises(FileNotFoundError):
         opened(tmp_path / "nothing.png")
-    monkeypatch.setattr("nodes.perception_node.input.files.image_files._MOST_PIXELS", WIDTH * HEIGHT - 1)
+    monkeypatch.setattr(
+        "semmap.nodes.perception_node.input.files.image_files._MOST_PIXELS", WIDTH * HEIGHT - 1
+    )
     with pytest.raises(ValueError, match="a picture of 40 x 30 pixels is too big"):
         opened(whole)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.perception_node.input.files import lzf
+from semmap.nodes.perception_node.input.files import lzf
 
 
 def test_literals():

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.perception_node.input.files.mask_files import read_masks
-from nodes.perception_node.input.masks import Said
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.input.files.mask_files import read_masks
+from semmap.nodes.perception_node.input.masks import Said
+from semmap.schemas.errors import BadFile
 
 LABELS = np.array([[0, 1, 1], [0, 2, 2]])
 FIRST = {"segmentation": {"size": [2, 3], "counts": [2, 1, 1, 1, 1]}, "score": 0.7}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.files.mask_polygons import counts_of
+from semmap.nodes.perception_node.input.files.mask_polygons import counts_of
 
 
 def mask(polygons, height=6, width=8):

@@ -7,9 +7,9 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.files import open3d_clouds
-from nodes.perception_node.input.files.cloud_files import read_cloud
-from schemas.errors import BadFile
+from semmap.nodes.perception_node.input.files import open3d_clouds
+from semmap.nodes.perception_node.input.files.cloud_files import read_cloud
+from semmap.schemas.errors import BadFile
 
 POINTS = np.column_stack([np.arange(12) / 10, np.full(12, 0.5), np.full(12, 1.0)])
 ROWS = [" ".join(map(str, row)) for row in POINTS.tolist()]

@@ -5,8 +5,8 @@ import struct
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.files.columns import OtherVariant
-from nodes.perception_node.input.files.pcd import decode, read_columns, read_header
+from semmap.nodes.perception_node.input.files.columns import OtherVariant
+from semmap.nodes.perception_node.input.files.pcd import decode, read_columns, read_header
 
 LINES = {
     "VERSION": "0.7",

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.files.columns import OtherVariant
-from nodes.perception_node.input.files.ply import decode
+from semmap.nodes.perception_node.input.files.columns import OtherVariant
+from semmap.nodes.perception_node.input.files.ply import decode
 
 POINTS = np.array([(0.1, 0.2, 1.0, 255), (0.3, 0.4, 2.0, 7)])
 ROW = [("x", "f4"), ("y", "f8"), ("z", "f4"), ("red", "u1"), ("green", "u1"), ("blue", "u1")]

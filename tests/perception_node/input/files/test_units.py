@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.input.files.units import doubt
+from semmap.nodes.perception_node.input.files.units import doubt
 
 ROOM_M = np.linspace(0.7, 3.5, 200)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.library import build
-from nodes.sim_node.models.variety_table import KINDS
+from semmap.nodes.sim_node.models.library import build
+from semmap.nodes.sim_node.models.variety_table import KINDS
 from tests.sim_node.models.known_models import differences
 
 

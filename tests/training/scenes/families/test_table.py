@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.library import assemble
-from nodes.sim_node.models.model_table import MODELS
-from nodes.sim_node.models.parts import bounds
-from nodes.training.scenes.families.table import FAMILIES, drawn
-from nodes.training.scenes.simulated_scenes import foreign_class
-from nodes.training.taxonomy import hierarchy
+from semmap.nodes.sim_node.models.library import assemble
+from semmap.nodes.sim_node.models.model_table import MODELS
+from semmap.nodes.sim_node.models.parts import bounds
+from semmap.nodes.training.scenes.families.table import FAMILIES, drawn
+from semmap.nodes.training.scenes.simulated_scenes import foreign_class
+from semmap.nodes.training.taxonomy import hierarchy
 
 SMALLEST_M, LARGEST_M = 0.015, 0.6
 KINDS = sorted({family.kind for family in FAMILIES})
