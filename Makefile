@@ -19,7 +19,7 @@ $(UV):
 
 .venv/.ready: uv.lock pyproject.toml | $(UV)
 	$(UV) sync --locked --compile-bytecode --python python3
-	@$(BIN)/python -m compileall -q semmap nodes schemas ontology  # each start of a node, too, is quicker
+	@$(BIN)/python -m compileall -q semmap semmap/nodes semmap/schemas semmap/ontology  # each start of a node, too, is quicker
 	@touch $@
 
 demo: setup  ## A tour through the commands and a drive; leaves demo/flat.owl, session.rrd, drive.rrd, scene.png

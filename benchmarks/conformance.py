@@ -2,7 +2,7 @@
 
 DIR holds `manifest.json`, a list of `{id, type, premise, conclusion?}` with N-Triples files relative to DIR.
 Types are entailment, non-entailment, consistency and inconsistency. What no rule derives is decided by
-`semmap.nodes.kb_node.reasoner.entailment`: by refutation, for generic individuals, with names for what must exist.
+`nodes/kb_node/reasoner/entailment`: by refutation, for generic individuals, with names for what must exist.
 """
 
 from __future__ import annotations

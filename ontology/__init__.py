@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-_HERE = Path(__file__).parent
+_HERE = Path(__file__).resolve().parent  # in a checkout, `semmap.ontology` is a link
 
 HOUSEHOLD_TTL = _HERE / "household.ttl"
 """The TBox."""

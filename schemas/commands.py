@@ -584,7 +584,7 @@ class Approve(Command[tuple[Request, ...]], frozen=True, tag="approve"):
 class Backup(Command[BackupPart], frozen=True, tag="backup"):
     """A part of a backup of the map with its history: the first, or the one `at` what a part names as `next`.
 
-    All parts one after another, while the map goes on, are the file as of the first (see `semmap.schemas.backups`).
+    All parts one after another, while the map goes on, are the file as of the first: `schemas/backups.py`.
     """
 
     at: str = ""

@@ -39,7 +39,7 @@ class Argument(Struct, frozen=True):
         return self.entity or several or f'"{self.text}"'
 
 
-class Frame(Struct, frozen=True):
+class SemanticFrame(Struct, frozen=True):
     """What is to be done or is said: a frame of FrameNet, the words that call for it, and its arguments."""
 
     name: str
@@ -80,7 +80,7 @@ class Understood(Struct, frozen=True):
     """
 
     words: tuple[str, ...]
-    frames: tuple[Frame, ...]
+    frames: tuple[SemanticFrame, ...]
     groundings: tuple[Grounded, ...]
     unknown: tuple[str, ...] = ()
     language: Language = "english"

@@ -10,91 +10,146 @@
 `semmap.aio` has the same client for an event loop, `semmap.fleet` asks several robots together,
 `semmap.recordings` films and replays the past, `semmap.testing` has a system for your tests,
 `semmap.reasoner` the OWL 2 RL reasoner by itself, `semmap.commands` what can be sent, and `semmap.wire` what
-programs need that speak Zenoh themselves. Only the names in `__all__` of these modules are public; `nodes`,
-`schemas` and `ontology` are private, and may change with any version.
+programs need that speak Zenoh themselves. Only the names in `__all__` of these modules are public;
+`semmap.nodes`, `semmap.schemas` and `semmap.ontology` are private and may change with any version.
 """
 
 from __future__ import annotations
 
 import importlib
-from types import ModuleType
-from typing import TYPE_CHECKING
-
-from semmap.nodes.extern.client import Client, connect
-from semmap.nodes.extern.restoring import restore
-from semmap.nodes.extern.sparql_client import StandingQuery
-from semmap.ontology.vocabulary import local_name
-from semmap.schemas.backups import Restored
-from semmap.schemas.commits import Commit, Departed
-from semmap.schemas.entities import BodyState, ClassInfo, Entity, Pose, Provenance
-from semmap.schemas.errors import (
-    BadFile,
-    BadRequest,
-    Inconsistent,
-    InternalError,
-    NameTaken,
-    NoAnswer,
-    PreconditionFailed,
-    Refused,
-    SemmapError,
-    UnknownClass,
-    UnknownName,
-    UnknownVerb,
-)
-from semmap.schemas.explanations import Explanation
-from semmap.schemas.replies import (
-    Changed,
-    Checked,
-    Document,
-    Done,
-    Inferred,
-    LoggedCommit,
-    Moved,
-    NodeStatus,
-    Sighting,
-    SystemStatus,
-)
-from semmap.schemas.sparql import RowsChanged, SparqlResult
+from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from semmap import aio, commands, fleet, reasoner, recordings, testing, wire
+    from semmap.nodes.extern.client import Client, connect
+    from semmap.nodes.extern.restoring import restore
+    from semmap.nodes.extern.sparql_client import StandingQuery
+    from semmap.ontology.vocabulary import local_name
+    from semmap.schemas.approvals import Request
+    from semmap.schemas.backups import BackupPart, Opening, Restored
+    from semmap.schemas.changes import Change
+    from semmap.schemas.commits import Commit, Departed, Extent, PlaceChanges
+    from semmap.schemas.entities import BodyState, ClassInfo, Entity, Live, Pose, PropertyInfo, Provenance
+    from semmap.schemas.errors import (
+        BadFile,
+        BadRequest,
+        Busy,
+        Inconsistent,
+        InternalError,
+        NameTaken,
+        NoAnswer,
+        PreconditionFailed,
+        Refused,
+        SemmapError,
+        UnknownClass,
+        UnknownName,
+        UnknownVerb,
+    )
+    from semmap.schemas.explanations import Explanation, Step
+    from semmap.schemas.frames import Frame
+    from semmap.schemas.happenings import Difference, Related, Spell, Spells
+    from semmap.schemas.joints import Joint
+    from semmap.schemas.language import (
+        Account,
+        Argument,
+        Candidate,
+        Found,
+        Grounded,
+        SemanticFrame,
+        Understood,
+    )
+    from semmap.schemas.lessons import LessonTold, ShownView
+    from semmap.schemas.plans import Outline, Plan, PlannedPlace, PlannedThing, Way
+    from semmap.schemas.relations import Described, Relation
+    from semmap.schemas.replies import (
+        Changed,
+        Checked,
+        Compacted,
+        Document,
+        Done,
+        Inferred,
+        LoggedCommit,
+        Moved,
+        NodeStatus,
+        Possible,
+        Sighting,
+        SystemStatus,
+    )
+    from semmap.schemas.scenes import Picture
+    from semmap.schemas.sparql import RowsChanged, SparqlResult, Watching
 
 __all__ = [
+    "Account",
+    "Argument",
+    "BackupPart",
     "BadFile",
     "BadRequest",
     "BodyState",
+    "Busy",
+    "Candidate",
+    "Change",
     "Changed",
     "Checked",
     "ClassInfo",
     "Client",
     "Commit",
+    "Compacted",
     "Departed",
+    "Described",
+    "Difference",
     "Document",
     "Done",
     "Entity",
     "Explanation",
+    "Extent",
+    "Found",
+    "Frame",
+    "Grounded",
     "Inconsistent",
     "Inferred",
     "InternalError",
+    "Joint",
+    "LessonTold",
+    "Live",
     "LoggedCommit",
     "Moved",
     "NameTaken",
     "NoAnswer",
     "NodeStatus",
+    "Opening",
+    "Outline",
+    "Picture",
+    "PlaceChanges",
+    "Plan",
+    "PlannedPlace",
+    "PlannedThing",
     "Pose",
+    "Possible",
     "PreconditionFailed",
+    "PropertyInfo",
     "Provenance",
     "Refused",
+    "Related",
+    "Relation",
+    "Request",
     "Restored",
     "RowsChanged",
+    "SemanticFrame",
     "SemmapError",
+    "ShownView",
     "Sighting",
     "SparqlResult",
+    "Spell",
+    "Spells",
     "StandingQuery",
+    "Step",
     "SystemStatus",
+    "Understood",
     "UnknownClass",
     "UnknownName",
     "UnknownVerb",
+    "Watching",
+    "Way",
     "aio",
     "commands",
     "connect",
@@ -107,15 +162,130 @@ __all__ = [
     "wire",
 ]
 
-_MODULES = {"aio", "commands", "fleet", "reasoner", "recordings", "testing", "wire"}
+_MODULES: Final = frozenset({"aio", "commands", "fleet", "reasoner", "recordings", "testing", "wire"})
+_NAMES_OF: Final = {
+    "nodes.extern.client": (
+        "Client",
+        "connect",
+    ),
+    "nodes.extern.restoring": ("restore",),
+    "nodes.extern.sparql_client": ("StandingQuery",),
+    "ontology.vocabulary": ("local_name",),
+    "schemas.approvals": ("Request",),
+    "schemas.backups": (
+        "BackupPart",
+        "Opening",
+        "Restored",
+    ),
+    "schemas.changes": ("Change",),
+    "schemas.commits": (
+        "Commit",
+        "Departed",
+        "Extent",
+        "PlaceChanges",
+    ),
+    "schemas.entities": (
+        "BodyState",
+        "ClassInfo",
+        "Entity",
+        "Live",
+        "Pose",
+        "PropertyInfo",
+        "Provenance",
+    ),
+    "schemas.errors": (
+        "BadFile",
+        "BadRequest",
+        "Busy",
+        "Inconsistent",
+        "InternalError",
+        "NameTaken",
+        "NoAnswer",
+        "PreconditionFailed",
+        "Refused",
+        "SemmapError",
+        "UnknownClass",
+        "UnknownName",
+        "UnknownVerb",
+    ),
+    "schemas.explanations": (
+        "Explanation",
+        "Step",
+    ),
+    "schemas.frames": ("Frame",),
+    "schemas.happenings": (
+        "Difference",
+        "Related",
+        "Spell",
+        "Spells",
+    ),
+    "schemas.joints": ("Joint",),
+    "schemas.language": (
+        "Account",
+        "Argument",
+        "Candidate",
+        "Found",
+        "Grounded",
+        "SemanticFrame",
+        "Understood",
+    ),
+    "schemas.lessons": (
+        "ShownView",
+        "LessonTold",
+    ),
+    "schemas.plans": (
+        "Outline",
+        "Plan",
+        "PlannedPlace",
+        "PlannedThing",
+        "Way",
+    ),
+    "schemas.relations": (
+        "Described",
+        "Relation",
+    ),
+    "schemas.replies": (
+        "Changed",
+        "Checked",
+        "Compacted",
+        "Document",
+        "Done",
+        "Inferred",
+        "LoggedCommit",
+        "Moved",
+        "NodeStatus",
+        "Possible",
+        "Sighting",
+        "SystemStatus",
+    ),
+    "schemas.scenes": ("Picture",),
+    "schemas.sparql": (
+        "Watching",
+        "RowsChanged",
+        "SparqlResult",
+    ),
+}
+_MODULE_OF: Final = {name: module for module, names in _NAMES_OF.items() for name in names}
 
 
-def __getattr__(name: str) -> ModuleType | str:
-    """The modules of this package, imported when they are first used; and `__version__`."""
+def __getattr__(name: str) -> Any:
+    """Import a public name or module when it is first used.
+
+    Every module below imports this one first, so that it must stay free of imports: `semmap.schemas` is pure
+    data, `semmap.reasoner` needs no Zenoh, and a node that starts does not load the client.
+    """
     if name in _MODULES:
         return importlib.import_module(f"semmap.{name}")
     if name == "__version__":
         from importlib.metadata import version
 
         return version("semmap")
-    raise AttributeError(f"module 'semmap' has no attribute '{name}'")
+    if name not in _MODULE_OF:
+        raise AttributeError(f"module 'semmap' has no attribute '{name}'")
+    value = globals()[name] = getattr(importlib.import_module(f"semmap.{_MODULE_OF[name]}"), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    """Return the public names, also those that have not been imported yet."""
+    return sorted({*globals(), *__all__})

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -15,16 +16,16 @@ from tests.conftest import free_endpoint
 
 ROOT = Path(__file__).parents[1]
 DATA = {
-    "nodes/perception_node/recognition/recognition.npz",
-    "nodes/perception_node/segmentation/segmentation.npz",
-    "nodes/py.typed",
-    "ontology/empty_world.xml",
-    "ontology/flat.ttl",
-    "ontology/flat_world.xml",
-    "ontology/household.ttl",
-    "ontology/py.typed",
-    "schemas/py.typed",
-    "schemas/scene.schema.json",
+    "semmap/nodes/perception_node/recognition/recognition.npz",
+    "semmap/nodes/perception_node/segmentation/segmentation.npz",
+    "semmap/nodes/py.typed",
+    "semmap/ontology/empty_world.xml",
+    "semmap/ontology/flat.ttl",
+    "semmap/ontology/flat_world.xml",
+    "semmap/ontology/household.ttl",
+    "semmap/ontology/py.typed",
+    "semmap/schemas/py.typed",
+    "semmap/schemas/scene.schema.json",
     "semmap/py.typed",
 }
 CLIENT = """
@@ -41,19 +42,22 @@ def wheel(tmp_path_factory):
     return built_wheel(tmp_path_factory.mktemp("wheel"))
 
 
+def lay_traps(folder: Path) -> None:
+    """Give a folder modules called like the folders of this repository, which must never be imported."""
+    for name in ("nodes/__init__", "schemas", "ontology"):
+        path = folder / f"{name}.py"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(f'raise ImportError("{path} was imported by semmap")\n')
+
+
 @pytest.fixture(scope="module")
 def files(wheel):
     with zipfile.ZipFile(wheel) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
 
 
-def test_it_has_the_four_packages_and_nothing_else(files):
-    assert {name.split("/")[0] for name in files if ".dist-info/" not in name} == {
-        "nodes",
-        "ontology",
-        "schemas",
-        "semmap",
-    }
+def test_it_owns_one_name_only(files):
+    assert {name.split("/")[0] for name in files if ".dist-info/" not in name} == {"semmap"}
 
 
 def test_it_has_their_data(files):
@@ -61,12 +65,12 @@ def test_it_has_their_data(files):
 
 
 def test_it_has_every_module_but_the_trainers(files):
-    for package in ("nodes", "ontology", "schemas", "semmap"):
+    for package in ("semmap", "semmap/nodes", "semmap/ontology", "semmap/schemas"):
         for path in (ROOT / package).rglob("*"):
             name = str(path.relative_to(ROOT))
-            if path.is_file() and "__pycache__" not in name and not name.startswith("nodes/training/"):
+            if path.is_file() and "__pycache__" not in name and not name.startswith("semmap/nodes/training/"):
                 assert name in files, name
-    assert not [name for name in files if name.startswith(("nodes/training", "benchmarks", "tests"))]
+    assert not [name for name in files if name.startswith(("semmap/nodes/training", "benchmarks", "tests"))]
 
 
 def test_nothing_in_it_needs_what_is_not_in_it(files):
@@ -83,6 +87,26 @@ def test_it_names_its_commands_and_codecs(files):
     assert said.count("msgpack = semmap.nodes.extern.zenoh_codec:") == 2
 
 
+def test_modules_of_a_user_with_the_names_of_our_folders_do_not_disturb_it(wheel, tmp_path):
+    lay_traps(tmp_path)
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path / "site")
+    (tmp_path / "test_ours.py").write_text("import semmap\n\ndef test_it():\n    assert semmap.Client\n")
+    script = "import semmap; print(semmap.__file__, *[getattr(semmap, name) for name in semmap.__all__])"
+    for words in (
+        ("-c", script),
+        ("-m", "semmap", "classes", "--help"),
+        ("-m", "pytest", "-q", "test_ours.py"),
+    ):
+        said = subprocess.check_output(
+            [sys.executable, *words],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(tmp_path / "site")},
+            text=True,
+        )
+        assert words[0] != "-c" or str(tmp_path / "site" / "semmap" / "__init__.py") in said
+
+
 def test_a_client_and_a_kb_need_only_their_extras(files):
     (name,) = (name for name in files if name.endswith("METADATA"))
     required = [line for line in files[name].decode().splitlines() if line.startswith("Requires-Dist:")]
@@ -92,13 +116,14 @@ def test_a_client_and_a_kb_need_only_their_extras(files):
 
 def run_a_system(python: Path, folder: Path, *words: str) -> str:
     """What a client prints before `semmap up WORDS`, both from the environment of `python`."""
+    lay_traps(folder)
     endpoint = free_endpoint()
     away = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
     up = [python.with_name("semmap"), "up", "--data", folder / "map", "--listen", endpoint, *words]
     with subprocess.Popen(up, cwd=folder, env=away, stdout=subprocess.PIPE, text=True) as system:
         try:
             assert any(line.startswith("stop ") for line in system.stdout), "it did not start"
-            command = [python, "-P", "-c", CLIENT, endpoint, *words]
+            command = [python, "-c", CLIENT, endpoint, *words]
             return subprocess.check_output(command, cwd=folder, env=away, text=True)
         finally:
             system.send_signal(signal.SIGINT)

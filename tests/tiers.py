@@ -104,7 +104,8 @@ def _mentioned_in(function: types.FunctionType) -> Iterator[Any]:
         found = function.__globals__[name]
         yield found
         if isinstance(found, types.ModuleType):
-            yield from (vars(found)[inner] for inner in names & vars(found).keys())
+            # What `semmap` has is imported when it is first used, so its `vars` do not show it.
+            yield from (getattr(found, inner) for inner in names & {*dir(found)})
 
 
 def _functions(found: Any) -> Iterator[types.FunctionType]:

@@ -12,7 +12,7 @@ from semmap.nodes.language import lexicon
 from semmap.nodes.language.understanding.grounding import Thing
 from semmap.nodes.language.understanding.sentence import Sentence, sentence
 from semmap.nodes.training.language.corpus import Example
-from semmap.schemas.language import Argument, Frame, Grounded, Understood
+from semmap.schemas.language import Argument, Grounded, SemanticFrame, Understood
 
 _ENOUGH = 0.7  # similarity of a word to a label
 
@@ -60,7 +60,7 @@ def _understood(
             text = " ".join(w.text for w in s.words[phrase.first : phrase.last + 1])
             span = (phrase.first + 1, phrase.last + 1)
             arguments.append(Argument(known.most_common(1)[0][0], text, span, phrase.head + 1, entity))
-        frames.append(Frame(name, (i + 1,), tuple(arguments)))
+        frames.append(SemanticFrame(name, (i + 1,), tuple(arguments)))
     return Understood(
         example.words, tuple(frames), tuple(Grounded(t, e) for t, e in sorted(groundings.items()))
     )

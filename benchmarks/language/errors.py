@@ -8,7 +8,7 @@ from typing import NamedTuple
 from benchmarks.language.scoring import is_whole, matched
 from benchmarks.language.trials import Pairs
 from semmap.nodes.training.language.corpus import Example, Filled
-from semmap.schemas.language import Frame, Understood
+from semmap.schemas.language import SemanticFrame, Understood
 
 
 class Group(NamedTuple):
@@ -52,7 +52,7 @@ def _errors(example: Example, understood: Understood) -> Iterator[tuple[str, str
 
 
 def _wrong_frames(
-    example: Example, understood: Understood, pairs: list[tuple[Filled, Frame]]
+    example: Example, understood: Understood, pairs: list[tuple[Filled, SemanticFrame]]
 ) -> Iterator[tuple[str, str]]:
     missed = [frame for frame in example.frames if not any(frame is seen for seen, _ in pairs)]
     too_many = [frame for frame in understood.frames if not any(frame is said for _, said in pairs)]
@@ -68,7 +68,7 @@ def _wrong_frames(
         yield "a frame too many", f"{other.name}"
 
 
-def _wrong_arguments(example: Example, seen: Filled, said: Frame) -> Iterator[tuple[str, str]]:
+def _wrong_arguments(example: Example, seen: Filled, said: SemanticFrame) -> Iterator[tuple[str, str]]:
     def words(first: int, last: int) -> str:
         return " ".join(example.words[first - 1 : last])
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from semmap.nodes.training.language.corpus import Example, Filled
-from semmap.schemas.language import Frame, Understood
+from semmap.schemas.language import SemanticFrame, Understood
 
 
 def f1(right: int, one: int, other: int) -> float:
@@ -84,7 +84,7 @@ def is_whole(example: Example, understood: Understood) -> bool:
     return scores([(example, understood)]).whole == 1.0
 
 
-def matched(seen: Iterable[Filled], said: Iterable[Frame]) -> list[tuple[Filled, Frame]]:
+def matched(seen: Iterable[Filled], said: Iterable[SemanticFrame]) -> list[tuple[Filled, SemanticFrame]]:
     """The annotated frames that were found, each with what was understood of it."""
     left = list(said)
     pairs = []
@@ -97,7 +97,7 @@ def matched(seen: Iterable[Filled], said: Iterable[Frame]) -> list[tuple[Filled,
     return pairs
 
 
-def _heads(seen: Filled, said: Frame) -> int:
+def _heads(seen: Filled, said: SemanticFrame) -> int:
     left = list(said.arguments)
     right = 0
     for role in sorted(seen.arguments, key=lambda role: role.head is None):

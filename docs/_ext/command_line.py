@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,7 +13,19 @@ from semmap.nodes.extern.cli.all_verbs import app
 PAGE = Path(__file__).parents[1] / "command-line.md"
 HEAD = """# Command line
 
-Written from `semmap --help`. Every verb takes `-h`; options may be given in any order.
+Generated from `semmap --help`. Every command has a help page: `semmap help COMMAND`.
+Options may be given in any order.
+
+Positions are in metres in the map frame, z up, at the bottom centre of an object; angles are in radians.
+
+| exit status | meaning |
+| --- | --- |
+| 0 | success |
+| 1 | rejected: it contradicts the map, a name is unknown or taken, or your role does not permit it |
+| 2 | invalid usage: an unknown command or class, a malformed value or file |
+| 3 | no response from the system |
+
+Errors are one line on stderr. A failed command changes nothing.
 """
 
 
@@ -37,4 +50,7 @@ def _sections(command: click.Command, context: click.Context) -> Iterator[str]:
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page())
+    if "--print" in sys.argv:
+        sys.stdout.write(page())
+    else:
+        PAGE.write_text(page())

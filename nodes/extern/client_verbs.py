@@ -407,7 +407,7 @@ class Verbs:
     """What one may ask of a system and do to its map and scene: every command, and its reply.
 
     Positions are metres in the map frame, angles radians, quaternions `wxyz`. Each verb takes an `id`, too:
-    the same one twice is executed once. Raises the errors of `semmap.schemas.errors`: Refused, BadRequest, NoAnswer.
+    the same one twice is executed once. Raises Refused, BadRequest or NoAnswer.
     """
 
     # To change

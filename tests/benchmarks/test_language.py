@@ -14,7 +14,7 @@ from semmap.nodes.language.understanding.grounding import Thing
 from semmap.nodes.language.understanding.sentence import sentence
 from semmap.nodes.training.language import corpus
 from semmap.nodes.training.language.corpus import Example, Filled, Role
-from semmap.schemas.language import Argument, Frame, Grounded, Understood
+from semmap.schemas.language import Argument, Grounded, SemanticFrame, Understood
 from tests.data import data_folder
 
 WORDS = ("take", "the", "book", "to", "me")
@@ -34,7 +34,7 @@ GROUNDED = (Grounded(3, "book1"),)
 
 
 def said(name, *arguments, groundings=GROUNDED):
-    return scores([(EXAMPLE, Understood(WORDS, (Frame(name, (1,), arguments),), groundings))])
+    return scores([(EXAMPLE, Understood(WORDS, (SemanticFrame(name, (1,), arguments),), groundings))])
 
 
 def test_all_right_is_one():
@@ -90,11 +90,13 @@ def test_italian_commands_are_read_in_the_maps_of_their_originals():
 
 
 def test_errors_are_grouped_by_what_is_wrong_first():
-    wrong = Understood(WORDS, (Frame("Taking", (1,), (THEME,)),), GROUNDED)
+    wrong = Understood(WORDS, (SemanticFrame("Taking", (1,), (THEME,)),), GROUNDED)
     other_words = Understood(
-        WORDS, (Frame("Bringing", (1,), (Argument("Theme", "book", (3, 3), 3, "book1"), TO_ME)),), GROUNDED
+        WORDS,
+        (SemanticFrame("Bringing", (1,), (Argument("Theme", "book", (3, 3), 3, "book1"), TO_ME)),),
+        GROUNDED,
     )
-    right = Understood(WORDS, (Frame("Bringing", (1,), (THEME, TO_ME)),), GROUNDED)
+    right = Understood(WORDS, (SemanticFrame("Bringing", (1,), (THEME, TO_ME)),), GROUNDED)
     groups = errors.groups(
         [(EXAMPLE, wrong), (EXAMPLE, right), (EXAMPLE, wrong), (EXAMPLE, Understood(WORDS, (), ()))]
     )

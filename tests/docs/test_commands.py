@@ -147,6 +147,7 @@ def test_commands_work_as_printed(page, flat, folder):
         if words[0] == "semmap" and (
             words[1] in PARSED
             or "--namespace" in words  # a robot that is not there: tests/extern/fleet
+            or "--connect" in words  # a system elsewhere
             or "--identity" in words  # to a secure system: tests/test_secure.py
             or any("..." in word or "[" in word for word in words)
         ):

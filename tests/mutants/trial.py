@@ -35,7 +35,7 @@ class Copy:
         for path in _files(root):
             target = folder / path
             target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(root / path, target)
+            shutil.copy2(root / path, target, follow_symlinks=False)  # `semmap/nodes` is a link
         data = os.environ.get("SEMMAP_DATA") or root.parent / "shared" / "data"
         self._environment = {**os.environ, "PYTHONPATH": str(folder), "SEMMAP_DATA": str(data)}
         self._baselines: dict[tuple[str, ...], tuple[str, float, tuple[str, ...]]] = {}

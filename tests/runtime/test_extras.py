@@ -20,7 +20,7 @@ from tests.conftest import free_endpoint
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 NOT_EVERYWHERE = {"open3d", "open3d-cpu"}
-OURS = {"nodes", "ontology", "schemas", "semmap"}
+OURS = {"semmap"}
 NOT_ASKED_FOR = {"glfw", "open3d", "rapidfuzz", "typing_extensions"}
 """What comes with another one, is done without, or is for type checkers only."""
 AREAS = {

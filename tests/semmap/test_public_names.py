@@ -2,31 +2,42 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
+import inspect
 import json
 import subprocess
 import sys
+import typing
 from pathlib import Path
 
+import msgspec
 import pytest
 
 import semmap
 import semmap.nodes
 import semmap.ontology
 import semmap.schemas
+from semmap.schemas.calls import reply_type
 
 PUBLIC = {
     "semmap": """
-        BadFile BadRequest BodyState Changed Checked ClassInfo Client Commit Departed Document Done Entity
-        Explanation Inconsistent Inferred InternalError LoggedCommit Moved NameTaken NoAnswer NodeStatus Pose
-        PreconditionFailed Provenance Refused Restored RowsChanged SemmapError Sighting SparqlResult
-        StandingQuery SystemStatus UnknownClass UnknownName UnknownVerb
-        aio commands connect fleet local_name reasoner recordings restore testing wire
+        Account Argument BackupPart BadFile BadRequest BodyState Busy Candidate Change Changed Checked
+        ClassInfo Client Commit Compacted Departed Described Difference Document Done Entity
+        Explanation Extent Found Frame Grounded Inconsistent Inferred InternalError Joint LessonTold
+        Live LoggedCommit Moved NameTaken NoAnswer NodeStatus Opening Outline Picture PlaceChanges Plan
+        PlannedPlace PlannedThing Pose Possible PreconditionFailed PropertyInfo Provenance Refused
+        Related Relation Request Restored RowsChanged SemanticFrame SemmapError ShownView Sighting
+        SparqlResult Spell Spells StandingQuery Step SystemStatus Understood UnknownClass UnknownName
+        UnknownVerb Watching Way aio commands connect fleet local_name reasoner recordings restore
+        testing wire
     """,
     "semmap.aio": "AsyncClient AsyncStandingQuery connect",
     "semmap.commands": """
-        Add Batch Check Classes Clear Command Explain Export Get History Infer LastSeen List Load Move Pause
-        Remove Reset Set Sparql Status StepOnce TakePicture Undo Unset Update
+        Add Approve Attach Backup Batch Check Classes Clear Close Command Compact Could Detach Diff
+        Drive Explain Export Find FindWay Forget Get History Infer LastSeen Learn Learned List
+        ListFrames Load Move Open Pause PlanFloor Properties Relations Remove Renew Reset Set Sparql
+        Status StepOnce Submit TakePicture Tell Track Understand Undo Unset Update WasWhen Watch
     """,
     "semmap.fleet": "Answer CopiedRobot FleetAnswer Frame Mirror Robots mirror robots sparql",
     "semmap.reasoner": "Change Explanation Inconsistent Reasoner Step Term Triple",
@@ -43,6 +54,7 @@ MEASURE = """
 import sys, time
 wall_s, cpu_s = time.perf_counter(), time.process_time()
 import semmap
+[getattr(semmap, name) for name in semmap.__all__ if name[0].isupper() or name == "connect"]
 print(__import__("json").dumps([time.process_time() - cpu_s, sorted(m for m in sys.modules if "." not in m)]))
 """
 
@@ -55,6 +67,52 @@ def test_the_public_names_are_these(module):
     assert len(set(imported.__all__)) == len(imported.__all__)
     for name in imported.__all__:
         assert getattr(imported, name) is not None
+
+
+def mentioned(hint, found):
+    """Add to `found` every class of ours that a type hint mentions, with those of the fields of Structs."""
+    for part in hint if isinstance(hint, list) else typing.get_args(hint):
+        mentioned(part, found)
+    if isinstance(hint, type) and hint.__module__.startswith("semmap.") and hint not in found:
+        found.add(hint)
+        if issubclass(hint, msgspec.Struct):
+            for field in typing.get_type_hints(hint).values():
+                mentioned(field, found)
+
+
+def test_what_commands_take_and_return_is_public():
+    requests = {getattr(semmap.commands, name) for name in semmap.commands.__all__} - {
+        semmap.commands.Command
+    }
+    found = set()
+    for request in requests:
+        mentioned(request, found)
+        mentioned(reply_type(request), found)
+    for method in (*vars(semmap.Client).values(), *vars(semmap.aio.AsyncClient).values()):
+        if inspect.isfunction(method) and not method.__name__.startswith("_"):
+            for hint in typing.get_type_hints(method).values():
+                mentioned(hint, found)
+    public = {
+        getattr(module, name) for module in (semmap, semmap.aio, semmap.commands) for name in module.__all__
+    }
+    assert {kind.__qualname__ for kind in found - public} == set()
+
+
+def test_a_command_is_public_unless_only_semmap_sends_it():
+    every = {kind.__name__ for kind in semmap.schemas.commands.Command.__subclasses__()}
+    assert every - {"_command"} <= set(semmap.commands.__all__)
+
+
+def test_every_public_name_is_imported_from_where_type_checkers_find_it():
+    tree = ast.parse(Path(semmap.__file__).read_text())
+    imports = [
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.module.startswith("semmap.")
+    ]
+    for_checkers = {alias.name: node.module for node in imports for alias in node.names}
+    assert {name: f"semmap.{module}" for name, module in semmap._MODULE_OF.items()} == for_checkers
+    assert for_checkers.keys() | semmap._MODULES == set(semmap.__all__)
 
 
 def test_every_module_of_the_package_is_one_of_these():
@@ -95,7 +153,7 @@ def test_it_brings_nothing_that_only_a_node_or_the_command_line_needs(imported):
     assert not imported[1] & heavy
 
 
-@pytest.mark.parametrize("package", [semmap, nodes, schemas, ontology])
+@pytest.mark.parametrize("package", [semmap, semmap.nodes, semmap.schemas, semmap.ontology])
 def test_its_types_are_for_type_checkers(package):
     assert (Path(package.__path__[0]) / "py.typed").exists()
 

@@ -1,50 +1,72 @@
-"""All verbs of the command line. Each sends a command; only `watch` subscribes instead.
+"""All commands of the command line, by what they are for. Each sends a request; only `watch` subscribes.
 
-A verb's module is imported when the verb is wanted: importing them all takes longer than most answers.
+The module of a command is imported when it is needed: importing all of them takes longer than most replies.
 """
 
 from __future__ import annotations
 
 import importlib
+from typing import Final
 
 import click
 
+from semmap.nodes.extern.cli.calling import CONNECTION, before_any_command
 from semmap.schemas import errors
 
-_MODULES = {
-    "edit": ("add", "update", "set", "unset", "track", "remove", "clear", "load"),
-    "batch": ("batch",),
-    "ask": (
-        *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
-        *("classes", "properties", "status", "sparql", "watch"),
-    ),
-    "frames": ("frames",),
-    "words": ("find", "tell", "understand"),
-    "past": ("undo", "history", "diff", "when", "last-seen"),
-    "run": ("run",),
-    "perceive": ("perceive",),
-    "learn": ("learn", "learned", "forget"),
-    "navigation": ("floorplan", "route"),
-    "scene": ("move", "drive", "attach", "detach", "open", "close", "pause", "step", "reset", "picture"),
-    "replay": ("replay",),
-    "movie": ("movie",),
-    "lifecycle": ("up", "down", "node", "repair"),
-    "keep": ("backup", "restore", "compact"),
-    "tbox": ("tbox",),
-    "keys": ("keys",),
-    "fleet": ("fleet",),
-    "mcp": ("mcp",),
-    "ros": ("ros", "mcap"),
-    "web": ("web",),
-    "approve": ("approve",),
-    "completion": ("completion",),
+_GROUPS: Final = {
+    "Map": {
+        "edit": ("add", "update", "set", "unset", "remove", "clear", "load"),
+        "batch": ("batch",),
+        "past": ("undo",),
+        "run": ("run",),
+        "approve": ("approve",),
+    },
+    "Ask": {
+        "ask": (
+            *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
+            *("classes", "properties", "sparql", "watch"),
+        ),
+        "words": ("find", "tell", "understand"),
+        "past": ("history", "diff", "when", "last-seen"),
+        "navigation": ("floorplan", "route"),
+        "tbox": ("tbox",),
+    },
+    "Scene and simulated time": {
+        "scene": ("move", "open", "close", "pause", "step", "reset", "picture"),
+        "movie": ("movie",),
+        "replay": ("replay",),
+    },
+    "Robots": {
+        "scene": ("drive", "attach", "detach"),
+        "edit": ("track",),
+        "frames": ("frames",),
+        "ros": ("ros", "mcap"),
+        "fleet": ("fleet",),
+    },
+    "Perception": {"perceive": ("perceive",), "learn": ("learn", "learned", "forget")},
+    "System": {
+        "lifecycle": ("up", "down", "node", "repair"),
+        "ask": ("status",),
+        "web": ("web",),
+        "mcp": ("mcp",),
+        "keep": ("backup", "restore", "compact"),
+        "keys": ("keys",),
+        "completion": ("completion",),
+    },
 }
-"""The verbs of each module of `verbs/`."""
-_MODULE_OF = {verb: module for module, verbs in _MODULES.items() for verb in verbs}
+"""What each part of the help lists: the modules of `verbs/` with their commands."""
+_MODULE_OF: Final = {
+    name: module for modules in _GROUPS.values() for module, names in modules.items() for name in names
+}
+_ALSO_TYPED: Final = {
+    "delete": "remove", "rm": "remove", "del": "remove", "show": "get", "describe": "get", "ls": "list",
+    "mv": "move", "stop": "down", "start": "up", "screenshot": "picture", "query": "sparql", "log": "history",
+}  # fmt: skip
+"""What people type who come from other tools, and the command that does it."""
 
 
 class _Group(click.Group):
-    """Imports a verb when it is asked for, and names the nearest verbs when one is unknown."""
+    """Imports commands when they are needed, lists them by group, and suggests one for an unknown command."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return sorted(_MODULE_OF)
@@ -56,16 +78,66 @@ class _Group(click.Group):
             self.add_command(made[0])
         return super().get_command(ctx, cmd_name)
 
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write a section for each group of commands."""
+        width = max(map(len, _MODULE_OF))
+        for title, modules in _GROUPS.items():
+            rows = []
+            for name in sorted(name for names in modules.values() for name in names):
+                if (command := self.get_command(ctx, name)) is not None:
+                    summary = command.get_short_help_str(formatter.width - width - 6)
+                    rows.append((name.ljust(width), summary))
+            with formatter.section(title):
+                formatter.write_dl(rows)
+
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and self.get_command(ctx, args[0]) is None:
-            hint = errors.did_you_mean(args[0], _MODULE_OF)
-            raise click.UsageError(f"unknown verb '{args[0]}'{hint or '; see: semmap --help'}")
-        return super().resolve_command(ctx, args)
+            meant = _ALSO_TYPED.get(args[0])
+            hint = f"; did you mean {meant}?" if meant else errors.did_you_mean(args[0], _MODULE_OF)
+            raise click.UsageError(f"unknown command '{args[0]}'{hint or '; see: semmap --help'}")
+        name, command, rest = super().resolve_command(ctx, args)
+        return name, command, [*_passed_on(ctx, command), *rest]
+
+
+def _passed_on(ctx: click.Context, command: click.Command | None) -> list[str]:
+    """Return the connection options that were given before the command, as its own options.
+
+    Raises UsageError where the command has no such option.
+    """
+    given = {option: ctx.params[option] for option in CONNECTION if ctx.params.get(option) is not None}
+    known = {parameter.name for parameter in command.params} if command is not None else set()
+    words = []
+    for name, value in given.items():
+        if command is not None and name not in known:
+            raise click.UsageError(
+                f"{CONNECTION[name]} is not an option of semmap {command.name}; see: --help"
+            )
+        words += [CONNECTION[name], value]
+    return words
 
 
 @click.group(cls=_Group, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(package_name="semmap")
-def app() -> None:
-    """A robot's semantic map: what there is, what it is called, where it stands, and what follows."""
+@before_any_command
+def app(**_: str | None) -> None:
+    """Use a robot's semantic map: which objects exist, what they are, where they are, and what follows."""
+
+
+@app.command(name="help")
+@click.argument("names", nargs=-1, metavar="[COMMAND]")
+@click.pass_context
+def help_(ctx: click.Context, names: tuple[str, ...]) -> None:
+    """Show the help page of a command, or the list of all commands."""
+    above = ctx.find_root()
+    command: click.Command = above.command
+    for name in names:
+        found = command.get_command(above, name) if isinstance(command, click.Group) else None
+        if found is None:
+            hint = errors.did_you_mean(
+                name, command.list_commands(above) if isinstance(command, click.Group) else ()
+            )
+            raise click.UsageError(f"unknown command '{name}'{hint or '; see: semmap --help'}")
+        command, above = found, click.Context(found, parent=above, info_name=name, **found.context_settings)
+    click.echo(command.get_help(above))

@@ -6,7 +6,7 @@ import functools
 import os
 import sys
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
@@ -24,33 +24,65 @@ TIME = (
 )
 """For the help of options that take a time."""
 
-connect_option = click.option(
-    "--connect",
-    "where",
-    envvar=CONNECT_VARIABLE,
-    show_envvar=True,
-    metavar="EP",
-    help=f"Zenoh endpoint of the system. Default: {DEFAULT_ENDPOINT}, or the only one on this machine.",
-)
-"""Which running system is meant."""
+CONNECTION: Final = {"where": "--connect", "identity": "--identity", "namespace": "--namespace"}
+"""The options that choose a system, by the names of their parameters."""
+_CONNECTION: Final[dict[str, dict[str, str]]] = {
+    "where": {
+        "metavar": "EP",
+        "help": f"Zenoh endpoint of the system. Default: {DEFAULT_ENDPOINT}, or the only one that runs here.",
+        "envvar": CONNECT_VARIABLE,
+    },
+    "identity": {
+        "metavar": "DIR/NAME",
+        "help": "Client certificate for a secure system: DIR/NAME.crt with its key.",
+        "envvar": IDENTITY_VARIABLE,
+    },
+    "namespace": {
+        "metavar": "ROBOT",
+        "help": "Name of the robot, if several can be reached there.",
+        "envvar": NAMESPACE_VARIABLE,
+    },
+}
 
-identity_option = click.option(
-    "--identity",
-    envvar=IDENTITY_VARIABLE,
-    show_envvar=True,
-    metavar="DIR/NAME",
-    help="Who you are, to a secure system: the certificate DIR/NAME.crt with its key.",
-)
-"""Whose certificate is shown."""
 
-namespace_option = click.option(
-    "--namespace",
-    envvar=NAMESPACE_VARIABLE,
-    show_envvar=True,
-    metavar="ROBOT",
-    help="Which robot, if several can be reached there.",
-)
-"""Which of several robots is meant."""
+_F = TypeVar("_F", bound=Callable[..., Any])
+
+
+class _ConnectionOption(click.Option):
+    """An option that every command has: its help page has one line for all of these."""
+
+    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
+        if self.name != next(p.name for p in ctx.command.params if isinstance(p, _ConnectionOption)):
+            return None
+        present = [CONNECTION[p.name] for p in ctx.command.params if p.name in CONNECTION]
+        return ", ".join(present), "Which system to use; see: semmap --help."
+
+
+def _connection_option(name: str) -> Callable[[_F], _F]:
+    options = _CONNECTION[name]
+    return click.option(
+        CONNECTION[name],
+        name,
+        cls=_ConnectionOption,
+        envvar=options["envvar"],
+        metavar=options["metavar"],
+        help=options["help"],
+    )
+
+
+connect_option = _connection_option("where")
+identity_option = _connection_option("identity")
+namespace_option = _connection_option("namespace")
+
+
+def before_any_command(function: Callable[..., None]) -> Callable[..., None]:
+    """Add the connection options to `semmap` itself; it passes them on to the command that follows."""
+    for name, option in reversed(CONNECTION.items()):
+        about = _CONNECTION[name]
+        text = f"{about['help']}  [env var: {about['envvar']}]"
+        function = click.option(option, name, metavar=about["metavar"], help=text)(function)
+    return function
+
 
 robots_option = click.option(
     "--robots",

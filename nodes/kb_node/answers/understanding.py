@@ -18,7 +18,7 @@ from semmap.nodes.language.words import split
 from semmap.schemas import errors
 from semmap.schemas.commands import Understand
 from semmap.schemas.entities import Entity
-from semmap.schemas.language import Frame, Understood
+from semmap.schemas.language import SemanticFrame, Understood
 
 _MOST_WORDS = 200  # of a command: a minute of speech
 
@@ -52,7 +52,7 @@ class Understanding:
         doubts = dict.fromkeys(doubt for frame in found.frames for doubt in self._doubts(frame))
         return structs.replace(found, question=" ".join(questions), doubts=tuple(doubts))
 
-    def _doubts(self, frame: Frame) -> Iterator[str]:
+    def _doubts(self, frame: SemanticFrame) -> Iterator[str]:
         """What of a frame does not fit the map."""
         for argument in frame.arguments:
             there = len(argument.candidates) or int(argument.entity is not None)

@@ -1,4 +1,6 @@
-"""The process that keeps the triples for SPARQL, beside the node: `python -m semmap.nodes.kb_node.sparql.worker`.
+"""The process that keeps the triples for SPARQL, beside the node.
+
+Started as `python -m semmap.nodes.kb_node.sparql.worker`.
 
 A query cannot be interrupted while Oxigraph evaluates it, nor can its memory be bounded: only a process can
 be ended. Were that the one with the triples, a hanging query would cost loading them again. So this process

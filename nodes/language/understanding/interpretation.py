@@ -29,7 +29,7 @@ from semmap.nodes.language.understanding.referents import Referents, Resolve
 from semmap.nodes.language.understanding.sentence import Sentence, sentence
 from semmap.nodes.language.words import PartOfSpeech, split
 from semmap.schemas import errors
-from semmap.schemas.language import Argument, Frame, Grounded, Language, Understood
+from semmap.schemas.language import Argument, Grounded, Language, SemanticFrame, Understood
 
 _LEAST: Final = 0.05  # a frame less probable than this is not looked at
 _WEIGHT_OF_ROLES: Final = 0.5  # of the roles' log-probability against the frame's
@@ -88,7 +88,7 @@ class Interpreter:
         mood = moods.mood(s)
         calls = self._calls(s) if texts and mood == "command" else []
         verbs = [_verb(s, first, last) for first, last, _ in calls]
-        frames: list[Frame] = []
+        frames: list[SemanticFrame] = []
         said = _words(s) if told is None else told.said_by_words
         plural = frozenset(i for i, word in enumerate(told.words if told else ()) if word.is_plural)
         look_up = None if resolve is None else Referents(s, scene.things.get, resolve, said, plural)
@@ -182,10 +182,10 @@ def _frame(
     name: str,
     verb: tuple[int, int],
     spans: Sequence[Span],
-    before: Sequence[Frame],
+    before: Sequence[SemanticFrame],
     scene: Scene,
     look_up: Referents | None,
-) -> Frame:
+) -> SemanticFrame:
     arguments: list[Argument] = []
     source: tuple[int, str] | None = None
     opened = {span: found for span in spans if look_up and (found := _opened(s, name, span, scene))}
@@ -232,7 +232,7 @@ def _frame(
         )
     negated = any(word.kind == "neg" for word in s.words[max(0, verb[0] - 2) : verb[0]])
     negated = negated and "why" not in [word.text for word in s.words[: verb[0]]]
-    return Frame(name, tuple(range(verb[0] + 1, verb[1] + 2)), tuple(arguments), negated)
+    return SemanticFrame(name, tuple(range(verb[0] + 1, verb[1] + 2)), tuple(arguments), negated)
 
 
 def _head(s: Sentence, slot: str, first: int, last: int) -> int:
@@ -285,7 +285,7 @@ def _words(s: Sentence) -> Callable[[int, int], str]:
     return lambda first, last: " ".join(word.text for word in s.words[first : last + 1])
 
 
-def _grounded(s: Sentence, frames: Sequence[Frame]) -> tuple[Grounded, ...]:
+def _grounded(s: Sentence, frames: Sequence[SemanticFrame]) -> tuple[Grounded, ...]:
     """For each word of an argument that names an entity which."""
     told: dict[int, str] = {}
     heads = {argument.head: argument.entity for frame in frames for argument in frame.arguments}

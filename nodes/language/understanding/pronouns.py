@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from semmap.nodes.language.understanding.grounding import Scene
-from semmap.schemas.language import Argument, Frame
+from semmap.schemas.language import Argument, SemanticFrame
 
 _PRONOUNS: Final = ("it", "them", "they", "one")
 _SEVERAL: Final = ("them", "they")
@@ -32,7 +32,7 @@ _NEVER_CARRIED: Final = frozenset({"Location", "Connecting_Architecture"})
 
 
 def antecedent(
-    pronoun: str, preposition: str, frame: str, role: str, before: Sequence[Frame], scene: Scene
+    pronoun: str, preposition: str, frame: str, role: str, before: Sequence[SemanticFrame], scene: Scene
 ) -> tuple[str, ...]:
     """The names of the entities that a pronoun stands for, none for what has none.
 
@@ -54,7 +54,7 @@ def antecedent(
     return next(suited, named[0] if named else ())
 
 
-def _mentioned(before: Sequence[Frame], together: bool) -> Iterator[tuple[str, ...]]:
+def _mentioned(before: Sequence[SemanticFrame], together: bool) -> Iterator[tuple[str, ...]]:
     """What was spoken of, the last first; together: what one frame acts on, all at once."""
     for frame in reversed(before):
         acted_on = [names for a in frame.arguments if a.role in _ACTED_ON and (names := _names(a))]

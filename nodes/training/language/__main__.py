@@ -1,4 +1,4 @@
-"""Learn to understand commands: `python -m semmap.nodes.training.language FOLDER`, FOLDER with HuRIC's files."""
+"""Learn to understand commands from the files of HuRIC: `python -m semmap.nodes.training.language FOLDER`."""
 
 from __future__ import annotations
 

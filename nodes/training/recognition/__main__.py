@@ -1,4 +1,4 @@
-"""Learn to recognise things from renderings of the model library: `python -m semmap.nodes.training.recognition`."""
+"""Learn to recognise things from renderings: `python -m semmap.nodes.training.recognition`."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
 """The command line, started as a process of its own."""
 
+import re
 import signal
 import subprocess
 import sys
@@ -7,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from semmap.nodes.extern.cli.all_verbs import _MODULE_OF
 from semmap.nodes.extern.cli.app import execute
 
 # Ctrl-C while the verbs are being imported.
@@ -73,6 +75,8 @@ def test_an_unknown_option_says_which_one_may_be_meant(words, said, capsys):
 
 def test_each_verb_that_talks_to_a_system_says_how_it_is_told_which(capsys):
     assert execute(["run", "--help"]) == 0
+    assert "--connect, --identity, --namespace" in capsys.readouterr().out
+    assert execute(["help"]) == 0
     said = capsys.readouterr().out
     assert "Zenoh endpoint of the system." in said
     assert "SEMMAP_CONNECT" in said
@@ -82,3 +86,37 @@ def test_it_says_its_version():
     semmap = Path(sys.executable).parent / "semmap"
     ended = subprocess.run([semmap, "--version"], capture_output=True, text=True, check=True)
     assert ended.stdout.startswith("semmap, version ")
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"), [("rm", "remove"), ("delete", "remove"), ("show", "get"), ("ls", "list")]
+)
+def test_what_other_tools_call_a_command_suggests_ours(capsys, typed, meant):
+    assert execute([typed]) == 2
+    assert capsys.readouterr().err == f"semmap: unknown command '{typed}'; did you mean {meant}?\n"
+
+
+def test_every_command_is_in_one_group_of_the_help(capsys):
+    assert execute(["help"]) == 0
+    listed = [
+        line.split()[0]
+        for line in capsys.readouterr().out.splitlines()
+        if re.match(r"  [a-z]\S* {2,}\S", line)
+    ]
+    assert sorted(listed) == sorted(_MODULE_OF)
+
+
+def test_help_shows_the_page_of_a_command_and_of_one_of_its_parts(capsys):
+    assert execute(["help", "get"]) == 0
+    assert capsys.readouterr().out.startswith("Usage: semmap get ")
+    assert execute(["help", "fleet", "mirror"]) == 0
+    assert capsys.readouterr().out.startswith("Usage: semmap fleet mirror ")
+    assert execute(["help", "gte"]) == 2
+    assert "unknown command 'gte'; did you mean get?" in capsys.readouterr().err
+
+
+def test_the_system_may_be_named_before_the_command(capsys):
+    assert execute(["--connect", "tcp/127.0.0.1:9", "list"]) == 3
+    assert "no system answers at tcp/127.0.0.1:9" in capsys.readouterr().err
+    assert execute(["--connect", "tcp/127.0.0.1:9", "completion", "bash"]) == 2
+    assert "--connect is not an option of semmap completion" in capsys.readouterr().err

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from semmap.schemas.language import Argument, Frame, Understood
+from semmap.schemas.language import Argument, SemanticFrame, Understood
 
 
 def document(understood: Understood) -> dict[str, Any]:
@@ -28,7 +28,7 @@ def document(understood: Understood) -> dict[str, Any]:
     }
 
 
-def _cfr(frame: Frame, *, grounded: bool) -> str:
+def _cfr(frame: SemanticFrame, *, grounded: bool) -> str:
     filled = (
         f"{argument.role.lower()}:{argument.filler if grounded else _quoted(argument.text)}"
         for argument in frame.arguments

@@ -459,7 +459,10 @@ def _settings_before(data: Path) -> Settings | None:
         return None
     if not has_map and (not settings.only or "kb_node" in settings.only):
         return None
-    if not Path(settings.world).exists():
+    if not (world := Path(settings.world)).exists():
+        shipped = {path.name: path for path in (FLAT_WORLD, EMPTY_WORLD)}
+        if world.parent.name == FLAT_WORLD.parent.name and world.name in shipped:  # of another installation
+            return structs.replace(settings, world=str(shipped[world.name]))
         complain(f"the world {settings.world} no longer exists; using the flat's")
         return structs.replace(settings, world=str(FLAT_WORLD))
     return settings

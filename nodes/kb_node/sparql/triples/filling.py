@@ -1,4 +1,6 @@
-"""Fills a store on disk from stdin: `python -m semmap.nodes.kb_node.sparql.triples.filling PATH [BASE [packed]]`.
+"""Fills a store on disk from stdin.
+
+Usage: `python -m semmap.nodes.kb_node.sparql.triples.filling PATH [BASE [packed]]`.
 
 There are triples in frames, each a MessagePack list behind its length. With a base IRI, a Turtle document
 follows behind an empty frame, with gzip if it is packed. Says on stdout how many triples the store has: fewer

@@ -35,6 +35,13 @@ def test_settings_that_are_lost_are_told(data, capsys):
     assert "--truth and --world are reset to their defaults" in capsys.readouterr().err
 
 
+def test_a_shipped_world_of_another_installation_is_the_shipped_world_of_this_one(data, capsys):
+    text = (data / SETTINGS).read_text()
+    (data / SETTINGS).write_text(text.replace(str(EMPTY_WORLD), f"/old/ontology/{EMPTY_WORLD.name}"))
+    assert _settings_before(data).world == str(EMPTY_WORLD)
+    assert capsys.readouterr().err == ""
+
+
 def test_a_world_that_is_gone_is_told_and_the_truth_stays(data, capsys):
     text = (data / SETTINGS).read_text()
     (data / SETTINGS).write_text(text.replace(str(EMPTY_WORLD), "/nowhere/world.xml"))
