@@ -50,7 +50,8 @@ def test_a_run_in_which_all_pass_ends_with_the_line_of_pytest(tests, capfd):
 
 def test_parts_run_at_the_same_time_and_what_each_prints_stays_together(tests, capfd, monkeypatch):
     meet = (
-        "import pathlib, time, pytest\n@pytest.mark.process\ndef test_{0}():\n    pathlib.Path('{0}').touch()\n"
+        "import pathlib, time, pytest\n@pytest.mark.process\ndef test_{0}():\n"
+        "    pathlib.Path('{0}').touch()\n"
         "    while not pathlib.Path('{1}').exists(): time.sleep(0.01)\n"
     )
     tests(one=meet.format("one", "two"), two=meet.format("two", "one"))
