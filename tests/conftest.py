@@ -186,12 +186,10 @@ class System:
             status = _ask_status(client)
             return status is not None and status.commit == 1 and not status.problems
 
-    def stop(self) -> float:
-        """Press Ctrl-C; how long the end took [s]."""
-        start = time.monotonic()
+    def stop(self) -> None:
+        """Press Ctrl-C, and wait for the end."""
         self.process.send_signal(signal.SIGINT)
         _await_end(self.process)
-        return time.monotonic() - start
 
 
 @contextlib.contextmanager

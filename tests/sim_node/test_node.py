@@ -30,7 +30,7 @@ from semmap.schemas.scenes import (
     Surfaces,
     WorldQuery,
 )
-from tests.conftest import free_endpoint, handling
+from tests.conftest import free_endpoint, handling, until
 from tests.sim_node.orders import hand, order, pose
 
 
@@ -82,11 +82,8 @@ def tidy(client):
     ask(client, "delete", Delete(names=tuple(b.name for b in ask(client, "snapshot", SceneQuery()).bodies)))
 
 
-def wait_for(condition, timeout_s=10.0):
-    deadline = time.monotonic() + timeout_s
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
+def wait_for(condition):
+    until(condition, "what the simulator was ordered to do is seen in its poses")
 
 
 def test_spawn_is_seen_in_the_poses_and_gone_after_delete(client, poses):
@@ -111,8 +108,9 @@ def test_a_hand_is_seen_to_move_before_it_rests(client, poses):
 
 
 def test_poses_come_twenty_times_a_second(client, poses):
-    time.sleep(1.0)
-    assert 5 <= len(poses) <= 30  # a busy machine may be late, never early
+    wait_for(lambda: len(poses) >= 20)
+    stamps = [p.stamp_ns for p in poses[:20]]
+    assert stamps[-1] - stamps[0] > 0.7e9  # a busy machine may be late, never early
 
 
 def test_paused_time_goes_on_step_by_step_only(client):
