@@ -152,7 +152,8 @@ class System:
                 new = self._find_ready(client)
                 is_restarted = new.keys() == old.keys() and not set(new.values()) & set(old.values())
                 status = _ask_status(client) if is_restarted else None
-                return status is not None and status.in_agreement in (True, None)
+                wanted = True if "sim_node" in new else None  # None also before the scene is known
+                return status is not None and status.in_agreement is wanted
 
             until(is_opened, "all nodes are ready with the other map")
 

@@ -151,7 +151,7 @@ def test_commands_work_as_printed(page, flat, folder):
             or "--identity" in words  # to a secure system: tests/test_secure.py
             or any("..." in word or "[" in word for word in words)
         ):
-            parse(words[1:])
+            parse(words[1 : words.index("|") if "|" in words else None])
             continue
         if words[0] == "z":
             words = ["zenoh", "--mode", "client", "--connect", flat.endpoint, *words[1:]]

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.suite import __main__ as suite
-from tests.suite import parts, repeats
+from tests.suite import repeats
 
 CONFTEST = """
 import pytest
@@ -37,7 +37,7 @@ def tests(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(suite.ROOT))
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     monkeypatch.delenv("PYTEST_ADDOPTS", raising=False)
-    monkeypatch.setattr(parts, "PARTS", ((),))
+    monkeypatch.setattr(suite, "PARTS", ((),))
     monkeypatch.setattr(repeats, "PARTS", ((),))
     monkeypatch.setattr(repeats, "_ROOT", tmp_path)
     return lambda **files: [(tmp_path / f"test_{name}.py").write_text(text) for name, text in files.items()]
@@ -46,19 +46,6 @@ def tests(tmp_path, monkeypatch):
 def test_a_run_in_which_all_pass_ends_with_the_line_of_pytest(tests, capfd):
     assert suite.main([]) == 0
     assert " 1 passed in " in capfd.readouterr().out.splitlines()[-1]
-
-
-def test_parts_run_at_the_same_time_and_what_each_prints_stays_together(tests, capfd, monkeypatch):
-    meet = (
-        "import pathlib, time, pytest\n@pytest.mark.process\ndef test_{0}():\n"
-        "    pathlib.Path('{0}').touch()\n"
-        "    while not pathlib.Path('{1}').exists(): time.sleep(0.01)\n"
-    )
-    tests(one=meet.format("one", "two"), two=meet.format("two", "one"))
-    monkeypatch.setattr(parts, "PARTS", (("test_one.py",), ("test_two.py",)))
-    assert suite.main([]) == 0
-    out = capfd.readouterr().out
-    assert out.index("test_one.py") < out.index("1 passed") < out.index("test_two.py")
 
 
 def test_a_flaky_test_is_named_at_the_end_of_a_green_run(tests, capfd):
