@@ -1,5 +1,7 @@
 """The engine: bodies find berths or are compiled, keep their state, are stepped, and rest."""
 
+import threading
+
 import mujoco
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from semmap.nodes.sim_node.physics import base_scene
 from semmap.nodes.sim_node.physics.engine import Engine
 from semmap.nodes.sim_node.vision.view import look_at
 from semmap.schemas.entities import Pose, distance_m
+from tests.conftest import PATIENCE_S
 from tests.sim_node.orders import order, pose
 
 KITCHEN = """<mujoco><worldbody>
@@ -327,12 +330,21 @@ def test_the_stage_has_bodies_where_they_are_now():
 
 
 def test_others_are_heard_while_it_compiles_and_then_it_does_not(monkeypatch):
-    monkeypatch.setattr("semmap.nodes.sim_node.physics.build._PATIENCE_S", 0.0)
-    heard, engines = [], []
-    world = Engine(base_scene.bare_floor(), lambda: heard.extend(one.compiling for one in engines))
-    engines.append(world)
+    is_heard, heard = threading.Event(), []
+    compiled = Engine._compiled
+
+    def compile_when_others_were_heard(engine, poses):
+        assert is_heard.wait(PATIENCE_S)
+        return compiled(engine, poses)
+
+    def hear():
+        heard.append(world.compiling)
+        is_heard.set()
+
+    world = engine()
+    monkeypatch.setattr(world, "_meanwhile", hear)
+    monkeypatch.setattr(Engine, "_compiled", compile_when_others_were_heard)
     add(world, order("fridge1", "fridge", pose(0.0, 0.0)))
-    assert heard
     assert set(heard) == {True}
     assert world.compiling is False
 
