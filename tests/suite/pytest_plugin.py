@@ -1,14 +1,17 @@
-"""A plugin of pytest that writes down which tests failed, and shuffles them when told to."""
+"""A plugin of pytest that records which tests failed, and can deal or shuffle the tests."""
 
 from __future__ import annotations
 
 import random
 from itertools import groupby
 from pathlib import Path
+from typing import TypeVar
 
 import pytest
 
 from tests.suite.failures import Failure, write_failures
+
+_Any = TypeVar("_Any")
 
 
 class _Recorder:
@@ -45,14 +48,29 @@ class _Shuffler:
         items[:] = shuffle(items, self._seed)
 
 
+class _Dealer:
+    """Gives each worker of pytest-xdist as many of the slow tests, before all others."""
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Item]) -> None:
+        workers = config.workerinput["workercount"] if hasattr(config, "workerinput") else 1
+        files = [[*several] for _, several in groupby(items, lambda item: item.path)]
+        slow = [several for several in files if any(item.get_closest_marker("process") for item in several)]
+        fast = [several for several in files if several not in slow]
+        items[:] = deal(slow, fast, workers)
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--failures", type=Path, help="write the failures to this file")
+    parser.addoption("--deal", action="store_true", help="run the tests that need processes first")
     parser.addoption("--shuffle", type=int, metavar="SEED", help="run in an order drawn by this seed")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     if (path := config.getoption("--failures")) and not hasattr(config, "workerinput"):
         config.pluginmanager.register(_Recorder(path))
+    if config.getoption("--deal"):
+        config.pluginmanager.register(_Dealer())
     if (seed := config.getoption("--shuffle")) is not None:
         config.pluginmanager.register(_Shuffler(seed))
 
@@ -65,6 +83,25 @@ def shuffle(items: list[pytest.Item], seed: int) -> list[pytest.Item]:
     for several in files:
         dice.shuffle(several)
     return [item for several in files for item in several]
+
+
+def deal(slow: list[list[_Any]], fast: list[list[_Any]], workers: int) -> list[_Any]:
+    """Return the tests of these files in an order that keeps all workers busy to the end.
+
+    pytest-xdist gives each worker one stretch of the order, all of the same length, and those who have
+    finished take from the end of another's. So each stretch begins with its share of the slow files, and
+    the tests that are moved between workers are fast ones.
+    """
+    shares = [[test for file in slow[number::workers] for test in file] for number in range(workers)]
+    rest = [test for file in fast for test in file]
+    left = len(rest) + sum(map(len, shares))
+    for number, share in enumerate(shares):
+        length = left // (workers - number)  # as pytest-xdist divides them
+        left -= length
+        missing = max(0, length - len(share))
+        share += rest[:missing]
+        del rest[:missing]
+    return [test for share in shares for test in share] + rest
 
 
 def _message(report: pytest.TestReport | pytest.CollectReport) -> str:

@@ -3,7 +3,8 @@
 import pytest
 
 from tests.suite import __main__ as suite
-from tests.suite import repeats
+from tests.suite import parts, repeats
+from tests.suite.pytest_plugin import deal
 
 CONFTEST = """
 import pytest
@@ -93,3 +94,44 @@ def test_repeats_list_what_failed_and_how_often(tests, capfd):
 def test_repeats_print_nothing_when_all_passed(tests, capfd):
     assert repeats.main(["--times", "1"]) == 0
     assert capfd.readouterr().out == ""
+
+
+def test_each_worker_begins_with_its_share_of_the_slow_files():
+    slow = [["a1", "a2"], ["b1"], ["c1"]]
+    fast = [["d1", "d2", "d3"], ["e1"], ["f1"]]
+    assert deal(slow, fast, 2) == ["a1", "a2", "c1", "d1", "b1", "d2", "d3", "e1", "f1"]
+
+
+def test_a_share_of_slow_tests_may_be_longer_than_the_others():
+    assert deal([["a1", "a2", "a3"]], [["b1"]], 2) == ["a1", "a2", "a3", "b1"]
+
+
+@pytest.mark.parametrize("workers", [1, 2, 3, 7])
+def test_no_test_is_lost_by_the_dealing(workers):
+    slow = [[f"s{file}{test}" for test in range(file)] for file in range(5)]
+    fast = [[f"f{file}{test}" for test in range(file)] for file in range(8)]
+    assert sorted(deal(slow, fast, workers)) == sorted(test for file in slow + fast for test in file)
+
+
+def test_all_parts_are_run_and_shown_one_after_the_other(tests, monkeypatch, capfd):
+    tests(broken=BROKEN)
+    monkeypatch.setattr(suite, "PARTS", (("test_good.py",), ("test_broken.py",)))
+    assert suite.main([]) == 1
+    out = capfd.readouterr().out
+    assert out.index(" 1 passed in ") < out.index(" 1 failed in ")
+
+
+def test_temporary_files_are_in_memory_where_there_is_room(tmp_path, monkeypatch):
+    monkeypatch.delenv("TMPDIR", raising=False)
+    monkeypatch.setattr(parts, "_MEMORY", tmp_path)
+    monkeypatch.setattr(parts, "_ENOUGH_BYTES", 1)
+    assert parts.keep_files_in_memory() == {"TMPDIR": str(tmp_path)}
+    monkeypatch.setattr(parts, "_ENOUGH_BYTES", 1 << 60)
+    assert parts.keep_files_in_memory() == {}
+    monkeypatch.setattr(parts, "_MEMORY", tmp_path / "missing")
+    assert parts.keep_files_in_memory() == {}
+
+
+def test_a_folder_for_temporary_files_that_is_set_is_kept(tmp_path, monkeypatch):
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    assert parts.keep_files_in_memory() == {}
