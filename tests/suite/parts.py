@@ -17,8 +17,8 @@ PARTS: tuple[tuple[str, ...], ...] = (
 )
 """Arguments for pytest. The parts run side by side."""
 _MEMORY = Path("/dev/shm")
-_ENOUGH_BYTES = 6 << 30
-"""The suite's temporary files take 3 GB at most."""
+_ENOUGH_BYTES = 1 << 30
+"""The suite's temporary files take about 100 MB."""
 NONE_COLLECTED = 5
 """Pytest's exit status where there was no such test."""
 _ENDS_A_HANGING_TEST = ("-o", "faulthandler_timeout=600", "-o", "faulthandler_exit_on_timeout=true")
