@@ -60,11 +60,11 @@ def test_files_are_tried_first_and_loaded_then_refused_or_downloaded(tab, system
     turn_to(tab, "Files")
     chooser = tab.locator("input[type=file]")
     chooser.set_input_files(large)
-    tab.get_by_role("alert").get_by_text("film.bin is not text; what can be loaded is").wait_for()
+    tab.get_by_role("alert").get_by_text("film.bin: unsupported binary format").wait_for()
     chooser.set_input_files(prose)
     tab.get_by_role("alert").get_by_text("prose.txt").wait_for()
     chooser.set_input_files(more)
-    tab.get_by_text("If more.ttl is loaded:").wait_for()
+    tab.get_by_text("Changes by more.ttl:").wait_for()
     with system.client() as client:
         assert name not in {entity.name for entity in client.list("Cup")}
         tab.get_by_role("button", name="Load more.ttl").click()
@@ -86,20 +86,20 @@ def test_what_is_sent_or_tried_can_be_stopped(tab, system, tmp_path):
     network.send("Network.enable")
     network.send("Network.emulateNetworkConditions", slow)
     chooser.set_input_files(many)
-    tab.get_by_text("Sending the file").wait_for()
+    tab.get_by_text("Uploading ...").wait_for()
     stop.click()
-    tab.get_by_text("Stopped: nothing was loaded.").wait_for()
+    tab.get_by_text("Stopped; no changes.").wait_for()
     network.send("Network.emulateNetworkConditions", slow | {"uploadThroughput": -1})
 
     chooser.set_input_files(many)
-    tab.get_by_text("Trying many.ttl").wait_for()
+    tab.get_by_text("Checking many.ttl").wait_for()
     stop.click()
-    tab.get_by_text("Stopped: nothing was loaded.").wait_for()
+    tab.get_by_text("Stopped; no changes.").wait_for()
     assert not stop.is_visible()
     with system.client() as client:  # whose answer comes after that to what was tried
         assert not {entity.name for entity in client.list("Cup") if entity.name.startswith(name)}
-    assert tab.get_by_text("is loaded:").count() == 0
-    assert tab.get_by_role("alert").get_by_text("not sent whole").count() == 0
+    assert tab.get_by_text("Changes by").count() == 0
+    assert tab.get_by_role("alert").get_by_text("upload incomplete").count() == 0
 
 
 def test_the_plan_the_graph_the_check_and_the_nodes(tab):
@@ -113,13 +113,13 @@ def test_the_plan_the_graph_the_check_and_the_nodes(tab):
     assert {"kitchen", "bed1"} <= set(words)
 
     turn_to(tab, "Graph")
-    tab.get_by_text("Nothing is selected: this is all, by places").wait_for()
-    tab.get_by_text("As a table").click()
+    tab.get_by_text("No selection: the graph shows all places").wait_for()
+    tab.get_by_role("button", name="Table").click()
     tab.get_by_role("row", name="kitchen").get_by_text("isLocatedIn").first.wait_for()
 
     turn_to(tab, "System")
     tab.get_by_role("row", name="kb_node").get_by_text("ready").first.wait_for()
-    tab.get_by_label("Filter the log").fill("begun from")
+    tab.get_by_label("Filter log").fill("begun from")
     tab.get_by_role("row", name="begun from flat.ttl").first.wait_for()
 
     turn_to(tab, "Check")

@@ -101,7 +101,7 @@ def test_a_class_chosen_in_the_tree_filters_the_table(tab, added):
     tab.get_by_role("tab", name="Entities").click()
     row(tab, name).wait_for()
     assert not row(tab, "chair1").is_visible()
-    tab.get_by_role("button", name="Show all").click()
+    tab.get_by_role("button", name="Clear filter").click()
     row(tab, "apple1").wait_for()
     tab.get_by_role("tab", name="Classes").click()  # where it is marked no more, so that one click chooses it
     tab.locator(".q-tree__node--selected").wait_for(state="detached")
@@ -114,7 +114,7 @@ def test_something_is_added_by_typing_what_it_is_called(tab, client):
     name = fresh("machine")
     choose_class(tab, open_add(tab), "macchina del")
     tab.get_by_role("option", name="Coffee_Machine").click()
-    tab.get_by_label("Name (made").fill(name)
+    tab.get_by_label("Name (empty").fill(name)
     for axis, value in (("x", "2.5"), ("y", "3.1"), ("z", "1.2")):
         tab.get_by_label(f"position {axis}").fill(value)
     tab.get_by_role("button", name="Add", exact=True).click()
@@ -150,12 +150,12 @@ def test_a_refused_add_says_why_and_is_mended_by_a_button(tab, client, added):
     name = added()
     choose_class(tab, open_add(tab), "Cup ·")
     tab.get_by_role("option", name="Cup ·").first.click()
-    tab.get_by_label("Name (made").fill(name)
+    tab.get_by_label("Name (empty").fill(name)
     tab.get_by_role("button", name="Add", exact=True).click()
-    dialog = tab.get_by_role("dialog", name="Refused")
+    dialog = tab.get_by_role("dialog", name="Rejected")
     dialog.get_by_text(f"the name '{name}' is taken").wait_for()
     before = {e.name for e in client.list()}
-    dialog.get_by_role("button", name="call it").click()
+    dialog.get_by_role("button", name="Use the name").click()
     until(lambda: {e.name for e in client.list()} > before, "it is added under another name")
 
 
@@ -170,14 +170,14 @@ def test_a_contradiction_is_shown_step_by_step_and_mended(tab, client, added):
     tab.keyboard.type("Kitchen ·")
     tab.get_by_role("option", name="Kitchen ·").first.click()
     tab.get_by_role("button", name="Save").click()
-    dialog = tab.get_by_role("dialog", name="Refused")
+    dialog = tab.get_by_role("dialog", name="Rejected")
     dialog.get_by_text("as a Kitchen it would be a place").wait_for()
-    dialog.get_by_role("button", name="do it nevertheless").click()
+    dialog.get_by_role("button", name="Force the change").click()
     steps = dialog.get_by_label("Steps")
     steps.get_by_text(f"{name} is switched on").wait_for()
     steps.get_by_text("nothing is both a location and an object").wait_for()
     assert client.get(name).class_ == "Cup"
-    dialog.get_by_role("button", name=f"take back that {name} isSwitchedOn true").click()
+    dialog.get_by_role("button", name=f"Unset {name} isSwitchedOn true and retry").click()
     until(lambda: client.get(name).class_ == "Kitchen", "it is a kitchen")
     client.remove(name)
 
@@ -218,7 +218,7 @@ def test_no_click_is_lost_and_reasons_stay_while_the_map_changes(tab, client, ad
 def test_a_reference_is_edited_and_the_change_undone(tab, client, added):
     name = added(ref="cup")
     select(tab, name)
-    section(tab, "Edit").get_by_label("Called", exact=True).fill("grandmother's cup")
+    section(tab, "Edit").get_by_label("Label", exact=True).fill("grandmother's cup")
     tab.get_by_role("button", name="Save").click()
     until(lambda: client.get(name).preferred_reference == "grandmother's cup", "it is called so")
     tab.get_by_role("heading", name="grandmother's cup").wait_for()
@@ -235,7 +235,7 @@ def test_a_state_is_set_and_taken_back(tab, client, added):
     fields.get_by_label("mass").fill("0.25")
     fields.get_by_label("mass").press("Enter")
     until(lambda: client.get(name).properties.get("mass") == 0.25, "the mass is set")
-    tab.get_by_role("button", name="Take back mass").click()
+    tab.get_by_role("button", name="Unset mass").click()
     until(lambda: "mass" not in client.get(name).properties, "the mass is unset")
 
 
@@ -266,7 +266,7 @@ def test_several_are_moved_and_deleted_at_once(tab, client, added):
     tab.get_by_text(f"changed 2: {one} and {two}").wait_for()
     ((first,), (second,)) = (client.history(limit=1, name=name) for name in (one, two))
     assert (first.seq, first.verb) == (second.seq, "batch")
-    tab.get_by_role("button", name="Delete all of them").click()
+    tab.get_by_role("button", name="Delete all").click()
     tab.get_by_role("dialog", name="Delete").get_by_role("button", name="Delete", exact=True).click()
     until(lambda: not {one, two} & {e.name for e in client.list()}, "both are gone")
 

@@ -13,8 +13,8 @@ import pytest
 from semmap.commands import Add, Remove
 from semmap.nodes import bus
 from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view
-from semmap.nodes.extern.web.scene.dragging import arm_m
-from semmap.nodes.extern.web.scene.seen import wxyz_of
+from semmap.nodes.extern.web.scene.gizmo import arm_m
+from semmap.nodes.extern.web.scene.sensor_overlay import wxyz_of
 from semmap.schemas import keys
 from semmap.schemas.scenes import Scene, SceneQuery
 from tests.page.conftest import START_MS, chromium_path
@@ -166,7 +166,7 @@ def drag_along_x(tab, view, client, name, done=None) -> None:
     done = done or (lambda: client.get(name).pose.position_m[0] > x + 0.5)
 
     def drag() -> bool:
-        tab.get_by_role("button", name="Look at everything").click()
+        tab.get_by_role("button", name="Show all").click()
         settle(tab)
         draw(tab)
         dragged(tab, view, *((x + grip + 0.2 * step, y, z) for step in range(6)))
@@ -192,7 +192,7 @@ def test_what_is_dragged_into_another_thing_goes_back_and_that_is_named(tab, sys
     with standing(system, (4.0, 2.2, 0.0)) as other, system.client() as client:
         view, entity = looking(tab, client), client.get(chair)
         select(tab, view, entity)
-        said = tab.get_by_text(f"There is no room for {chair} there: it would stand in {other}.")
+        said = tab.get_by_text(f"{chair}: no free space, the position overlaps {other}")
         drag_along_x(tab, view, client, chair, lambda: said.count() > 0)
         until(lambda: client.get(chair).body.status == "present", "the chair stands")
         assert client.get(chair).pose.position_m == pytest.approx(entity.pose.position_m, abs=0.05)

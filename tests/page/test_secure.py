@@ -42,7 +42,7 @@ def shown(tab):
 def test_up_starts_the_page_as_a_viewer_which_shows_all_and_no_way_to_change(chromium, open_tab, secured):
     tab = open_tab(Web(address(secured), secured.process))
     shown(tab)
-    for name in ("Add an entity", "Undo the last change (u)", "Save", "Delete", "Take back isOpen", "yes"):
+    for name in ("Add an entity", "Undo the last change (u)", "Save", "Delete", "Unset isOpen", "yes"):
         assert tab.get_by_role("button", name=name, exact=True).count() == 0, name
     assert tab.get_by_role("tab", name="Details").count() == 1
     assert tab.get_by_role("tab", name="Add").count() == 0
@@ -59,11 +59,11 @@ def test_up_starts_the_page_as_a_viewer_which_shows_all_and_no_way_to_change(chr
         tab.get_by_role("tab", name=panel, exact=True).click()
         tab.get_by_label(panel, exact=True).get_by_text(told).first.wait_for()
     tab.get_by_role("tab", name="Files").click()
-    assert tab.get_by_text("Choose a file, or drop it here").count() == 0
+    assert tab.get_by_text("Choose or drop a file").count() == 0
     tab.keyboard.press("Delete")
-    tab.get_by_text("Your certificate may not delete").wait_for()
+    tab.get_by_text("deletion is not permitted").wait_for()
     tab.keyboard.press("u")
-    tab.get_by_text("Your certificate may not undo").wait_for()
+    tab.get_by_text("undo is not permitted").wait_for()
 
 
 def test_the_page_of_an_operator_changes(chromium, open_tab, secured, folder):

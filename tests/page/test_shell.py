@@ -40,9 +40,9 @@ def test_u_undoes_and_a_question_mark_shows_the_keys(tab, system):
         tab.keyboard.press("u")
         until(lambda: name not in {e.name for e in client.list()}, "it is undone")
     tab.keyboard.press("?")
-    tab.get_by_role("dialog", name="Keys").get_by_text("undo the last change").wait_for()
+    tab.get_by_role("dialog", name="Keyboard shortcuts").get_by_text("undo the last change").wait_for()
     tab.keyboard.press("Escape")
-    tab.get_by_role("dialog", name="Keys").wait_for(state="detached")
+    tab.get_by_role("dialog", name="Keyboard shortcuts").wait_for(state="detached")
 
 
 def test_what_was_pressed_is_clicked_though_it_moves_away_before_the_release(tab):
@@ -81,7 +81,7 @@ def test_on_a_phone_the_list_stays_while_boxes_are_ticked_and_ends_when_a_row_is
 def test_it_looks_as_the_browser_does_until_it_is_told(open_tab, web, dark):
     tab = open_tab(web, dark=dark)
     assert ("body--dark" in tab.locator("body").get_attribute("class")) is dark
-    tab.get_by_role("button", name="Dark or light").click()
+    tab.get_by_role("button", name="Toggle dark mode").click()
     tab.wait_for_selector("body:not(.body--dark)" if dark else "body.body--dark")
 
 
@@ -93,9 +93,9 @@ def test_a_system_that_ends_is_said_to_be_away_and_another_map_is_begun_anew(chr
             tab = open_tab(web)
             until(lambda: "78 entities" in tab.locator(".semmap-state").inner_text(), "the flat shows")
             first.stop()
-            tab.get_by_text("The knowledge base does not answer").wait_for()
+            tab.get_by_text("No response from the knowledge base").wait_for()
             with running(tmp_path / "two", "--abox", "none", *words, endpoint=endpoint):
-                tab.get_by_text("Another map is behind this address now").wait_for()
+                tab.get_by_text("The system now serves another map").wait_for()
                 until(lambda: "78" not in tab.locator(".semmap-entities").inner_text(), "it is empty")
                 assert not tab.locator(".semmap-away").is_visible()
 

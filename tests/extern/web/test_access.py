@@ -62,7 +62,10 @@ def sent_back():
 )
 def test_without_token_or_cookie_every_path_answers_401(path):
     assert status(HOST, path=path) == 401
-    assert ask(HOST, path=path)[1]["body"] == b"open the address with the token that semmap printed\n"
+    assert (
+        ask(HOST, path=path)[1]["body"]
+        == b"token required; open the address with the token that semmap printed\n"
+    )
 
 
 def test_the_token_is_exchanged_for_a_cookie_that_scripts_and_other_sites_cannot_use():

@@ -9,7 +9,7 @@ import pytest
 from semmap.nodes.extern.web.scene.assets import Assets
 from semmap.schemas import errors
 from semmap.schemas.scenes import SurfaceQuery, Surfaces
-from tests.extern.web.scene.things import body, scene, surface
+from tests.extern.web.scene.sample_scenes import body, scene, surface
 
 
 class Live:

@@ -3,8 +3,8 @@
 import pytest
 
 from semmap.nodes.extern.web.scene.bodies import Bodies
-from semmap.nodes.extern.web.scene.shown import Shown
-from tests.extern.web.scene.things import pose
+from semmap.nodes.extern.web.scene.drawables import Drawable
+from tests.extern.web.scene.sample_scenes import pose
 
 
 class Handle:
@@ -36,8 +36,8 @@ class Scene:
 MOVED = ["batched_positions", "batched_wxyzs"]
 
 
-def thing(model: str, x: float) -> Shown:
-    return Shown("solid", model, (0.5, 0.5, 1.0), (10, 20, 30), pose(x))
+def thing(model: str, x: float) -> Drawable:
+    return Drawable("solid", model, (0.5, 0.5, 1.0), (10, 20, 30), pose(x))
 
 
 @pytest.fixture

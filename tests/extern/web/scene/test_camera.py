@@ -6,9 +6,9 @@ import random
 import numpy as np
 import pytest
 
-from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, uncrowded
-from semmap.nodes.extern.web.scene.seen import wxyz_of
-from tests.extern.web.scene.things import entity, pose
+from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, select_labels
+from semmap.nodes.extern.web.scene.sensor_overlay import wxyz_of
+from tests.extern.web.scene.sample_scenes import entity, pose
 
 
 def looking(eye, target, width=800, height=600):
@@ -66,17 +66,17 @@ def test_labels_do_not_cover_one_another_and_the_nearest_is_written():
     view = looking((0.0, -5.0, 2.0), (0.0, 0.0, 0.0))
     places = {"far": (0.0, 0.1, 0.0), "near": (0.0, 0.0, 0.0), "aside": (1.5, 0.0, 0.0)}
     labels = {name: (name, at) for name, at in places.items()}
-    assert uncrowded(view, labels) == ["near", "aside"]
-    assert uncrowded(view, labels, ["far"])[0] == "far"
-    assert "near" not in uncrowded(view, labels, ["far"])
+    assert select_labels(view, labels) == ["near", "aside"]
+    assert select_labels(view, labels, ["far"])[0] == "far"
+    assert "near" not in select_labels(view, labels, ["far"])
 
 
 def test_what_is_behind_or_beside_the_picture_is_not_labelled_nor_more_than_there_may_be():
     view = looking((0.0, -5.0, 2.0), (0.0, 0.0, 0.0))
-    assert uncrowded(view, {"behind": ("b", (0.0, -9.0, 0.0)), "beside": ("c", (90.0, 0.0, 0.0))}) == []
+    assert select_labels(view, {"behind": ("b", (0.0, -9.0, 0.0)), "beside": ("c", (90.0, 0.0, 0.0))}) == []
     many = {str(i): (str(i), (0.5 * (i % 5) - 1.0, 0.6 * (i // 5) - 1.0, 0.0)) for i in range(20)}
-    assert len(uncrowded(view, many, most=3)) == 3
-    assert uncrowded(view, {}) == []
+    assert len(select_labels(view, many, most=3)) == 3
+    assert select_labels(view, {}) == []
 
 
 def test_of_many_labels_those_are_written_that_one_by_one_find_room():
@@ -97,4 +97,4 @@ def test_of_many_labels_those_are_written_that_one_by_one_find_room():
             if is_seen and has_room and len(expected) < 40:
                 taken.append((x, y, half))
                 expected.append(key)
-        assert uncrowded(view, labels, first) == expected
+        assert select_labels(view, labels, first) == expected

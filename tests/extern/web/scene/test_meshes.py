@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semmap.nodes.extern.web.scene.meshes import cube, glb, linear, opacity_of, srgb, veiled
-from tests.extern.web.scene.things import surface
+from semmap.nodes.extern.web.scene.meshes import cube, glb, linear, opacity_of, srgb, tinted
+from tests.extern.web.scene.sample_scenes import surface
 
 
 def parts(file):
@@ -48,8 +48,8 @@ def test_what_is_seen_through_says_so(look, mode):
 
 def test_the_past_looks_other_than_now():
     red = np.array([(1.0, 0.0, 0.0)])
-    assert veiled(red, "solid") == pytest.approx(red)
-    assert np.abs(veiled(red, "past") - red).max() > 0.2
+    assert tinted(red, "solid") == pytest.approx(red)
+    assert np.abs(tinted(red, "past") - red).max() > 0.2
 
 
 @given(st.lists(st.integers(0, 255), min_size=3, max_size=3))

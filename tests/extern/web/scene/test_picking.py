@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semmap.nodes.extern.web.scene.dragging import put_down
+from semmap.nodes.extern.web.scene.gizmo import place_on_support
 from semmap.nodes.extern.web.scene.picking import (
     Solid,
     corners_of,
@@ -17,7 +17,7 @@ from semmap.nodes.extern.web.scene.picking import (
     rotation_of,
     support_m,
 )
-from tests.extern.web.scene.things import pose, surface
+from tests.extern.web.scene.sample_scenes import pose, surface
 
 DOWN = (0.0, 0.0, -1.0)
 
@@ -97,7 +97,7 @@ def test_below_a_point_is_the_table_or_the_floor():
 
 def test_a_cup_that_is_dragged_into_a_counter_is_put_on_top():
     counter = Solid("counter1", pose(2.0, 3.0), (1.0, 0.6, 0.9))
-    dragged = put_down(pose(2.0, 3.0, 0.74), (0.1, 0.1, 0.1), [counter])
+    dragged = place_on_support(pose(2.0, 3.0, 0.74), (0.1, 0.1, 0.1), [counter])
     assert dragged.position_m == pytest.approx((2.0, 3.0, 0.9), abs=0.01)
 
 
@@ -105,12 +105,12 @@ def test_a_chair_that_is_dragged_under_a_table_stays_on_the_floor():
     top = surface((1.0, 0.6, 0.05))
     board = Solid("table1", pose(2.0, 3.0, 0.7), (1.0, 0.6, 0.05), top)
     at = pose(2.0, 3.0, 0.0)
-    assert put_down(at, (0.4, 0.4, 0.6), [board]) == at
+    assert place_on_support(at, (0.4, 0.4, 0.6), [board]) == at
 
 
 def test_what_is_lifted_stays_lifted_and_what_is_large_goes_where_it_was_let_go():
-    assert put_down(pose(2.0, 3.0, 1.4), (0.1, 0.1, 0.1), [table()]) == pose(2.0, 3.0, 1.4)
-    assert put_down(pose(2.0, 3.0, 0.0), (2.0, 1.0, 0.4), [table()]) == pose(2.0, 3.0, 0.0)
+    assert place_on_support(pose(2.0, 3.0, 1.4), (0.1, 0.1, 0.1), [table()]) == pose(2.0, 3.0, 1.4)
+    assert place_on_support(pose(2.0, 3.0, 0.0), (2.0, 1.0, 0.4), [table()]) == pose(2.0, 3.0, 0.0)
 
 
 def test_of_many_things_off_the_ray_none_is_met():

@@ -8,7 +8,7 @@ from msgspec import structs
 
 from semmap.nodes.extern.web.scene.rooms import Rooms
 from semmap.schemas.polygons import EXTENT, box_around, read_wkt
-from tests.extern.web.scene.things import entity, pose
+from tests.extern.web.scene.sample_scenes import entity, pose
 
 L = "POLYGON ((2 1, 6 1, 6 3, 4 3, 4 5, 2 5, 2 1))"
 

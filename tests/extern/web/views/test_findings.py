@@ -1,6 +1,6 @@
 from msgspec import structs
 
-from semmap.nodes.extern.web.views.findings import findings, names_in, verdict
+from semmap.nodes.extern.web.views.findings import collect_findings, format_verdict, names_in
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import BodyState
 from semmap.schemas.explanations import Explanation, Step
@@ -15,8 +15,8 @@ CUP, TABLE = entity("cup1", "Cup"), entity("table1", "Table")
 
 
 def test_a_sound_map_has_nothing_to_look_at():
-    assert findings(SOUND, [CUP]) == ()
-    assert verdict(SOUND) == "the map is consistent (4,846 triples, 31 ms, semmap)"
+    assert collect_findings(SOUND, [CUP]) == ()
+    assert format_verdict(SOUND) == "the map is consistent (4,846 triples, 31 ms, semmap)"
 
 
 def test_a_contradiction_comes_first_with_its_steps():
@@ -28,11 +28,11 @@ def test_a_contradiction_comes_first_with_its_steps():
     bad = structs.replace(
         SOUND, consistent=False, text="inconsistent", explanation=explanation, withheld=("x",)
     )
-    first, second = findings(bad, [CUP])
-    assert (first.gravity, first.names) == ("contradiction", ("cup1",))
-    assert first.why[0] == "these cannot all be (cannot be)"
-    assert first.why[1].strip() == "cup1 is a Cup (asserted)"
-    assert second.gravity == "withheld"
+    first, second = collect_findings(bad, [CUP])
+    assert (first.kind, first.names) == ("contradiction", ("cup1",))
+    assert first.proof[0] == "these facts contradict one another (contradiction)"
+    assert first.proof[1].strip() == "cup1 is a Cup (asserted)"
+    assert second.kind == "suppressed"
 
 
 def test_what_is_withheld_and_denied_names_its_entities():
@@ -40,18 +40,21 @@ def test_what_is_withheld_and_denied_names_its_entities():
         relation="isOn", subject="cup1", object="table1", holds=False, text="cup1 is not on table1"
     )
     checked = structs.replace(SOUND, withheld=("table1 would be inside cup1.",), denied=(denied,))
-    assert [f.names for f in findings(checked, [CUP, TABLE])] == [("table1", "cup1"), ("cup1", "table1")]
+    assert [f.names for f in collect_findings(checked, [CUP, TABLE])] == [
+        ("table1", "cup1"),
+        ("cup1", "table1"),
+    ]
 
 
 def test_doubts_and_bodies_that_are_not_as_they_should_be():
     doubted = entity("cup2", "Cup", conflict="a bowl")
     unsure = structs.replace(CUP, provenance=structs.replace(SINCE, source="perception", confidence=0.3))
     ghost = structs.replace(TABLE, body=BodyState(status="ghost"))
-    texts = [f.text for f in findings(SOUND, [doubted, unsure, ghost])]
+    texts = [f.text for f in collect_findings(SOUND, [doubted, unsure, ghost])]
     assert texts == [
-        "cup1: perception is only 30% sure of it",
-        "cup2: perception sees a bowl",
-        "table1 is a ghost, because something else fills its place",
+        "cup1: low confidence (30%, source perception)",
+        "cup2: perception detects a bowl",
+        "table1 has a non-colliding body, because another body occupies its place",
     ]
 
 

@@ -1,4 +1,4 @@
-from semmap.nodes.extern.web.views.sparql_rows import Standing, rows_of, summary
+from semmap.nodes.extern.web.views.sparql_rows import StandingRows, format_summary, rows_of
 from semmap.ontology import vocabulary as v
 from semmap.schemas.sparql import RowsChanged, SparqlResult
 
@@ -36,8 +36,8 @@ def test_markup_stays_the_text_it_is():
 
 def test_the_summary_says_how_many_when_and_how_long():
     result = SparqlResult(kind="select", variables=("t",), rows=((CUP,),), seq=12)
-    assert summary(result, 0.0123) == "1 row, commit 12, 12 ms"
-    assert summary(SparqlResult(kind="ask", seq=2), 2.0) == "commit 2, 2.0 s"
+    assert format_summary(result, 0.0123) == "1 row, commit 12, 12 ms"
+    assert format_summary(SparqlResult(kind="ask", seq=2), 2.0) == "commit 2, 2.0 s"
 
 
 def states(standing):
@@ -45,18 +45,18 @@ def states(standing):
 
 
 def test_rows_that_come_and_go_are_marked_until_the_next_news():
-    standing = Standing([(CUP,)])
-    standing.take(RowsChanged(watch="q", seq=2, since=1, appeared=((TABLE,),), disappeared=((CUP,),)))
+    standing = StandingRows([(CUP,)])
+    standing.apply(RowsChanged(watch="q", seq=2, since=1, appeared=((TABLE,),), disappeared=((CUP,),)))
     assert states(standing) == {":table1": "came", ":cup1": "gone"}
     assert len(standing) == 1
-    standing.settle()
+    standing.clear_marks()
     assert states(standing) == {":table1": ""}
 
 
 def test_a_row_keeps_its_number_and_one_of_two_alike_may_go():
-    standing = Standing([(CUP,), (CUP,), (TABLE,)])
-    standing.take(RowsChanged(watch="q", seq=2, since=1, disappeared=((CUP,),)))
-    standing.settle()
+    standing = StandingRows([(CUP,), (CUP,), (TABLE,)])
+    standing.apply(RowsChanged(watch="q", seq=2, since=1, disappeared=((CUP,),)))
+    standing.clear_marks()
     assert [(row["id"], row["c0"]) for row in standing.table(())] == [(1, ":cup1"), (2, ":table1")]
-    standing.take(RowsChanged(watch="q", seq=3, since=2, appeared=((CUP,),)))
+    standing.apply(RowsChanged(watch="q", seq=3, since=2, appeared=((CUP,),)))
     assert [row["id"] for row in standing.table(())] == [1, 2, 3]

@@ -1,6 +1,6 @@
+from semmap.nodes.extern.web.views.entities.locations import Locations
 from semmap.nodes.extern.web.views.trees import class_tree, place_tree
-from semmap.nodes.extern.web.views.whereabouts import Whereabouts
-from tests.extern.web.views.worlds import by_name, class_, fact, place, thing
+from tests.extern.web.views.sample_maps import by_name, class_, fact, place, thing
 
 CLASSES = (
     class_("Thing"),
@@ -17,9 +17,9 @@ def labels(nodes):
 
 
 def known(*facts):
-    whereabouts = Whereabouts()
-    whereabouts.begin(facts)
-    return whereabouts
+    locations = Locations()
+    locations.reset(facts)
+    return locations
 
 
 def test_counts_are_by_inference_and_those_said_so_beside_them():
@@ -31,7 +31,7 @@ def test_counts_are_by_inference_and_those_said_so_beside_them():
         ],
     )
     assert labels(tree) == {
-        "Thing · 2": {"Dishware · 2": {"Cup · 2 (1 said so)": {"Mug (large cup) · 1": {}}}}
+        "Thing · 2": {"Dishware · 2": {"Cup · 2 (1 asserted)": {"Mug (large cup) · 1": {}}}}
     }
 
 

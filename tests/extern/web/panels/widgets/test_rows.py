@@ -1,0 +1,50 @@
+"""Rows stay while what they show stays."""
+
+from nicegui import ui
+
+from semmap.nodes.extern.web.panels.widgets.rows import Rows, keyed
+from tests.extern.web.panels.tabs import in_a_tab
+
+
+def written(container):
+    return [row.default_slot.children[0].text for row in container.default_slot.children]
+
+
+def test_a_row_whose_content_stays_is_not_drawn_anew_and_takes_its_place():
+    async def test(client):
+        box = ui.column()
+        rows = Rows(box, lambda content: ui.label(content) and None, tag="li")
+        rows.show([("a", "one"), ("b", "two"), ("c", "three")])
+        before = {row.id for row in box.default_slot.children}
+        rows.show([("c", "three"), ("new", "four"), ("a", "one")])
+        assert written(box) == ["three", "four", "one"]
+        after = [row.id for row in box.default_slot.children]
+        assert after[0] in before
+        assert after[2] in before
+        assert after[1] not in before
+        assert all(row.tag == "li" for row in box.default_slot.children)
+        rows.show([("c", "another")])
+        assert written(box) == ["another"]
+
+    in_a_tab(test)
+
+
+def test_a_row_that_can_show_another_content_stays():
+    async def test(client):
+        def draw(content):
+            label = ui.label(content)
+            return label.set_text
+
+        box = ui.column()
+        rows = Rows(box, draw)
+        rows.show([("a", "one")])
+        (before,) = box.default_slot.children
+        rows.show([("a", "uno")])
+        assert box.default_slot.children == [before]
+        assert written(box) == ["uno"]
+
+    in_a_tab(test)
+
+
+def test_contents_of_one_key_are_told_apart():
+    assert [key for key, _ in keyed("aba", str.upper)] == [("A", 0), ("B", 0), ("A", 1)]
