@@ -1,4 +1,4 @@
-"""The table with five thousand entities: it shows all, finds some, and follows without losing its place."""
+"""The table with 5000 entities: filters, updates and scrolling."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tests.page.conftest import serving
 
 _ROOMS, _CUPS = 20, 249
 _RELATED_MS = 120_000
-"""The first question about places takes long after a large load, on a machine that has much else to do."""
+"""Timeout for the first query of places after a large load, on a busy machine."""
 
 
 @pytest.fixture(scope="module")
 def crowded(chromium, tmp_path_factory):
-    """Twenty kitchens with a long table and 249 cups each, and the page of that map."""
+    """A map of 20 kitchens with a long table and 249 cups each, and its page."""
     folder = tmp_path_factory.mktemp("many")
     rows = []
     for r in range(_ROOMS):

@@ -1,4 +1,4 @@
-"""The past in a browser: the slider, one commit back and on, play, what is marked, and back to now."""
+"""The timeline in a browser: slider, steps, playback, differences, and the return to now."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.page.waiting import has_commit, settle
 
 @pytest.fixture
 def cup(system):
-    """A cup that was added, moved, and moved again; its name and its three commits."""
+    """The name of a cup that was added and moved twice, and the three commits."""
     name = fresh("cup")
     with system.client() as client:
         added = client.send(Add(class_="Cup", name=name, at=(2.0, 3.0, 0.0))).commit
@@ -41,9 +41,9 @@ def chips(tab):
     return tab.get_by_label("Differences").inner_text()
 
 
-def test_back_and_on_by_commit_and_home_again(tab, cup):
+def test_the_timeline_steps_and_returns_to_now(tab, cup):
     name, _, moved, again = cup
-    tab.get_by_role("tab", name="History").click()  # the scene costs a browser without graphics much
+    tab.get_by_role("tab", name="History").click()  # the scene is slow in a browser without a GPU
     has_commit(tab, again)
     go_to(tab, moved)
     until(lambda: caption(tab).startswith(f"Past: commit {moved} of "), "it shows the past")
@@ -58,7 +58,7 @@ def test_back_and_on_by_commit_and_home_again(tab, cup):
     assert chips(tab) == ""
 
 
-def test_home_right_after_the_slider_stays_now(tab, cup):
+def test_home_directly_after_the_slider_returns_to_now(tab, cup):
     _, _, moved, _ = cup
     tab.get_by_role("tab", name="History").click()
     go_to(tab, moved - 1)
@@ -69,7 +69,7 @@ def test_home_right_after_the_slider_stays_now(tab, cup):
     assert caption(tab).startswith("Now: commit ")
 
 
-def test_the_past_is_compared_with_now_and_cannot_be_changed(tab, cup, system):
+def test_the_past_is_compared_with_now_and_is_read_only(tab, cup, system):
     name, added, *_ = cup
     tab.get_by_role("tab", name="History").click()
     go_to(tab, added)
@@ -85,7 +85,7 @@ def test_the_past_is_compared_with_now_and_cannot_be_changed(tab, cup, system):
         assert client.status().commit == before
 
 
-def test_it_plays_to_the_end(tab, cup):
+def test_playback_runs_to_the_end(tab, cup):
     _, added, *_ = cup
     tab.get_by_role("tab", name="History").click()
     go_to(tab, added)
@@ -94,7 +94,7 @@ def test_it_plays_to_the_end(tab, cup):
     until(lambda: caption(tab).startswith("Now: commit "), "it has played to now")
 
 
-def test_a_moment_that_there_was_not_is_refused_in_a_sentence(tab, cup):
+def test_invalid_moments_are_rejected_with_a_message(tab, cup):
     for said, why in (
         ("1000000", "commit 1000000 does not exist yet"),
         ("soonish", "'soonish' is neither a commit"),
@@ -104,7 +104,7 @@ def test_a_moment_that_there_was_not_is_refused_in_a_sentence(tab, cup):
     assert caption(tab).startswith("Now: commit ")
 
 
-def test_the_history_of_what_is_selected_goes_to_its_commits(tab, cup):
+def test_the_history_of_selected_entities_opens_their_commits(tab, cup):
     name, added, moved, again = cup
     go_to(tab, added)
     until(lambda: name in chips(tab), "what it added is marked")
@@ -126,7 +126,7 @@ def test_the_history_of_what_is_selected_goes_to_its_commits(tab, cup):
     until(lambda: caption(tab).startswith(f"Past: commit {moved} of "), "the page goes there")
 
 
-def test_details_of_the_past_have_the_facts_of_then(tab, cup):
+def test_details_of_the_past_show_past_facts(tab, cup):
     name, added, _, again = cup
     has_commit(tab, again)
     tab.get_by_label("Filter entities by text").fill(name)

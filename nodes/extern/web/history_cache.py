@@ -234,8 +234,8 @@ def _without_details(row: LoggedCommit) -> LoggedCommit:
 
 
 def _apply(entities: dict[str, Entity], commit: Commit) -> None:
-    for gone in commit.removed:
-        entities.pop(gone.name, None)
+    for removed in commit.removed:
+        entities.pop(removed.name, None)
     for entity in commit.changed:
         entities[entity.name] = entity
 

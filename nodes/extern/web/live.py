@@ -203,8 +203,8 @@ class Live:
             yield self._reset(updates.map)
         if commits := tuple(commit for commit in updates.commits if commit.seq > self.commit):
             for commit in commits:
-                for gone in commit.removed:
-                    self._entities.pop(gone.name, None)
+                for removed in commit.removed:
+                    self._entities.pop(removed.name, None)
                 self._entities.update((entity.name, entity) for entity in commit.changed)
             self.commit = commits[-1].seq
             yield LiveEvent(kind="commit", commits=commits)

@@ -1,4 +1,4 @@
-"""The past of the map for all tabs: what is asked for, and that it is as the map was."""
+"""The history cache: its requests and its snapshots."""
 
 import asyncio
 
@@ -15,7 +15,7 @@ from tests.recorder.messages import START_NS, commit, entity, pose
 
 
 class Map:
-    """Stands for `Live`, with a map of so many commits; counts what is asked of it."""
+    """A stub of `Live` with a map of `last` commits; it records requests."""
 
     def __init__(self, last, first=1):
         self.first, self.identity, self.map_id = first, None, "a"
@@ -90,7 +90,7 @@ def run(coroutine):
     return asyncio.run(coroutine)
 
 
-def test_who_waits_until_it_has_caught_up_finds_what_has_just_come():
+def test_read_waits_for_the_newest_commit():
     async def grown():
         live = Map(20)
         cache = await whole(live)
@@ -102,7 +102,7 @@ def test_who_waits_until_it_has_caught_up_finds_what_has_just_come():
     assert run(grown()).seq == 21
 
 
-def test_each_moment_is_as_the_map_was_whatever_way_one_comes_there():
+def test_every_snapshot_equals_the_map_at_that_commit():
     live = Map(350)
 
     async def see():
@@ -116,7 +116,7 @@ def test_each_moment_is_as_the_map_was_whatever_way_one_comes_there():
     run(see())
 
 
-def test_to_step_forward_and_backward_nothing_more_is_asked_for():
+def test_single_steps_need_no_further_requests():
     live = Map(350)
 
     async def see():
@@ -130,7 +130,7 @@ def test_to_step_forward_and_backward_nothing_more_is_asked_for():
     assert run(see()) == (2, 2)
 
 
-def test_what_is_kept_is_bounded():
+def test_the_number_of_cached_maps_is_bounded():
     live = Map(40 * BLOCK)
 
     async def see():
@@ -142,7 +142,7 @@ def test_what_is_kept_is_bounded():
     assert run(see()) == (history_cache_module._KEPT, history_cache_module._KEPT)
 
 
-def test_what_was_compacted_is_asked_as_a_whole_or_refused():
+def test_compacted_commits_are_requested_as_whole_maps_or_rejected():
     live = Map(350, first=130)
 
     async def see():
@@ -158,7 +158,7 @@ def test_what_was_compacted_is_asked_as_a_whole_or_refused():
     run(see())
 
 
-def test_the_rows_have_no_gaps_and_grow_with_the_map(monkeypatch):
+def test_rows_have_no_gaps_and_grow_with_the_map(monkeypatch):
     monkeypatch.setattr(history_cache_module, "_ROWS", 60)
     live = Map(350)
 
@@ -180,7 +180,7 @@ def test_the_rows_have_no_gaps_and_grow_with_the_map(monkeypatch):
     run(see())
 
 
-def test_an_abridged_commit_is_not_needed():
+def test_abridged_commits_are_replaced_by_whole_maps():
     live = Map(150)
     live.commits[120] = structs.replace(live.commits[120], abridged=live.commits[120].extent, changed=())
 
@@ -192,7 +192,7 @@ def test_an_abridged_commit_is_not_needed():
     run(see())
 
 
-def test_a_moment_is_given_by_commit_or_time():
+def test_moments_can_be_commits_or_times():
     live = Map(50)
 
     async def see():
@@ -209,7 +209,7 @@ def test_a_moment_is_given_by_commit_or_time():
     run(see())
 
 
-def test_another_map_behind_the_address_begins_anew():
+def test_a_new_map_resets_the_cache():
     live = Map(50)
 
     async def see():
@@ -226,7 +226,7 @@ def test_another_map_behind_the_address_begins_anew():
     run(see())
 
 
-def test_there_is_one_for_all_tabs():
+def test_all_tabs_share_one_cache():
     live = Map(3)
 
     async def see():
@@ -235,7 +235,7 @@ def test_there_is_one_for_all_tabs():
     run(see())
 
 
-def test_of_a_long_history_the_newest_headlines_are_kept(monkeypatch):
+def test_the_newest_rows_of_a_long_history_are_kept(monkeypatch):
     monkeypatch.setattr(history_cache_module, "_MOST_ROWS", 20)
 
     async def scenario():

@@ -1,4 +1,4 @@
-"""What the page knows beyond the entities, with a system that is made up."""
+"""The knowledge cache, with a stub of the system."""
 
 import asyncio
 
@@ -17,7 +17,7 @@ CUP = thing("cup1")
 
 
 class Live:
-    """Answers when it is let."""
+    """A stub that replies when `may_answer` is set."""
 
     classes = ()
     scene = None
@@ -41,7 +41,7 @@ class Live:
             return ()
         if self.fails:
             self.fails -= 1
-            raise errors.NoAnswer("nobody")
+            raise errors.NoAnswer("no response")
         return self._answer
 
 
@@ -50,7 +50,7 @@ async def settled():
         await asyncio.sleep(0)
 
 
-def test_commits_that_come_while_it_is_read_are_taken_after_it():
+def test_commits_during_a_read_are_applied_after_it():
     async def scenario():
         live = Live(5, fact("cup1", "isOn", "table1"))
         known = KnowledgeCache(live)
@@ -65,7 +65,7 @@ def test_commits_that_come_while_it_is_read_are_taken_after_it():
     asyncio.run(scenario())
 
 
-def test_whoever_listens_is_told_which_entities_are_otherwise():
+def test_listeners_receive_the_names_of_changed_entities():
     async def scenario():
         live = Live(5)
         live.may_answer.set()
@@ -87,7 +87,7 @@ def test_whoever_listens_is_told_which_entities_are_otherwise():
 
 
 @pytest.mark.parametrize("fails", [1, 2])
-def test_what_could_not_be_read_is_read_again(monkeypatch, fails):
+def test_failed_reads_are_repeated(monkeypatch, fails):
     monkeypatch.setattr(knowledge_cache, "_AGAIN_S", 0.0)
 
     async def scenario():
@@ -102,7 +102,7 @@ def test_what_could_not_be_read_is_read_again(monkeypatch, fails):
     asyncio.run(scenario())
 
 
-def test_a_map_that_is_begun_anew_while_one_is_read_is_read_once_more():
+def test_a_reset_during_a_read_causes_another_read():
     async def scenario():
         live = Live(5)
         KnowledgeCache(live)
@@ -117,7 +117,7 @@ def test_a_map_that_is_begun_anew_while_one_is_read_is_read_once_more():
     asyncio.run(scenario())
 
 
-def test_of_a_body_that_comes_only_those_are_told_whose_body_is_otherwise():
+def test_a_scene_change_reports_changed_bodies_only():
     async def scenario():
         live = Live(5)
         live.may_answer.set()

@@ -18,5 +18,5 @@ from semmap.nodes.extern.web.notices import strip_cli_hints
         ("the cup is not there (it was removed)", "the cup is not there (it was removed)"),
     ],
 )  # fmt: skip
-def test_nothing_is_left_of_what_a_command_line_would_need(said, shown):
+def test_hints_to_the_command_line_are_removed(said, shown):
     assert strip_cli_hints(said) == shown

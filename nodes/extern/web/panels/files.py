@@ -79,7 +79,7 @@ class _LoadForm:
                 on_rejected=self._on_rejected,
             )
             self._upload.classes("w-full").props("flat bordered").mark("upload").on("failed", self._on_failed)
-            self._status = ui.column().classes("w-full gap-0").props('role="status"').mark("load-said")
+            self._status = ui.column().classes("w-full gap-0").props('role="status"').mark("load-status")
             self._error = ui.label().classes("text-negative whitespace-pre-wrap").props('role="alert"')
             self._error.mark("load-error")
             with ui.row().classes("gap-2"):

@@ -18,7 +18,7 @@ from semmap.schemas.sparql import RowsChanged
 MOST: Final = 8
 """Maximum number of standing queries per tab."""
 _MARKED_S: Final = 4.0
-_SIGNS: Final = {"came": "+", "gone": "-", "": ""}
+_SIGNS: Final = {"added": "+", "removed": "-", "": ""}
 
 
 def standing_queries(page: Page) -> None:

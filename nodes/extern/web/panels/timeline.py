@@ -60,7 +60,7 @@ class _Timeline:
                 self._now.props("dense unelevated color=warning text-color=black padding='2px 10px'")
                 self._now.tooltip("Return to the current map (Home)")
             with ui.row().classes("w-full items-center gap-3 semmap-time-row"):
-                self._caption = ui.label().props('role="status"').classes("ellipsis semmap-time-said")
+                self._caption = ui.label().props('role="status"').classes("ellipsis semmap-time-caption")
                 with ui.element("div").classes("semmap-time-choices"):
                     self._when = ui.input(placeholder="commit or time").classes("w-36")
                     self._when.props(f'{_SMALL} aria-label="Go to commit or time, such as 12:30"')

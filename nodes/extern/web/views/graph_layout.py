@@ -71,9 +71,9 @@ def _start(
     for i in sorted(fresh, key=lambda i: i not in centres):
         angle = 2.0 * math.pi * (zlib.crc32(graph.knots[i].id.encode()) / (1 << 32))
         anchor = near.get(i)
-        beside = points[anchor] if anchor in placed or anchor in centres else np.zeros(2)
+        near_to = points[anchor] if anchor in placed or anchor in centres else np.zeros(2)
         reach = _LENGTH if i not in centres else 0.5 * _LENGTH * (len(centres) > 1)
-        points[i] = beside + reach * np.array([math.cos(angle), _FLAT * math.sin(angle)])
+        points[i] = near_to + reach * np.array([math.cos(angle), _FLAT * math.sin(angle)])
     return points
 
 

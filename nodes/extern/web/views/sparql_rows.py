@@ -62,33 +62,33 @@ class StandingRows:
     def __init__(self, rows: Sequence[Row]) -> None:
         self._rows: list[tuple[int, Row]] = list(enumerate(rows))
         self._next = len(rows)
-        self._came: dict[int, int] = {}
-        self._gone: list[tuple[int, Row]] = []
+        self._added: dict[int, int] = {}
+        self._removed: list[tuple[int, Row]] = []
 
-    def apply(self, news: RowsChanged) -> None:
+    def apply(self, change: RowsChanged) -> None:
         """Apply a change, and clear the marks of earlier ones."""
-        self._came, self._gone = {}, []
-        for row in news.disappeared:
+        self._added, self._removed = {}, []
+        for row in change.disappeared:
             known = next((pair for pair in self._rows if pair[1] == row), None)
             if known is not None:
                 self._rows.remove(known)
-                self._gone.append(known)
-        for row in news.appeared:
+                self._removed.append(known)
+        for row in change.appeared:
             self._rows.append((self._next, row))
-            self._came[self._next] = news.seq
+            self._added[self._next] = change.seq
             self._next += 1
 
     def clear_marks(self) -> None:
         """Clear the marks, and drop the removed rows."""
-        self._came, self._gone = {}, []
+        self._added, self._removed = {}, []
 
     def table(self, entities: Collection[str]) -> list[dict[str, Any]]:
-        """Return the rows, including those just removed; `state` is "came", "gone" or empty."""
+        """Return the rows, including those just removed; `state` is "added", "removed" or empty."""
         return [
             {**row_of(number, row, entities), "state": state}
-            for state, pairs in (("", self._rows), ("gone", self._gone))
+            for state, pairs in (("", self._rows), ("removed", self._removed))
             for number, row in pairs
-            for state in ("came" if number in self._came else state,)
+            for state in ("added" if number in self._added else state,)
         ]
 
     def __len__(self) -> int:

@@ -7,7 +7,7 @@ from semmap.schemas.sparql import RowsChanged
 
 
 class Query:
-    """A standing query with these news, and then an error or none until it is closed."""
+    """A stub of a standing query with these changes, and then an error or none until it is closed."""
 
     def __init__(self, *news, error=None):
         self._news = news
@@ -33,18 +33,18 @@ def told_by(query, count):
     return asyncio.run(follow())
 
 
-def test_news_are_told_on_the_loop_in_order_and_it_ends():
+def test_changes_arrive_in_order_on_the_event_loop():
     news = [RowsChanged(watch="q", seq=seq, since=seq - 1) for seq in (2, 3)]
     query = Query(*news)
     assert told_by(query, 2) == news
     assert query.ended.wait(10.0)
 
 
-def test_the_sentence_with_which_it_ended_is_told():
+def test_the_error_that_ends_a_query_is_delivered():
     assert told_by(Query(error=errors.Refused("too many rows")), 1) == ["too many rows"]
 
 
-def test_once_it_is_closed_nothing_more_is_told():
+def test_a_closed_subscription_delivers_nothing():
     async def follow():
         told = []
         following = QuerySubscription(Query(), lambda: None, told.append)

@@ -54,7 +54,7 @@ def scene(*bodies: Body, run: str = "1") -> Scene:
 
 
 def surface(size_m=(1.0, 1.0, 1.0)) -> Surface:
-    """A box of this size, on its bottom centre, red."""
+    """Return a red box with the origin at its bottom centre."""
     points, triangles = cube()
     normals = np.zeros_like(points)
     colours = np.tile(np.array((255, 0, 0), np.uint8), (len(points), 1))

@@ -1,4 +1,4 @@
-"""What is told of a drag, and what is not."""
+"""The gizmo: its pose, and what it reports of a drag."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.extern.web.scene.sample_scenes import pose
 
 
 class Handle:
-    """Stands in for viser's: where it is, and who is told of what is done with it."""
+    """A stub of a handle of viser, with its pose and its listener."""
 
     def __init__(self, name):
         self.name = name
@@ -44,7 +44,7 @@ def made():
     return gizmo, handles, told, frame
 
 
-def test_it_is_where_the_thing_is_and_upright(made):
+def test_the_gizmo_is_upright_at_the_pose(made):
     gizmo, handles, _, _ = made
     gizmo.put(pose(1.0, 2.0, 0.5, 0.3), (0.5, 0.5, 1.0))
     assert [handle.position for handle in handles] == [(1.0, 2.0, 0.5)] * 2
@@ -56,7 +56,7 @@ def test_it_is_where_the_thing_is_and_upright(made):
     assert not gizmo.is_shown
 
 
-def test_handles_that_are_shown_again_are_new_ones_to_the_browser(made):
+def test_handles_have_unique_names(made):
     gizmo, handles, _, _ = made
     gizmo.put(pose(yaw_rad=math.pi), (0.5, 0.5, 1.0))
     gizmo.remove()
@@ -65,7 +65,7 @@ def test_handles_that_are_shown_again_are_new_ones_to_the_browser(made):
     assert len(set(names)) == len(names) == 4
 
 
-def test_a_drag_is_told_from_its_start_to_its_end_and_both_parts_go_along(made):
+def test_a_drag_is_reported_from_start_to_end_and_moves_both_handles(made):
     gizmo, _, told, _ = made
     gizmo.put(pose(), (0.5, 0.5, 1.0))
     level, lift = made[1]
@@ -76,7 +76,7 @@ def test_a_drag_is_told_from_its_start_to_its_end_and_both_parts_go_along(made):
     assert told == [("start", (0, 0, 0)), ("update", (1, 0, 0)), ("end", (1, 0, 0))]
 
 
-def test_what_stays_where_it_was_has_its_arrows_back(made):
+def test_the_gizmo_returns_to_an_entity_that_did_not_move(made):
     gizmo, _, _, _ = made
     gizmo.put(pose(), (0.5, 0.5, 1.0))
     level, _ = made[1]
@@ -85,17 +85,17 @@ def test_what_stays_where_it_was_has_its_arrows_back(made):
     assert level.position == (0.0, 0.0, 0.0)
 
 
-def test_a_tab_that_is_closed_in_mid_drag_has_let_go_of_nothing(made):
+def test_closing_a_tab_during_a_drag_does_not_report_an_end(made):
     gizmo, _, told, frame = made
     gizmo.put(pose(), (0.5, 0.5, 1.0))
     level, _ = made[1]
     level.drag("start")
     level.drag("update", (1.0, 0.0, 0.0))
     frame.is_open = False
-    level.drag("end")  # viser says so for whoever waits for an end
+    level.drag("end")  # viser reports an end when the frame is closed
     assert [phase for phase, _ in told] == ["start", "update"]
 
 
-def test_the_arrows_of_small_things_can_be_grasped_and_those_of_large_ones_are_not_huge():
+def test_the_length_of_arrows_is_bounded():
     assert arm_m((0.02, 0.02, 0.02)) >= 0.4
     assert arm_m((9.0, 1.0, 1.0)) <= 1.5

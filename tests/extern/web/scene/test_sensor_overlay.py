@@ -1,4 +1,4 @@
-"""Pictures of cameras, and where these stand."""
+"""Camera images and camera poses."""
 
 import math
 
@@ -27,7 +27,7 @@ def frame(width=640, height=480, rotation=None):
     )
 
 
-def test_a_picture_is_made_small():
+def test_images_are_scaled_down():
     pixels = np.zeros((480, 640, 3), np.uint8)
     pixels[::2, ::2] = (10, 20, 30)
     picture = image_of(frame(), pixels.tobytes())
@@ -35,12 +35,12 @@ def test_a_picture_is_made_small():
     assert (picture == (10, 20, 30)).all()
 
 
-def test_pixels_that_are_not_the_frame_s_are_refused():
+def test_a_wrong_number_of_pixels_is_rejected():
     with pytest.raises(ValueError, match="reshape"):
         image_of(frame(), b"too few")
 
 
-def test_a_camera_stands_where_its_frame_says():
+def test_the_camera_pose_is_that_of_the_frame():
     position, wxyz, fov_rad = camera_pose_of(frame())
     assert position == (1.0, 2.0, 3.0)
     assert wxyz == pytest.approx((1.0, 0.0, 0.0, 0.0))
@@ -50,7 +50,7 @@ def test_a_camera_stands_where_its_frame_says():
 @pytest.mark.parametrize(
     "wxyz", [(1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1), (0.5, 0.5, -0.5, 0.5), (0.8, 0, 0.6, 0)]
 )
-def test_a_quaternion_is_that_of_its_rotation(wxyz):
+def test_quaternions_match_their_rotation_matrix(wxyz):
     rotation = rotation_of(Pose(position_m=(0, 0, 0), orientation_wxyz=wxyz))
     found = np.array(wxyz_of(rotation))
     assert min(np.abs(found - wxyz).max(), np.abs(found + wxyz).max()) < 1e-9

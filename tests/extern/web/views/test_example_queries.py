@@ -17,7 +17,7 @@ def class_info(name):
     )  # fmt: skip
 
 
-def test_examples_speak_of_what_is_in_the_map():
+def test_examples_use_entities_of_the_map():
     entities = {
         "cup1": entity("cup1", "Cup"),
         "kitchen1": entity("kitchen1", "Kitchen", place=True, preferred_reference="kitchen"),
@@ -28,7 +28,7 @@ def test_examples_speak_of_what_is_in_the_map():
     assert "Facts about cup1" in titles
 
 
-def test_every_example_is_a_query():
+def test_every_example_is_a_valid_query():
     entities = {
         "cup1": entity("cup1", "Cup"),
         "kitchen1": entity("kitchen1", "Kitchen", place=True, preferred_reference='"}<script>'),
@@ -37,5 +37,5 @@ def test_every_example_is_a_query():
         ox.Store().query(PREFIXES + example.query)
 
 
-def test_an_empty_map_has_an_example():
+def test_an_empty_map_has_one_example():
     assert len(example_queries({}, {})) == 1

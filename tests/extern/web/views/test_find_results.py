@@ -6,19 +6,19 @@ def candidate(name, *why):
     return Candidate(entity=name, class_="Cup", called="cup", reasons=why)
 
 
-def test_what_is_meant_is_selected():
+def test_matches_are_selected():
     found = Found(outcome="several", candidates=(candidate("cup1"), candidate("cup2")), text="two cups")
     shown = summarize(found)
     assert (shown.tone, shown.select, shown.text) == ("found", ("cup1", "cup2"), "two cups")
 
 
-def test_a_question_selects_nothing_and_offers_the_candidates():
+def test_an_ambiguous_description_selects_nothing_and_lists_candidates():
     both = (candidate("sink1"), candidate("sink2"))
     shown = summarize(Found(outcome="ambiguous", candidates=both, question="Which one?"))
     assert (shown.tone, shown.select, shown.text, shown.choices) == ("question", (), "Which one?", both)
 
 
-def test_nothing_offers_what_fits_least_badly_and_what_is_gone():
+def test_without_a_match_the_closest_ones_are_listed():
     near = (candidate("apple1", "an apple", "not: in the fridge"),)
     found = Found(
         outcome="none",
@@ -32,7 +32,7 @@ def test_nothing_offers_what_fits_least_badly_and_what_is_gone():
     assert shown.notes == ("“aple” is read as “apple”", "apple2 was there")
 
 
-def test_there_is_always_something_to_say():
+def test_there_is_always_a_text():
     assert summarize(Found(outcome="one", candidates=(candidate("cup1"),))).text == "cup1"
     assert summarize(Found(outcome="ambiguous")).text == "Which one?"
     many = summarize(Found(outcome="several", candidates=(candidate("a"), candidate("b")), others=3))
@@ -40,6 +40,6 @@ def test_there_is_always_something_to_say():
     assert many.notes == ("… and 3 more",)
 
 
-def test_reasons_are_told_or_else_what_it_is_called():
+def test_reasons_default_to_the_label():
     assert format_reasons(candidate("a", "red", "on table1")) == "red, on table1"
     assert format_reasons(candidate("a")) == "cup"

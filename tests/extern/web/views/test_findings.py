@@ -14,12 +14,12 @@ SOUND = Checked(
 CUP, TABLE = entity("cup1", "Cup"), entity("table1", "Table")
 
 
-def test_a_sound_map_has_nothing_to_look_at():
+def test_a_consistent_map_has_no_findings():
     assert collect_findings(SOUND, [CUP]) == ()
     assert format_verdict(SOUND) == "the map is consistent (4,846 triples, 31 ms, semmap)"
 
 
-def test_a_contradiction_comes_first_with_its_steps():
+def test_contradictions_are_first_with_their_proof():
     fact = (v.entity_iri("cup1"), v.RDF_TYPE, v.dm("Cup"))
     explanation = Explanation(
         conclusion=None, support=(fact,), steps=(Step(rule="cax-dw", premises=(fact,), conclusion=None),),
@@ -35,7 +35,7 @@ def test_a_contradiction_comes_first_with_its_steps():
     assert second.kind == "suppressed"
 
 
-def test_what_is_withheld_and_denied_names_its_entities():
+def test_suppressed_and_denied_facts_name_their_entities():
     denied = Relation(
         relation="isOn", subject="cup1", object="table1", holds=False, text="cup1 is not on table1"
     )
@@ -46,7 +46,7 @@ def test_what_is_withheld_and_denied_names_its_entities():
     ]
 
 
-def test_doubts_and_bodies_that_are_not_as_they_should_be():
+def test_doubts_and_body_problems_are_listed():
     doubted = entity("cup2", "Cup", conflict="a bowl")
     unsure = structs.replace(CUP, provenance=structs.replace(SINCE, source="perception", confidence=0.3))
     ghost = structs.replace(TABLE, body=BodyState(status="ghost"))
@@ -58,7 +58,7 @@ def test_doubts_and_bodies_that_are_not_as_they_should_be():
     ]
 
 
-def test_names_are_found_as_whole_words():
+def test_names_match_whole_words_only():
     known = {"cup1", "cup10", "café.2"}
     assert names_in("cup10 is on café.2. cup1!", known) == ("cup10", "café.2", "cup1")
     assert names_in("cup100 and cup", known) == ()

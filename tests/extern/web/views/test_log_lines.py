@@ -17,7 +17,7 @@ def beat(error, stamp=0):
     return Health(node="sim_node", pid=1, started_ns=0, stamp_ns=stamp, state="ready", last_error=error)
 
 
-def test_commits_are_told_once_the_newest_first():
+def test_commits_are_listed_once_the_newest_first():
     log = Log()
     log.add_commits([logged(1), logged(3)])
     log.add_commits([logged(3), logged(2)])
@@ -25,7 +25,7 @@ def test_commits_are_told_once_the_newest_first():
     assert log.last == 3
 
 
-def test_a_line_says_why_and_what():
+def test_a_line_has_the_reason_and_the_changes():
     commit = logged(4, reason="tidied up", notes=("carried plate1 along",), changed=("cup1", "plate1"))
     line = line_of(commit)
     assert line.by == "operator/ann"
@@ -34,7 +34,7 @@ def test_a_line_says_why_and_what():
     assert line_of(logged(5)).text == "update: 1 entity"
 
 
-def test_warnings_are_told_once_for_as_long_as_they_last():
+def test_a_lasting_error_is_listed_once():
     log = Log()
     for stamp, error in enumerate(("no room", "no room", "", "no room")):
         log.add_health(beat(error, stamp))
@@ -42,7 +42,7 @@ def test_warnings_are_told_once_for_as_long_as_they_last():
     assert all(line.kind == WARNING for line in log.lines)
 
 
-def test_the_filter_takes_words_and_kinds():
+def test_lines_can_be_filtered_by_words_and_kinds():
     log = Log()
     log.add_commits([logged(1), logged(2, source="perception", agent="")])
     log.add_health(beat("no room", 5_000_000_000))
@@ -55,7 +55,7 @@ def test_the_filter_takes_words_and_kinds():
     assert len({row["id"] for row in rows_of(log.lines)}) == 3
 
 
-def test_old_lines_go(monkeypatch):
+def test_old_lines_are_removed(monkeypatch):
     monkeypatch.setattr(log_lines, "MOST", 3)
     log = Log()
     log.add_commits(logged(seq) for seq in range(1, 10))
@@ -64,7 +64,7 @@ def test_old_lines_go(monkeypatch):
     assert (log.lines, log.last) == ([], 0)
 
 
-def test_changes_are_in_words():
+def test_changes_are_shown_in_words():
     change = Change(name="cup1", kind="reference", was="cup", now="<b>mug</b>")
     text = line_of(logged(2, changes=(change,))).text
     assert text == f"update: cup1: {change.text}"

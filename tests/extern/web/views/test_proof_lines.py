@@ -37,7 +37,7 @@ def shown(explanation):
     return [(line.depth, line.text, line.basis) for line in proof_lines(explanation, WORDS)]
 
 
-def test_each_conclusion_has_what_it_rests_on_below_it(reasoner):
+def test_premises_are_below_their_conclusion(reasoner):
     told = shown(proofs.message(reasoner.explain(is_a("beer1", "Food"))))
     assert told[0] == (0, "beer1 is a Food", "inferred")
     assert (1, "beer1 is a Drink", "inferred") in told
@@ -46,12 +46,12 @@ def test_each_conclusion_has_what_it_rests_on_below_it(reasoner):
     assert told.index((1, "beer1 is a Drink", "inferred")) < told.index((1, "every Drink is a Food", "axiom"))
 
 
-def test_what_was_asserted_is_all_there_is(reasoner):
+def test_asserted_facts_have_one_line(reasoner):
     told = shown(proofs.message(reasoner.explain(is_a("beer1", "Beer"))))
     assert told == [(0, "beer1 is a beer", "asserted")]
 
 
-def test_a_contradiction_has_both_sides(reasoner):
+def test_contradictions_show_both_facts(reasoner):
     with pytest.raises(Inconsistent) as refused:
         reasoner.apply(insert=[is_a("beer1", "Chair")])
     told = shown(proofs.message(refused.value.explanation))
@@ -60,7 +60,7 @@ def test_a_contradiction_has_both_sides(reasoner):
     assert (1, "beer1 is a Drink", "inferred") in told
 
 
-def test_what_is_measured_is_told_so():
+def test_computed_facts_are_marked_as_such():
     on = fact("milk1", "isOn", "counter1")
     text = "milk1 is on counter1: its bottom is level with a surface of counter1"
     explanation = Explanation(conclusion=on, support=(on,), steps=(), text=text)
@@ -69,7 +69,7 @@ def test_what_is_measured_is_told_so():
     assert shown(asserted) == [(0, "milk1 is on counter1", "asserted")]
 
 
-def test_a_proof_without_steps_shows_its_reasons():
+def test_proofs_without_steps_show_their_support():
     support = ((v.dm("Beer"), SUB, v.dm("Drink")), is_a("beer1", "Beer"))
     explanation = Explanation(conclusion=is_a("beer1", "Food"), support=support, steps=(), text="x")
     assert shown(explanation) == [

@@ -18,7 +18,7 @@ def is_a(name, class_name):
     return (v.entity_iri(name), v.RDF_TYPE, v.dm(class_name))
 
 
-def test_a_taken_name_is_mended_by_the_next_free_one():
+def test_a_free_name_is_suggested_for_a_taken_one():
     (fix,) = suggest_fixes(
         Add(class_="Chair", name="seat1"), errors.NameTaken("taken"), by_name(thing("seat1"))
     )
@@ -26,12 +26,12 @@ def test_a_taken_name_is_mended_by_the_next_free_one():
     assert fix.text == "Use the name seat2"
 
 
-def test_an_unknown_class_is_mended_by_the_nearest():
+def test_the_nearest_class_is_suggested_for_an_unknown_one():
     found = suggest_fixes(Add(class_="Chiar"), errors.UnknownClass("unknown"), {}, CLASSES)
     assert [fix.commands for fix in found] == [(Add(class_="Chair"),)]
 
 
-def test_what_was_said_before_can_be_taken_back():
+def test_unsetting_asserted_premises_is_suggested():
     entities = by_name(thing("cup1", properties={"isOn": ("table1",), "mass": 2.0, "isOpen": True}))
     refused = inconsistent(
         fact("cup1", "isOn", "table1"),
@@ -50,13 +50,13 @@ def test_what_was_said_before_can_be_taken_back():
     assert found[0].text == "Unset cup1 isOn table1 and retry"
 
 
-def test_what_the_command_itself_says_is_not_offered():
+def test_facts_of_the_command_itself_are_not_suggested():
     command = Set(name="cup1", property="isInside", values=("cup1",))
     refused = inconsistent(fact("cup1", "isInside", "cup1"))
     assert suggest_fixes(command, refused, by_name(thing("cup1"))) == ()
 
 
-def test_another_thing_that_is_in_the_way_may_be_removed_but_no_place():
+def test_removing_another_entity_is_suggested_but_not_a_place():
     entities = by_name(thing("cup1"), thing("table1", "Table"), place("kitchen1"))
     command = Set(name="cup1", property="isOn", values=("x",))
     refused = inconsistent(is_a("cup1", "Cup"), is_a("table1", "Table"), is_a("kitchen1", "Kitchen"))
@@ -65,17 +65,17 @@ def test_another_thing_that_is_in_the_way_may_be_removed_but_no_place():
         assert fix.commands == (Remove(names=("table1",)), refusing)
 
 
-def test_what_takes_force_may_be_done_nevertheless():
+def test_force_is_suggested_where_it_helps():
     command = Update(name="milk1", class_="Kitchen")
     error = errors.Refused("milk1 is an object; if that is intended, add --force")
     (fix,) = suggest_fixes(command, error, {})
     assert fix.commands == (Update(name="milk1", class_="Kitchen", force=True),)
 
 
-def test_who_comes_when_it_is_busy_may_come_again():
+def test_a_retry_is_suggested_if_the_system_is_busy():
     (fix,) = suggest_fixes(Remove(names=("a",)), errors.Busy("busy"), {})
     assert fix.commands == (Remove(names=("a",)),)
 
 
-def test_some_refusals_have_no_remedy():
+def test_some_rejections_have_no_fixes():
     assert suggest_fixes(Remove(names=("a",)), errors.UnknownName("no a"), {}) == ()

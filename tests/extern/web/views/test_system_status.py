@@ -16,7 +16,7 @@ NOW_NS = 1_000_000_000_000
 BEAT = Health(node="kb_node", host="lab", pid=7, started_ns=0, stamp_ns=NOW_NS - 500_000_000, state="ready")
 
 
-def test_rates_are_differences():
+def test_rates_are_differences_of_totals():
     rates = RateHistory()
     rates.add_sample(100.0, commit=10, poses=1000, loads={7: Load(5.0, 1 << 20)})
     assert not rates.is_due(101.0)
@@ -29,7 +29,7 @@ def test_rates_are_differences():
     assert sample.cpu_percent == pytest.approx(25.0)
 
 
-def test_another_map_or_process_is_no_negative_rate():
+def test_a_new_map_or_process_has_no_negative_rate():
     rates = RateHistory()
     rates.add_sample(0.0, commit=10, poses=5, loads={7: Load(50.0, 1)})
     rates.add_sample(2.0, commit=1, poses=0, loads={7: Load(1.0, 1)})
@@ -37,7 +37,7 @@ def test_another_map_or_process_is_no_negative_rate():
     assert rates.samples[-1].cpu_percent == 0.0
 
 
-def test_ten_minutes_are_kept():
+def test_samples_of_ten_minutes_are_kept():
     rates = RateHistory()
     for second in range(0, 2000, 2):
         rates.add_sample(float(second), second, second, {})
@@ -45,7 +45,7 @@ def test_ten_minutes_are_kept():
     assert len(rates.samples) <= KEPT_S / 2 + 1
 
 
-def test_what_is_degraded_is_said_the_gravest_first():
+def test_problems_are_listed_by_severity():
     late = structs.replace(BEAT, node="sim_node", stamp_ns=NOW_NS - 20_000_000_000, last_error="no room")
     starting = structs.replace(BEAT, node="recorder", state="starting", detail="waiting")
     health = {beat.node: beat for beat in (BEAT, late, starting)}
@@ -58,7 +58,7 @@ def test_what_is_degraded_is_said_the_gravest_first():
     assert list_problems({"kb_node": BEAT}, "", NOW_NS) == ()
 
 
-def test_rows_of_nodes():
+def test_nodes_are_listed_with_state_and_memory():
     (row,) = node_rows([BEAT], {7: Load(1.0, 300 << 20)}, NOW_NS)
     assert (row["state"], row["memory"], row["beat"], row["host"]) == ("ready", "300 MB", "0.5 s ago", "lab")
     (silent,) = node_rows([structs.replace(BEAT, stamp_ns=0)], {}, NOW_NS)
@@ -66,12 +66,12 @@ def test_rows_of_nodes():
 
 
 @pytest.mark.parametrize("client", ["web", "ros"])
-def test_a_client_that_has_ended_is_no_fault(client):
+def test_an_ended_client_is_not_a_problem(client):
     ended = structs.replace(BEAT, node=client, stamp_ns=NOW_NS - 20_000_000_000)
     assert list_problems({client: ended}, "", NOW_NS) == ()
     assert node_rows([ended], {}, NOW_NS) == []
 
 
-def test_the_headline_says_whether_map_and_scene_agree():
+def test_the_headline_states_whether_map_and_scene_agree():
     status = SystemStatus(truth="map", commit=3, entities=78, bodies=1, in_agreement=True, nodes=())
     assert format_headline(status) == "78 entities, 1 body, commit 3; map and scene agree"

@@ -14,7 +14,7 @@ from semmap.nodes.extern.web.views.uploads import LARGEST, check_upload, megabyt
         gzip.compress(b"@prefix", mtime=0),
     ],
 )
-def test_what_may_be_a_map_is_let_through(beginning):
+def test_possible_maps_are_accepted(beginning):
     assert check_upload("flat.ttl", 50 << 20, beginning) == ""
 
 
@@ -28,13 +28,13 @@ def test_what_may_be_a_map_is_let_through(beginning):
         (b"abc\0def", "unsupported binary format"),
     ],
 )
-def test_what_cannot_be_one_is_refused_with_what_it_is(beginning, says):
+def test_other_formats_are_rejected_by_their_magic_bytes(beginning, says):
     sentence = check_upload("thing.bin", 1000, beginning)
     assert says in sentence
     assert sentence.startswith("thing.bin: ")
 
 
-def test_sizes():
+def test_sizes_are_checked_and_formatted():
     assert check_upload("empty.ttl", 0, b"") == "empty.ttl: the file is empty"
     assert "larger than 200 MB" in check_upload("big.ttl", LARGEST + 1, b"")
     assert megabytes(50 << 20) == "50 MB"
@@ -42,6 +42,6 @@ def test_sizes():
     assert megabytes(2048) == "2 KB"
 
 
-def test_spatial_roots_are_written_with_commas_or_spaces():
+def test_spatial_roots_are_separated_by_commas_or_spaces():
     assert spatial_roots("Thing, http://x.org/a#Place  Thing") == ("Thing", "http://x.org/a#Place")
     assert spatial_roots(None) == ()

@@ -9,7 +9,7 @@ from msgspec import Struct
 
 from semmap.nodes.extern.phrasing import pose_cells
 from semmap.nodes.extern.web.views.entities.locations import Locations
-from semmap.schemas.entities import Entity, Pose
+from semmap.schemas.entities import Entity
 from semmap.schemas.scenes import Body
 
 Cells = dict[str, str | float | None]
@@ -63,25 +63,23 @@ class Table:
         locations: Locations,
         *,
         bodies: Mapping[str, Body] | None = None,
-        poses: Mapping[str, Pose] | None = None,
     ) -> None:
-        """`bodies` are those of the scene, or None without a simulator. `poses` are their current poses."""
+        """`bodies` are those of the scene, or None without a simulator."""
         self._entities = entities
-        self._whereabouts = locations
+        self._locations = locations
         self._bodies = bodies
-        self._poses = poses or {}
         self._places = {name: entity for name, entity in entities.items() if entity.place}
 
-    def rows(self, wanted: EntityFilter, among: Collection[str] | None = None) -> dict[str, Cells]:
+    def rows(self, condition: EntityFilter, among: Collection[str] | None = None) -> dict[str, Cells]:
         """Return the rows that match the filter, of all entities or of those `among` these names."""
-        words = wanted.text.casefold().split()
+        words = condition.text.casefold().split()
         entities = self._entities
         if among is not None:
             entities = {name: entities[name] for name in among if name in entities}
         return {
             name: self.row(entity)
             for name, entity in entities.items()
-            if self._is_wanted(entity, wanted, words)
+            if self._matches(entity, condition, words)
         }
 
     def row(self, entity: Entity) -> Cells:
@@ -91,8 +89,8 @@ class Table:
             "name": entity.name,
             "label": (entity.preferred_reference or "")[:LONGEST],
             "class": entity.class_,
-            "room": self._whereabouts.find_room(entity, self._places),
-            "on": self._whereabouts.find_support(entity),
+            "room": self._locations.find_room(entity, self._places),
+            "on": self._locations.find_support(entity),
             "x": None if entity.pose is None else float(x),
             "y": None if entity.pose is None else float(y),
             "z": None if entity.pose is None else float(z),
@@ -100,14 +98,14 @@ class Table:
             "body": self._body(entity),
         }
 
-    def _is_wanted(self, entity: Entity, wanted: EntityFilter, words: Collection[str]) -> bool:
-        if wanted.things is not None and entity.name not in wanted.things:
+    def _matches(self, entity: Entity, condition: EntityFilter, words: Collection[str]) -> bool:
+        if condition.things is not None and entity.name not in condition.things:
             return False
-        if wanted.class_ and wanted.class_ not in entity.types and wanted.class_ != entity.class_:
+        if condition.class_ and condition.class_ not in entity.types and condition.class_ != entity.class_:
             return False
-        if wanted.room and wanted.room not in self._whereabouts.find_places(entity, self._places):
+        if condition.room and condition.room not in self._locations.find_places(entity, self._places):
             return False
-        if wanted.support and wanted.support != self._whereabouts.find_support(entity):
+        if condition.support and condition.support != self._locations.find_support(entity):
             return False
         if not words:
             return True

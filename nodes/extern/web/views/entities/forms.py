@@ -125,9 +125,9 @@ def build_state_changes(state_: State, entered: StateInput, now: Mapping[str, St
 
     `now` has the current value of each entity, by name.
     """
-    changes = (build_state_change(name, state_._replace(now=value), entered) for name, value in now.items())
-    wanted = tuple(change for change in changes if change is not None)
-    return Batch(changes=wanted) if wanted else None
+    found = (build_state_change(name, state_._replace(now=value), entered) for name, value in now.items())
+    changes = tuple(change for change in found if change is not None)
+    return Batch(changes=changes) if changes else None
 
 
 def build_state_change(name: str, state: State, text: StateInput) -> Set | Unset | Update | None:
@@ -164,12 +164,12 @@ def match_class(typed: str, choices: Mapping[str, str]) -> str:
 
     Without a match `typed` is returned.
     """
-    wanted = typed.strip().casefold()
+    search = typed.strip().casefold()
     labels = {name: label.casefold() for name, label in choices.items()}
     tests: tuple[Callable[[str, str], bool], ...] = (
-        lambda name, _: name.casefold() == wanted,
-        lambda _, label: wanted in re.split(" · |, ", label),
-        lambda _, label: wanted in label,
+        lambda name, _: name.casefold() == search,
+        lambda _, label: search in re.split(" · |, ", label),
+        lambda _, label: search in label,
     )
     for fits in tests:
         if found := next((name for name, label in labels.items() if fits(name, label)), ""):

@@ -1,4 +1,4 @@
-"""The details of what is selected, while it changes."""
+"""The details of a selected entity that changes."""
 
 import asyncio
 from types import SimpleNamespace
@@ -18,7 +18,7 @@ from tests.extern.web.views.sample_maps import thing
 
 
 class MapView:
-    """Stands for what a tab's panels share; `touch` tells that something has changed."""
+    """A stub of the state that panels share; `touch` reports changed entities."""
 
     knowledge = SimpleNamespace(properties={}, words=None)
 
@@ -27,7 +27,7 @@ class MapView:
 
 
 class Asking:
-    """Answers about a thing as slowly as is wanted."""
+    """Requests whose replies a test controls."""
 
     def __init__(self):
         self.begun = []
@@ -64,7 +64,7 @@ def slow(monkeypatch):
 
 @pytest.fixture
 def tick(monkeypatch):
-    """A function that lets a moment pass: without a browser no timer goes off."""
+    """A function that runs the shortest timer: without a browser no timer fires."""
     timers = {}
     monkeypatch.setattr(ui, "timer", lambda period_s, function: timers.update({period_s: function}))
     return lambda: timers[min(timers)]()
@@ -90,7 +90,7 @@ def texts():
     return [label.text for label in ElementFilter(kind=ui.label) if label.visible]
 
 
-def test_answers_that_are_slower_than_changes_are_shown_and_asked_for_again(page, view, slow, tick):
+def test_slow_replies_are_shown_and_requested_again(page, view, slow, tick):
     async def test(client):
         detail(page)
         await slow.asked(1)

@@ -1,4 +1,4 @@
-"""The facts of one thing: what was opened stays open while they change."""
+"""The list of facts: opened parts stay open when facts change."""
 
 from types import SimpleNamespace
 
@@ -8,7 +8,7 @@ from semmap.nodes.extern.web.map_state import NOW
 from semmap.nodes.extern.web.panels.details.fact_list import FactList
 from semmap.nodes.extern.web.views.entities.facts import ExplainArgs, Fact, Facts
 from semmap.schemas import errors
-from tests.extern.web.panels.tabs import in_a_tab, tell
+from tests.extern.web.panels.tabs import in_a_tab, send_event
 
 
 def fact(text, measured="", other=""):
@@ -34,24 +34,24 @@ def texts():
     return [label.text for label in ElementFilter(kind=ui.label) if label.visible]
 
 
-def test_reasons_that_are_open_stay_open_and_no_button_is_drawn_anew_when_facts_come_and_go():
+def test_open_explanations_stay_open_when_facts_change():
     async def test(client):
         shown = FactList(tab_of("table1"))
         shown.show(Facts((fact("is milk"),), (fact("is food"), fact("is old")), ()))
         why = button("Why: is food")
-        await tell(why, "click")
+        await send_event(why, "click")
         assert "reasons of is food" in texts()
         shown.show(Facts((fact("is milk"),), (fact("is drink"), fact("is food")), (fact("is on table1"),)))
         assert button("Why: is food") is why
         assert "reasons of is food" in texts()
         assert "is old" not in texts()
-        await tell(why, "click")
+        await send_event(why, "click")
         assert "reasons of is food" not in texts()
 
     in_a_tab(test)
 
 
-def test_a_fact_shows_what_was_measured_last_without_being_drawn_anew():
+def test_measurements_are_updated_without_redrawing():
     async def test(client):
         page = tab_of()
         shown = FactList(page)
@@ -68,7 +68,7 @@ def test_a_fact_shows_what_was_measured_last_without_being_drawn_anew():
     in_a_tab(test)
 
 
-def test_a_long_group_is_closed_at_first_and_shows_some_until_all_are_wanted():
+def test_long_groups_are_closed_at_first_and_show_more_on_request():
     async def test(client):
         shown = FactList(tab_of())
         many = tuple(fact(f"is {i:02}") for i in range(50))
@@ -78,7 +78,7 @@ def test_a_long_group_is_closed_at_first_and_shows_some_until_all_are_wanted():
         assert "is 39" in texts()
         assert "is 40" not in texts()
         (more,) = [one for one in ElementFilter(kind=ui.button) if one.text == "Show 10 more"]
-        await tell(more, "click")
+        await send_event(more, "click")
         assert "is 49" in texts()
         assert not more.visible
 

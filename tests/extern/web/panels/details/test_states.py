@@ -1,4 +1,4 @@
-"""The states of one thing: what is being entered stays while others are set from elsewhere."""
+"""The fields for states: values being entered stay when others change."""
 
 from types import SimpleNamespace
 
@@ -9,7 +9,7 @@ from semmap.nodes.extern.web.map_state import NOW
 from semmap.nodes.extern.web.panels.details import states as states_module
 from semmap.nodes.extern.web.panels.details.states import States
 from semmap.schemas.entities import PropertyInfo
-from tests.extern.web.panels.tabs import in_a_tab, tell
+from tests.extern.web.panels.tabs import in_a_tab, send_event
 from tests.extern.web.views.sample_maps import thing
 
 
@@ -56,26 +56,26 @@ def field(kind):
     return found
 
 
-def test_a_number_that_is_being_entered_stays_and_is_sent_while_another_state_changes(page):
+def test_a_number_being_entered_stays_when_another_state_changes(page):
     async def test(client):
         shown = States(page, now(page))
         mass, broken = field(ui.number), field(ui.toggle)
-        await tell(mass, "update:modelValue", 0.25)
+        await send_event(mass, "update:modelValue", 0.25)
         shown.show(now(page, isBroken=True, mass=0.1))
         assert (field(ui.number), field(ui.toggle)) == (mass, broken)
         assert (mass.value, broken.value) == (0.25, "True")
-        await tell(mass, "blur")
+        await send_event(mass, "blur")
         assert [(c.property, c.values) for c in page.changes] == [("mass", (0.25,))]
 
     in_a_tab(test)
 
 
-def test_what_is_set_elsewhere_is_shown_and_not_sent_back(page):
+def test_values_set_by_others_are_shown_and_not_sent(page):
     async def test(client):
         shown = States(page, now(page, mass=0.1))
         shown.show(now(page, mass=0.2, isBroken=False))
         assert (field(ui.number).value, field(ui.toggle).value) == (0.2, "False")
-        await tell(field(ui.number), "blur")
+        await send_event(field(ui.number), "blur")
         assert page.changes == []
 
     in_a_tab(test)

@@ -1,4 +1,4 @@
-"""Rows stay while what they show stays."""
+"""Rows with unchanged contents are not redrawn."""
 
 from nicegui import ui
 
@@ -10,7 +10,7 @@ def written(container):
     return [row.default_slot.children[0].text for row in container.default_slot.children]
 
 
-def test_a_row_whose_content_stays_is_not_drawn_anew_and_takes_its_place():
+def test_unchanged_rows_are_moved_and_not_redrawn():
     async def test(client):
         box = ui.column()
         rows = Rows(box, lambda content: ui.label(content) and None, tag="li")
@@ -29,7 +29,7 @@ def test_a_row_whose_content_stays_is_not_drawn_anew_and_takes_its_place():
     in_a_tab(test)
 
 
-def test_a_row_that_can_show_another_content_stays():
+def test_rows_with_an_update_function_stay():
     async def test(client):
         def draw(content):
             label = ui.label(content)
@@ -46,5 +46,5 @@ def test_a_row_that_can_show_another_content_stays():
     in_a_tab(test)
 
 
-def test_contents_of_one_key_are_told_apart():
+def test_contents_with_the_same_key_are_numbered():
     assert [key for key, _ in keyed("aba", str.upper)] == [("A", 0), ("B", 0), ("A", 1)]

@@ -6,7 +6,7 @@ def tried(*facts, names=("table1",), notes=()):
     return Changed(commit=None, text="x", names=names, no_longer_follows=facts, notes=notes, dry_run=True)
 
 
-def test_what_stood_on_it_and_what_others_lose_is_said_first():
+def test_supported_entities_and_lost_inferences_are_listed():
     said = describe_effects(
         tried(
             "table1 supports bowl1",
@@ -18,16 +18,16 @@ def test_what_stood_on_it_and_what_others_lose_is_said_first():
     assert said == ("On table1 is bowl1.", "Lost inferences: flat1 contains table1.")
 
 
-def test_of_very_many_facts_the_first_are_told():
+def test_only_the_first_of_many_facts_are_listed():
     (said,) = describe_effects(tried(*(f"flat1 contains cup{i}" for i in range(7))))
     assert said.endswith("flat1 contains cup3, and 3 more facts.")
 
 
-def test_what_takes_nothing_with_it_says_nothing():
+def test_a_deletion_without_effects_has_no_text():
     assert describe_effects(tried()) == ()
     assert describe_effects(tried("table1 type Table")) == ()
 
 
-def test_the_facts_of_what_goes_are_told_apart():
+def test_facts_of_deleted_entities_are_listed_separately():
     of_all = tried("table1 type Table", "flat1 contains table1", "bowl1 isOn table1")
     assert own_facts(of_all) == ("table1 type Table",)

@@ -43,7 +43,7 @@ def texts(*changes, **fields):
     return event.texts
 
 
-def test_a_move_says_from_where_and_to_where_and_how_far():
+def test_moves_have_places_and_distance():
     assert texts(moved(pose(2.0), pose(-2.0))) == (
         "moved from (2, 0, 0) to (-2, 0, 0) (4.00 m, from kitchen1 to studio1)",
     )
@@ -55,13 +55,13 @@ def test_a_move_says_from_where_and_to_where_and_how_far():
     )
 
 
-def test_turns_and_first_places_are_told_as_they_are():
+def test_rotations_and_first_poses_have_no_distance():
     turned = Pose(position_m=(2.0, 0.0, 0.0), orientation_wxyz=orientation_from_yaw(math.pi / 2))
     assert texts(moved(pose(2.0), turned)) == ("turned from 0° to 90°",)
     assert texts(moved(None, pose(2.0))) == ("placed at (2, 0, 0)",)
 
 
-def test_only_what_became_of_the_thing_is_told():
+def test_only_changes_of_the_entity_are_listed():
     other = Change(name="cup2", kind="added", now="Cup")
     assert texts(other, Change(name="cup1", kind="reference", was="cup", now="mug")) == (
         "renamed 'cup' → 'mug'",
@@ -70,7 +70,7 @@ def test_only_what_became_of_the_thing_is_told():
     assert texts(removed=("cup1",)) == ("removed",)
 
 
-def test_the_newest_comes_first_with_who_and_why():
+def test_the_newest_event_is_first_with_author_and_reason():
     first, second = history_events("cup1", [logged(3), logged(4, confidence=0.5)], PLACES)
     assert (first.commit, second.commit) == (4, 3)
     assert (first.by, first.reason, first.confidence) == ("operator/bob", "tidy up", "0.50")
@@ -79,17 +79,17 @@ def test_the_newest_comes_first_with_who_and_why():
 @pytest.mark.parametrize(
     ("x", "y", "found"), [(2.0, 0.9, "kitchen1"), (0.0, 0.0, "flat1"), (2.0, 1.1, "flat1"), (50.0, 0.0, "")]
 )
-def test_a_position_is_in_the_smallest_place_over_it(x, y, found):
+def test_a_position_is_in_the_smallest_place_that_contains_it(x, y, found):
     assert find_place(pose(x, y), PLACES) == found
 
 
-def test_places_may_be_turned():
+def test_places_can_be_rotated():
     turned = room("a", (0.0, 0.0, 0.0), (4.0, 1.0, 2.0), math.pi / 2)
     assert find_place(pose(0.0, 1.9), [turned]) == "a"
     assert find_place(pose(1.9, 0.0), [turned]) == ""
 
 
-def test_what_was_said_at_once_is_told_once():
+def test_equal_provenance_is_listed_once():
     assert len(group_provenance(thing("cup1"))) == 1
     later = Provenance(commit=4, stamp_ns=2_000_000_000, source="perception", reason="seen", confidence=0.9)
     told = group_provenance(structs.replace(thing("cup1"), pose_provenance=later, provenance=later))

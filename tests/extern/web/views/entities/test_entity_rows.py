@@ -37,7 +37,7 @@ def shown(**wanted):
     return set(Table(ENTITIES, known()).rows(EntityFilter(**wanted)))
 
 
-def test_a_row_says_what_it_is_called_where_it_is_and_what_it_is_on():
+def test_a_row_has_label_class_room_support_and_position():
     row = Table(ENTITIES, known()).rows(EntityFilter())["cup1"]
     assert row["label"] == "red cup"
     assert row["class"] == "Cup"
@@ -45,7 +45,7 @@ def test_a_row_says_what_it_is_called_where_it_is_and_what_it_is_on():
     assert (row["x"], row["y"], row["z"]) == (1.0, 2.0, 0.75)
 
 
-def test_what_has_no_position_has_none_in_its_row():
+def test_entities_without_a_position_have_none_in_their_row():
     assert Table(ENTITIES, known()).rows(EntityFilter())["ghost1"]["x"] is None
 
 
@@ -64,11 +64,11 @@ def test_what_has_no_position_has_none_in_its_row():
         ({"room": "kitchen1", "class_": "Furniture"}, {"table1"}),
     ],
 )
-def test_what_is_wanted_is_shown(wanted, found):
+def test_the_filter_selects_rows(wanted, found):
     assert shown(**wanted) == found
 
 
-def test_the_body_is_told_by_its_model_and_ghosts_as_such():
+def test_the_body_column_has_the_model_and_marks_ghosts():
     bodies = {"cup1": body("cup1"), "ghost1": body("ghost1", model="", ghost=True)}
     rows = Table(ENTITIES, known(), bodies=bodies).rows(EntityFilter())
     assert rows["cup1"]["body"] == "cup"
@@ -77,7 +77,7 @@ def test_the_body_is_told_by_its_model_and_ghosts_as_such():
     assert rows["kitchen1"]["body"] == "place"
 
 
-def test_only_what_is_otherwise_is_told():
+def test_only_differences_between_rows_are_sent():
     before = Table(ENTITIES, known()).rows(EntityFilter())
     now = {**ENTITIES, "cup1": thing("cup1", preferred_reference="blue cup"), "new1": thing("new1")}
     del now["ghost1"]
@@ -89,12 +89,12 @@ def test_only_what_is_otherwise_is_told():
     assert diff_rows(after, after) == ([], [], [])
 
 
-def test_very_long_references_are_cut_in_the_table():
+def test_very_long_labels_are_cut():
     row = Table(by_name(thing("a", preferred_reference="x" * 1000)), known()).rows(EntityFilter())["a"]
     assert len(row["label"]) == 200
 
 
-def test_markup_is_text_like_any_other():
+def test_markup_in_labels_stays_text():
     evil = "<script>alert(1)</script>"
     row = Table(by_name(thing("a", preferred_reference=evil)), known()).rows(EntityFilter(text="<SCRIPT>"))[
         "a"
@@ -102,18 +102,18 @@ def test_markup_is_text_like_any_other():
     assert row["label"] == evil
 
 
-def test_counts_are_told():
+def test_counts_are_formatted():
     assert format_count(80, 80) == "80 entities"
     assert format_count(1, 1) == "1 entity"
     assert format_count(12, 5000) == "12 of 5,000 entities"
     assert format_count(0, 0) == "the map is empty"
 
 
-def test_the_conditions_are_told():
+def test_the_filter_is_described_in_words():
     assert EntityFilter().words == ""
     assert EntityFilter(class_="Cup", room="kitchen1").words == "class Cup, in kitchen1"
 
 
-def test_some_rows_are_made_without_the_others():
+def test_rows_can_be_created_for_some_entities():
     rows = Table(ENTITIES, known()).rows(EntityFilter(class_="Dishware"), {"cup1", "table1", "gone1"})
     assert list(rows) == ["cup1"]

@@ -31,7 +31,7 @@ def on(subject, other, text):
     return Relation(relation="isOn", subject=subject, object=other, text=text)
 
 
-def test_what_was_said_is_told_with_labels_and_can_be_taken_back():
+def test_asserted_facts_have_labels_and_can_be_unset():
     class_fact, color, open_ = asserted_facts(MILK, PROPERTIES)
     assert (class_fact.text, class_fact.why) == ("class: Milk", ExplainArgs("milk1", "type", "Milk"))
     assert (color.text, color.removable) == ("has color: red", ("hasColor", "color_red"))
@@ -39,12 +39,12 @@ def test_what_was_said_is_told_with_labels_and_can_be_taken_back():
     assert (open_.text, open_.removable) == ("is open: false", ("isOpen", False))
 
 
-def test_a_property_that_nobody_declared_is_told_by_its_name():
+def test_undeclared_properties_are_shown_by_name():
     (_, odd) = asserted_facts(thing("a", properties={"odd": 3}), {})
     assert odd.text == "odd: 3"
 
 
-def test_what_follows_and_what_is_measured_are_apart():
+def test_inferred_and_computed_facts_are_separate():
     follows = [
         is_a("milk1", "Drink"),
         fact("milk1", "isOn", "counter1"),
@@ -71,14 +71,14 @@ def test_what_follows_and_what_is_measured_are_apart():
     assert [f.other for f in found.computed] == ["counter1", "kitchen1", "counter1"]
 
 
-def test_what_a_thing_bears_is_told_of_the_other():
+def test_supported_entities_are_the_subject_of_the_fact():
     found = group_facts(thing("table1"), {}, [], [on("cup1", "table1", "cup1 is on table1: level")], WORDS)
     (borne,) = found.computed
     assert (borne.text, borne.other) == ("cup1 is on table1", "cup1")
     assert borne.why == ExplainArgs("cup1", "isOn", "table1")
 
 
-def test_what_does_not_hold_or_depends_on_who_looks_is_not_asked_why():
+def test_relations_that_do_not_hold_or_are_viewer_relative_have_no_explanation():
     nothing = Relation(
         relation="isOn", subject="milk1", object="", holds=False, text="milk1 is on nothing: 40 cm"
     )
@@ -87,7 +87,7 @@ def test_what_does_not_hold_or_depends_on_who_looks_is_not_asked_why():
     assert [f.why for f in found.computed] == [None, None]
 
 
-def test_what_followed_is_what_held_without_what_was_said():
+def test_asserted_triples_are_excluded_from_past_inferences():
     held = [
         is_a("milk1", "Milk"),
         is_a("milk1", "Drink"),
@@ -99,7 +99,7 @@ def test_what_followed_is_what_held_without_what_was_said():
     assert exclude_asserted(MILK, held) == (is_a("milk1", "Drink"), fact("milk1", "isLocatedIn", "flat1"))
 
 
-def test_what_is_next_to_something_is_not_said_to_be_near_it_as_well():
+def test_next_to_hides_near():
     next_to = Relation(
         relation="isNextTo", subject="milk1", object="cup1", text="milk1 is next to cup1: 2 cm"
     )
@@ -110,6 +110,6 @@ def test_what_is_next_to_something_is_not_said_to_be_near_it_as_well():
     assert [f.other for f in found.computed] == ["cup1", "jug1", "tin1"]
 
 
-def test_individuals_are_called_in_what_follows_as_in_what_was_said():
+def test_individuals_have_the_same_labels_in_inferred_facts():
     (color,) = group_facts(MILK, PROPERTIES, [fact("milk1", "hasColor", "color_red")], [], WORDS).inferred
     assert color.text == "has color red"

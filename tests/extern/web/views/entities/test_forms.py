@@ -23,11 +23,11 @@ def state(kind="number", now=None, multiple=False):
     return State(name="p", label="label", kind=kind, now=now, multiple=multiple, choices={}, unit="", hint="")
 
 
-def test_a_class_alone_is_enough_to_add_something():
+def test_a_class_is_enough_to_add_an_entity():
     assert forms.build_add(EntityForm(class_=" Chair ")) == Add(class_="Chair", default=True)
 
 
-def test_all_that_is_filled_in_is_in_the_command():
+def test_the_command_has_all_fields_of_the_form():
     filled = EntityForm(
         class_="Cup",
         name="cup9",
@@ -54,12 +54,12 @@ def test_all_that_is_filled_in_is_in_the_command():
         (EntityForm(class_="Cup", size=(1.0, 0.0, 1.0)), "greater than 0 m"),
     ],
 )
-def test_what_is_wrong_with_a_form_is_said(filled, said):
+def test_invalid_forms_are_rejected_with_a_message(filled, said):
     with pytest.raises(errors.BadRequest, match=said):
         forms.build_add(filled)
 
 
-def test_an_untouched_form_changes_nothing():
+def test_an_unchanged_form_sends_nothing():
     assert forms.build_update(CUP, forms.form_of(CUP)) is None
 
 
@@ -75,11 +75,11 @@ def test_an_untouched_form_changes_nothing():
         ({"yaw_deg": 0.0, "ref": "x"}, Update(name="cup1", ref="x")),
     ],
 )
-def test_only_what_was_changed_is_sent(changed, command):
+def test_only_changed_fields_are_sent(changed, command):
     assert forms.build_update(CUP, structs.replace(forms.form_of(CUP), **changed)) == command
 
 
-def test_what_changed_meanwhile_and_nobody_touched_stays():
+def test_fields_changed_by_others_are_not_sent():
     before = forms.form_of(CUP)
     fallen = structs.replace(CUP, pose=thing("x", at=(1.0, 2.0, 0.0)).pose)
     filled = structs.replace(before, ref="my cup")
@@ -89,12 +89,12 @@ def test_what_changed_meanwhile_and_nobody_touched_stays():
 @pytest.mark.parametrize(
     "emptied", [{"class_": " "}, {"ref": ""}, {"at": (None, None, None)}, {"size": (None, None, None)}]
 )
-def test_what_cannot_be_emptied_is_said(emptied):
+def test_required_fields_cannot_be_emptied(emptied):
     with pytest.raises(errors.BadRequest):
         forms.build_update(CUP, structs.replace(forms.form_of(CUP), **emptied))
 
 
-def test_several_are_moved_by_the_same():
+def test_several_entities_are_moved_by_one_offset():
     bare = thing("idea1", at=None)
     room = structs.replace(thing("room1", at=(0.0, 0.0, 0.0)), place=True)
     assert forms.build_move([CUP, bare, room], (0.5, None, -0.25)).changes == (
@@ -127,11 +127,11 @@ def test_several_are_moved_by_the_same():
         (state("choice", "red"), "blue", Set(name="a", property="p", values=("blue",))),
     ],
 )
-def test_a_state_is_set_or_unset_by_what_is_entered(state, entered, command):
+def test_a_value_sets_or_unsets_a_state(state, entered, command):
     assert forms.build_state_change("a", state, entered) == command
 
 
-def test_a_state_of_several_is_one_command_about_those_that_are_otherwise():
+def test_a_common_state_is_set_where_it_differs():
     now = {"a": False, "b": True, "c": None}
     assert forms.build_state_changes(state("switch"), True, now) == Batch(
         changes=(
@@ -142,12 +142,12 @@ def test_a_state_of_several_is_one_command_about_those_that_are_otherwise():
     assert forms.build_state_changes(state("switch"), True, {"b": True}) is None
 
 
-def test_a_number_that_is_none_is_said():
+def test_invalid_numbers_are_rejected():
     with pytest.raises(errors.BadRequest, match="'heavy' is not a number"):
         forms.build_state_change("a", state("number"), "heavy")
 
 
-def test_classes_are_found_by_everything_they_are_called():
+def test_class_choices_contain_all_labels():
     choices = forms.class_choices(
         [
             class_("Cup", labels={"en": "cup", "it": "tazza"}, also=("mug",)),
@@ -171,5 +171,5 @@ CHOICES = {"Cup": "Cup · cup, tazza, mug", "Cupboard": "Cupboard · cupboard, c
         ("sofa", "sofa"),
     ],
 )
-def test_a_class_is_found_by_anything_that_it_is_called(typed, meant):
+def test_classes_are_found_by_any_label(typed, meant):
     assert forms.match_class(typed, CHOICES) == meant

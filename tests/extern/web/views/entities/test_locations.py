@@ -13,7 +13,7 @@ def begun(*facts):
     return locations
 
 
-def test_a_thing_is_on_its_bearer_and_in_the_smallest_place():
+def test_an_entity_has_a_support_and_the_smallest_place():
     known = begun(
         fact("cup1", "isOn", "table1"),
         fact("cup1", "isLocatedIn", "flat1"),
@@ -24,17 +24,17 @@ def test_a_thing_is_on_its_bearer_and_in_the_smallest_place():
     assert known.find_places(CUP, PLACES) == {"flat1", "kitchen1"}
 
 
-def test_what_is_inside_something_is_told_by_that():
+def test_a_container_precedes_a_support():
     known = begun(fact("cup1", "isOn", "bowl1"), fact("cup1", "isInside", "bowl1"))
     assert known.find_support(CUP) == "bowl1"
 
 
-def test_nothing_is_known_of_what_nobody_spoke_of():
+def test_unknown_locations_are_empty():
     assert begun().find_support(CUP) == ""
     assert begun().find_room(CUP, PLACES) == ""
 
 
-def test_measured_facts_come_and_go_with_commits():
+def test_computed_facts_are_updated_by_commits():
     known = begun(fact("cup1", "isOn", "table1"), fact("cup1", "isLocatedIn", "kitchen1"))
     touched = known.apply(
         commit(
@@ -47,8 +47,8 @@ def test_measured_facts_come_and_go_with_commits():
     assert known.find_room(CUP, PLACES) == ""
 
 
-def test_what_is_asserted_and_measured_at_once_stays_when_it_goes_from_one_to_the_other():
-    """A measured fact that somebody asserts is no longer computed: it went, and was inserted."""
+def test_a_fact_that_changes_between_asserted_and_computed_stays():
+    """A computed fact that is asserted is no longer computed: it is removed and inserted in one commit."""
     on = fact("cup1", "isOn", "table1")
     known = begun(on)
     known.apply(commit(went=[on], inserted=(on,)))
@@ -57,7 +57,7 @@ def test_what_is_asserted_and_measured_at_once_stays_when_it_goes_from_one_to_th
     assert known.find_support(CUP) == "table1"
 
 
-def test_what_geometry_denies_does_not_count_until_it_no_longer_does():
+def test_denied_facts_do_not_hold_until_they_are_undenied():
     on = fact("cup1", "isOn", "table1")
     known = begun()
     known.apply(commit(inserted=(on,)))
@@ -67,19 +67,19 @@ def test_what_geometry_denies_does_not_count_until_it_no_longer_does():
     assert known.find_support(CUP) == "table1"
 
 
-def test_what_is_asserted_and_denied_in_one_commit_does_not_count():
+def test_a_fact_asserted_and_denied_in_one_commit_does_not_hold():
     on = fact("cup1", "isOn", "table1")
     known = begun()
     known.apply(commit(inserted=(on,), denied=[on]))
     assert known.find_support(CUP) == ""
 
 
-def test_other_triples_touch_nothing():
+def test_other_triples_change_nothing():
     known = begun()
     assert known.apply(commit(inserted=(fact("cup1", "hasColor", "red"),))) == frozenset()
 
 
-def test_beginning_again_forgets():
+def test_reset_removes_all_facts():
     known = begun(fact("cup1", "isOn", "table1"))
     known.reset([])
     assert known.find_support(CUP) == ""

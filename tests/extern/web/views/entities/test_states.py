@@ -24,7 +24,7 @@ ANNA = thing("anna", "Person", types=("Object",), preferred_reference="Anna")
 THINGS = by_name(DOOR, ANNA)
 
 
-def test_what_fits_the_class_may_be_set_and_what_is_stated_comes_first():
+def test_properties_that_fit_the_class_are_listed_asserted_ones_first():
     found = list_states(DOOR, ALL, THINGS)
     assert [(s.name, s.kind) for s in found] == [
         ("hasColor", "choice"),
@@ -34,7 +34,7 @@ def test_what_fits_the_class_may_be_set_and_what_is_stated_comes_first():
     ]
 
 
-def test_a_state_says_what_it_is_and_in_which_unit():
+def test_a_state_has_value_label_and_unit():
     color, open_, mass, owner = list_states(DOOR, ALL, THINGS)
     assert (color.now, color.text, color.choices) == (("color_red",), "red", {"color_red": "red"})
     assert (open_.label, open_.now, open_.text) == ("is open", None, "")
@@ -42,14 +42,14 @@ def test_a_state_says_what_it_is_and_in_which_unit():
     assert owner.choices == {"anna": "anna (Anna)"}
 
 
-def test_relations_that_poses_tell_are_no_states_unless_somebody_stated_them():
+def test_computed_relations_are_states_only_if_asserted():
     on = prop("isOn", "object", range_=("Object",), functional=False)
     assert [s.name for s in list_states(thing("a", types=("Object",)), (on,), {})] == []
     stated = thing("a", types=("Object",), properties={"isOn": ("b",)})
     assert [s.name for s in list_states(stated, (on,), {})] == ["isOn"]
 
 
-def test_of_several_things_the_states_are_those_of_all():
+def test_common_states_are_those_of_all_entities():
     device = thing("lamp1", "Lamp", types=("Object", "Device"), properties={"isOpen": True, "mass": 2.0})
     other = thing("lamp2", "Lamp", types=("Object",), properties={"isOpen": True, "mass": 3.0})
     found = {s.name: s.now for s in common_states([device, other], ALL, THINGS)}
@@ -57,7 +57,7 @@ def test_of_several_things_the_states_are_those_of_all():
     assert common_states([], ALL, THINGS) == ()
 
 
-def test_only_what_can_be_opened_is_offered_to_be_open():
+def test_is_open_is_offered_for_openable_things_only():
     is_open = structs.replace(OPEN, iri=f"{v.TBOX}isOpen", domain=("Physical_Thing",))
     fridge = thing("fridge1", "Fridge", types=("Physical_Thing", "Openable_Thing"))
     table = thing("table1", "Table", types=("Physical_Thing",))
