@@ -251,8 +251,8 @@ def _draw_export(page: Page) -> None:
         ).mark("export-button")
 
         def show() -> None:
-            moment = "now" if page.moment.is_now else f"after commit {page.state.commit}"
-            subject.text = f"Map {moment}"
+            commit = page.state.commit
+            subject.text = "Current map" if page.moment.is_now else f"Map after commit {commit}"
 
         page.on_change(show)
         show()
