@@ -31,8 +31,8 @@ from semmap.nodes import bus
 from semmap.nodes.extern.testing import free_endpoint
 from semmap.nodes.extern.web.scene.bodies import Bodies
 from semmap.nodes.extern.web.scene.camera import first_view
-from semmap.nodes.extern.web.scene.meshes import glb
 from semmap.nodes.extern.web.scene.drawables import Drawable
+from semmap.nodes.extern.web.scene.meshes import glb
 from semmap.nodes.runtime.loop import Node
 from semmap.nodes.sim_node.models.facets import surface_of
 from semmap.nodes.sim_node.models.library import Model, build

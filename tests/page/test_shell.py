@@ -95,7 +95,7 @@ def test_a_lost_system_is_reported_and_a_new_map_resets_the_page(chromium, open_
             first.stop()
             tab.get_by_text("No response from the knowledge base").wait_for()
             with running(tmp_path / "two", "--abox", "none", *words, endpoint=endpoint):
-                tab.get_by_text("The system now serves another map").wait_for()
+                tab.get_by_text("the system now serves another map").wait_for()
                 until(lambda: "78" not in tab.locator(".semmap-entities").inner_text(), "it is empty")
                 assert not tab.locator(".semmap-away").is_visible()
 

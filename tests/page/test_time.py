@@ -81,7 +81,7 @@ def test_the_past_is_compared_with_now_and_is_read_only(tab, cup, system):
     with system.client() as client:
         before = client.status().commit
         tab.keyboard.press("u")
-        tab.get_by_text("The past is read-only").wait_for()
+        tab.get_by_text("the past is read-only").wait_for()
         assert client.status().commit == before
 
 

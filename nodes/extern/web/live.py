@@ -115,7 +115,7 @@ class Live:
         return {name: entity for name, entity in self._entities.items() if entity.place}
 
     def start(self) -> None:
-        """Start to receive updates; to be called on the event loop that owns this object from then on."""
+        """Start receiving updates; to be called on the event loop that owns this object from then on."""
         self._loop = asyncio.get_running_loop()
         self._thread.start()
 
@@ -124,7 +124,7 @@ class Live:
         self._node.soon(lambda: self._node.ready(detail))
 
     def stop(self) -> None:
-        """Stop to receive updates, without waiting for open requests."""
+        """Stop receiving updates, without waiting for open requests."""
         self._loop = None
         self._node.stop()
         self._threads.shutdown(wait=False, cancel_futures=True)

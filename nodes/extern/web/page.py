@@ -124,7 +124,7 @@ class Page:
     async def pick_place(self) -> Place | None:
         """Return the next position that the user clicks in the scene.
 
-        None if it is cancelled or without a scene.
+        Return None if picking is cancelled, or without a scene.
         """
         return None if self.pick is None else await self.pick()
 
@@ -197,7 +197,7 @@ class Page:
     def on_poses(self, function: Callable[[tuple[str, ...]], None]) -> None:
         """Call a function with the names of moved bodies, at most ten times a second.
 
-        The past has no such calls.
+        It is not called while the past is shown.
         """
         self._on_poses.append(function)
 
@@ -230,7 +230,7 @@ class Page:
             self._call(self._on_connection)
         elif event.kind == "reset":
             if event.is_new_map:
-                self.notify("The system now serves another map; the page was reset.", "warning")
+                self.notify("the system now serves another map; the page was reset", "warning")
                 self.select(())
                 self.go_to(None)
             elif self.moment.is_now:
@@ -280,7 +280,7 @@ class Page:
     async def change(self, command: Command[R], timeout_s: float = 60.0) -> R | None:
         """Send a change and return the reply. On an error show it with suggested fixes, and return None."""
         if not self.moment.is_now:
-            self.notify("The past is read-only; press Home to return to the current map.", "warning")
+            self.notify("the past is read-only; press Home to return to the current map", "warning")
             return None
         try:
             with self.pending_work():

@@ -142,7 +142,7 @@ def rotation_of(pose: Pose) -> Floats:
 
 
 def corners_of(pose: Pose, size_m: Size) -> Floats:
-    """(8, 3) [m]: the corners of a thing's box in the map frame, the four at the bottom first."""
+    """Return the corners of the box of an object in the map frame, (8, 3) [m], the bottom ones first."""
     x, y, z = size_m
     own = np.array([(sx * x / 2, sy * y / 2, sz * z) for sz in (0, 1) for sx, sy in _ROUND])
     return np.asarray(own @ rotation_of(pose).T + np.array(pose.position_m))

@@ -435,7 +435,7 @@ class TabScene:
     async def pick_place(self) -> Place | None:
         """Return the position of the next click: x, y, z [m] and yaw [rad].
 
-        None without a hit, or if cancelled.
+        Return None without a hit, or if picking is cancelled.
         """
         self._end_picking(None)
         if self._client is None:

@@ -58,7 +58,7 @@ def _start(
     links: list[tuple[int, int]],
     centres: list[int],
 ) -> Floats:
-    """Return the earlier position of each node, or one next to a neighbour, at an angle from its id."""
+    """Return start positions: the earlier one, or one near a neighbour, at an angle derived from the id."""
     near: dict[int, int] = {}
     for a, b in links:
         near.setdefault(a, b)

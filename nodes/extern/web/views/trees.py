@@ -12,10 +12,7 @@ from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import ClassInfo, Entity
 
 Node = dict[str, Any]
-"""A node for `ui.tree`: `id`, unique in the tree, `label` and `children`.
-
-And the `name` of its class or place.
-"""
+"""A node for `ui.tree`: a unique `id`, a `label`, `children`, and the `name` of its class or place."""
 
 _SUB_LOCATION = "hasSubLocation"
 _IS_SUB_LOCATION = "isSubLocationOf"

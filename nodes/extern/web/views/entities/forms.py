@@ -93,7 +93,7 @@ def build_update(entity: Entity, filled: EntityForm, before: EntityForm | None =
         raise errors.BadRequest(f"{entity.name}: the position cannot be removed; enter another position")
     size = _size(filled.size) if filled.size != before.size else None
     if filled.size != before.size and size is None:
-        raise errors.BadRequest(f"{entity.name} has a size; write another in its place")
+        raise errors.BadRequest(f"{entity.name}: the size cannot be removed; enter another size")
     return Update(
         name=entity.name,
         class_=filled.class_.strip() if filled.class_ != before.class_ else None,
