@@ -94,10 +94,10 @@ class Live:
         self._poses_received = 0
         self._entities: dict[str, Entity] = {}
         self._poses: dict[str, Pose] = {}
-        self._bends: dict[str, Bends] = {}
+        self._joint_positions: dict[str, Bends] = {}
         self.entities: Mapping[str, Entity] = MappingProxyType(self._entities)
         self.poses: Mapping[str, Pose] = MappingProxyType(self._poses)
-        self.bends: Mapping[str, Bends] = MappingProxyType(self._bends)
+        self.joint_positions: Mapping[str, Bends] = MappingProxyType(self._joint_positions)
         """The joints that are not at 0, and their positions, by body."""
         self._listeners: list[Listener] = []
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -211,17 +211,17 @@ class Live:
         if updates.scene is not None:
             self.scene = updates.scene.now
             self._poses.clear()
-            self._bends.clear()
+            self._joint_positions.clear()
             if self.scene is not None:
                 self._poses.update((body.name, body.pose) for body in self.scene.bodies)
-                self._bends.update(
+                self._joint_positions.update(
                     (body.name, bends_of(body.joints)) for body in self.scene.bodies if body.joints
                 )
             yield LiveEvent(kind="scene")
         self._poses_received += updates.poses_received
         if updates.moved:
             self._poses.update(updates.moved)
-            self._bends.update(updates.bends)
+            self._joint_positions.update(updates.joint_positions)
             yield LiveEvent(kind="poses", names=tuple(updates.moved))
         if updates.offline_reason is not None and (self.connected, self.offline_reason) != (
             not updates.offline_reason,
@@ -267,7 +267,7 @@ class _Updates:
         self.commits: list[Commit] = []
         self.scene: _Bodies | None = None
         self.moved: dict[str, Pose] = {}
-        self.bends: dict[str, Bends] = {}
+        self.joint_positions: dict[str, Bends] = {}
         self.poses_received = 0
         self.health: dict[str, Health] = {}
         self.offline_reason: str | None = None
@@ -358,7 +358,7 @@ class _Subscriber:
         if self._scene.known and time.monotonic() - self._poses_s > _SCENE_LOST_S:
             self._scene = SceneState()
             self._updates.scene, self._updates.moved = _Bodies(now=None), {}
-            self._updates.bends.clear()
+            self._updates.joint_positions.clear()
 
     def _offline_reason(self) -> str:
         if time.monotonic() - self._kb_s > _SILENT_S:
@@ -379,7 +379,9 @@ class _Subscriber:
         if moved:
             self._updates.moved.update(moved)
             bodies = (self._scene.bodies[name] for name in moved)
-            self._updates.bends.update((body.name, bends_of(body.joints)) for body in bodies if body.joints)
+            self._updates.joint_positions.update(
+                (body.name, bends_of(body.joints)) for body in bodies if body.joints
+            )
             self._schedule()
 
     def _fetch_scene(self) -> None:
@@ -392,7 +394,7 @@ class _Subscriber:
             if future.exception() is None:
                 self._scene.take(future.result())
                 self._updates.scene, self._updates.moved = _Bodies(now=future.result()), {}
-                self._updates.bends.clear()
+                self._updates.joint_positions.clear()
                 self._schedule()
 
         self._node.ask_later(keys.SIM, SceneQuery()).add_done_callback(on_scene)

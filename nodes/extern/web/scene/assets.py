@@ -29,21 +29,21 @@ class Assets:
         self._fetched: Scene | None = None
         self.walls: Surface | None = None
 
-    def surface_of(self, model: str, size_m: Size, bends: Bends = ()) -> Surface | None:
+    def surface_of(self, model: str, size_m: Size, joint_positions: Bends = ()) -> Surface | None:
         """Return the surface of a model at a size and with its joints moved; None if it is not known."""
         surface = None if model == BOX else self._surfaces.of_kind(model, size_m)
-        return surface if surface is None else bent(surface, bends)
+        return surface if surface is None else bent(surface, joint_positions)
 
     def glb(self, key: Key) -> bytes:
-        """Return the glTF file of a model, whose surface must be known, at a size and with a look."""
+        """Return the glTF file of a model, whose surface must be known, at a size and with an appearance."""
         if (known := self._glbs.get(key)) is not None:
             return known
-        look, model, size_m, bends = key
-        surface = self.surface_of(model, size_m, bends)
+        appearance, model, size_m, joint_positions = key
+        surface = self.surface_of(model, size_m, joint_positions)
         if surface is None:
             raise errors.InternalError(f"unknown model '{model}'")
-        made = glb(surface, look)
-        if not bends:  # there are too many joint positions to cache
+        made = glb(surface, appearance)
+        if not joint_positions:  # there are too many joint positions to cache
             self._glbs[key] = made
         return made
 

@@ -78,9 +78,9 @@ class Bodies:
         handle.batched_wxyzs = batch.wxyzs
 
     def _add(self, key: Key, batch: Batch, *, many: bool) -> Handle:
-        look, model, _, _ = key
+        appearance, model, _, _ = key
         name = f"{self._path}/{next(self._numbers)}"
-        is_clear = opacity_of(look) < 1.0
+        is_clear = opacity_of(appearance) < 1.0
         common: dict[str, Any] = {
             "batched_positions": batch.positions,
             "batched_wxyzs": batch.wxyzs,
@@ -96,7 +96,7 @@ class Bodies:
                 triangles,
                 batched_scales=batch.sizes,
                 batched_colors=batch.colours,
-                opacity=opacity_of(look) if is_clear else None,
+                opacity=opacity_of(appearance) if is_clear else None,
                 flat_shading=True,
                 lod="off",
                 **common,

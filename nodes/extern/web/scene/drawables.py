@@ -13,7 +13,7 @@ from semmap.nodes.drawing.bending import Bends
 from semmap.nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of
 from semmap.nodes.drawing.palette import GREY, colour_of
 from semmap.nodes.drawing.surfaces import look_of
-from semmap.nodes.extern.web.scene.meshes import Look, linear, srgb, tinted
+from semmap.nodes.extern.web.scene.meshes import Appearance, linear, srgb, tinted
 from semmap.schemas.entities import Entity, Pose, Size
 from semmap.schemas.joints import JOINT_POSITIONS, positions_of
 from semmap.schemas.scenes import Body, Surface
@@ -30,20 +30,25 @@ SurfaceOf = Callable[[str, Size], Surface | None]
 class Drawable(Struct, frozen=True, gc=False):
     """One object as it is drawn. `size_m` is the extent along its own axes with all joints closed."""
 
-    look: Look
+    appearance: Appearance
     model: str
     size_m: Size
     rgb: tuple[int, int, int]
     pose: Pose
-    bends: Bends = ()
+    joint_positions: Bends = ()
 
     @property
     def key(self) -> Key:
         """The key of its batch; boxes of all sizes share one."""
-        return (self.look, self.model, UNKNOWN_SIZE_M if self.model == BOX else self.size_m, self.bends)
+        return (
+            self.appearance,
+            self.model,
+            UNKNOWN_SIZE_M if self.model == BOX else self.size_m,
+            self.joint_positions,
+        )
 
 
-Key = tuple[Look, str, Size, Bends]
+Key = tuple[Appearance, str, Size, Bends]
 
 
 class Batch(Struct, frozen=True):
@@ -64,12 +69,12 @@ def drawable_of(
     *,
     simulated: bool,
     past: bool = False,
-    bends: Bends | None = None,
+    joint_positions: Bends | None = None,
 ) -> Drawable | None:
     """Return how an entity, a body, or both together are drawn; None for places and without a pose.
 
-    `pose` and `bends` are the current pose and joint positions of the body; by default those of the map are
-    used. In the `past` there are entities only.
+    `pose` and `joint_positions` are the current pose and joint positions of the body; by default those of the
+    map are used. In the `past` there are entities only.
     """
     figure = figure_of(entity, body, simulated=simulated and not past)
     pose = pose or pose_of(entity, body)
@@ -79,16 +84,16 @@ def drawable_of(
     size_m = figure.size_m
     if not model or surface_of(model, size_m) is None:
         model = BOX
-    look: Look = "past" if past else _look_of(figure)
+    appearance: Appearance = "past" if past else _appearance_of(figure)
     rgb = GREY if figure.look == "furniture" else colour_of(figure.class_)
     if model == BOX:
-        bends = ()
-    elif bends is None:
-        bends = _asserted_bends(entity)
-    return Drawable(look, model, size_m, rgb, pose, bends)
+        joint_positions = ()
+    elif joint_positions is None:
+        joint_positions = _asserted_joint_positions(entity)
+    return Drawable(appearance, model, size_m, rgb, pose, joint_positions)
 
 
-def _asserted_bends(entity: Entity | None) -> Bends:
+def _asserted_joint_positions(entity: Entity | None) -> Bends:
     """Return the joint positions in the map."""
     text = None if entity is None else entity.properties.get(JOINT_POSITIONS)
     if not isinstance(text, str):
@@ -96,7 +101,7 @@ def _asserted_bends(entity: Entity | None) -> Bends:
     return tuple((name, at) for name, at in positions_of(text).items() if at)
 
 
-def _look_of(figure: Figure) -> Look:
+def _appearance_of(figure: Figure) -> Appearance:
     match figure.look:
         case "ghost":
             return "ghost"
@@ -123,11 +128,11 @@ def batch_of(things: Mapping[str, Drawable]) -> Batch:
     """Return the batch of objects with the same key, in their order."""
     objects = things.values()
     rgb = np.array([thing.rgb for thing in objects], dtype=np.uint8)
-    (look,) = {thing.look for thing in objects}
+    (appearance,) = {thing.appearance for thing in objects}
     return Batch(
         names=tuple(things),
         positions=np.array([thing.pose.position_m for thing in objects], dtype=np.float32),
         wxyzs=np.array([thing.pose.orientation_wxyz for thing in objects], dtype=np.float32),
         sizes=np.array([thing.size_m for thing in objects], dtype=np.float32),
-        colours=srgb(tinted(linear(rgb), look)),
+        colours=srgb(tinted(linear(rgb), appearance)),
     )

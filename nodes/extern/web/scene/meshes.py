@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from semmap.schemas.scenes import Surface
 
-Look = Literal["solid", "ghost", "believed", "past", "wall"]
+Appearance = Literal["solid", "ghost", "believed", "past", "wall"]
 """The appearance of an object.
 
 - `solid`: a normal body
@@ -25,24 +25,24 @@ _MAGIC, _VERSION, _JSON, _BINARY = 0x46546C67, 2, 0x4E4F534A, 0x004E4942
 _FLOATS, _NUMBERS = 5126, 5125
 _VERTICES, _INDICES = 34962, 34963
 
-_TINTS: Final[dict[Look, tuple[tuple[float, float, float], float, float]]] = {
+_TINTS: Final[dict[Appearance, tuple[tuple[float, float, float], float, float]]] = {
     "solid": ((0.0, 0.0, 0.0), 0.0, 1.0),
     "ghost": ((0.80, 0.84, 0.95), 0.45, 0.35),
     "believed": ((1.0, 0.80, 0.45), 0.55, 0.45),
     "past": ((0.96, 0.86, 0.66), 0.5, 1.0),
     "wall": ((0.95, 0.95, 0.96), 0.7, 0.2),
 }
-"""For each look a colour (linear RGB), its share, and the opacity."""
+"""For each appearance a colour (linear RGB), its share, and the opacity."""
 
 
-def opacity_of(look: Look) -> float:
-    """Return the opacity of a look, 0 to 1."""
-    return _TINTS[look][2]
+def opacity_of(appearance: Appearance) -> float:
+    """Return the opacity of an appearance, 0 to 1."""
+    return _TINTS[appearance][2]
 
 
-def tinted(rgb: NDArray[np.floating[Any]], look: Look) -> NDArray[np.float32]:
-    """Return linear colours (N, 3), 0 to 1, with the tint of a look."""
-    tint, share, _ = _TINTS[look]
+def tinted(rgb: NDArray[np.floating[Any]], appearance: Appearance) -> NDArray[np.float32]:
+    """Return linear colours (N, 3), 0 to 1, with the tint of an appearance."""
+    tint, share, _ = _TINTS[appearance]
     return np.asarray(rgb * (1.0 - share) + np.array(tint) * share, dtype=np.float32)
 
 
@@ -59,21 +59,21 @@ def srgb(rgb: NDArray[np.floating[Any]]) -> NDArray[np.uint8]:
     return np.asarray(np.round(255.0 * encoded), dtype=np.uint8)
 
 
-def glb(surface: Surface, look: Look = "solid") -> bytes:
+def glb(surface: Surface, appearance: Appearance = "solid") -> bytes:
     """Return a surface of at least one triangle as a binary glTF 2.0 file with vertex colours."""
     points = np.frombuffer(surface.points, "<f4").reshape(-1, 3)
     normals = np.frombuffer(surface.normals, "<f4").reshape(-1, 3)
-    colours = tinted(linear(np.frombuffer(surface.colours, np.uint8).reshape(-1, 3)), look)
+    colours = tinted(linear(np.frombuffer(surface.colours, np.uint8).reshape(-1, 3)), appearance)
     triangles = np.frombuffer(surface.triangles, "<u4")
     arrays = (points, normals, colours, triangles)
     binary = b"".join(array.tobytes() for array in arrays)  # each is a multiple of four bytes long
     ends = np.cumsum([0, *(array.nbytes for array in arrays)]).tolist()
-    is_clear = opacity_of(look) < 1.0
+    is_clear = opacity_of(appearance) < 1.0
     material = {
         "pbrMetallicRoughness": {
             "metallicFactor": 0.0,
             "roughnessFactor": 0.85,
-            "baseColorFactor": [1.0, 1.0, 1.0, opacity_of(look)],
+            "baseColorFactor": [1.0, 1.0, 1.0, opacity_of(appearance)],
         },
         "alphaMode": "BLEND" if is_clear else "OPAQUE",
     }

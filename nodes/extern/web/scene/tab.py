@@ -243,15 +243,21 @@ class TabScene:
         after: dict[str, tuple[tuple[object, ...], Drawable | None]] = {}
         for name in [*state.entities, *(name for name in bodies if name not in state.entities)]:
             entity, body, pose = state.entities.get(name), bodies.get(name), state.poses.get(name)
-            bends = self.page.live.bends.get(name) if now else None
+            joint_positions = self.page.live.joint_positions.get(name) if now else None
             before = known.get(name)
-            inputs = (entity, body, pose, bends)
+            inputs = (entity, body, pose, joint_positions)
             if before is not None and all(a is b for a, b in zip(before[0], inputs, strict=True)):
                 thing = before[1]
             else:
                 surface_of = self._assets.surface_of
                 thing = drawable_of(
-                    entity, body, pose, surface_of, simulated=simulated, past=not now, bends=bends
+                    entity,
+                    body,
+                    pose,
+                    surface_of,
+                    simulated=simulated,
+                    past=not now,
+                    joint_positions=joint_positions,
                 )
             after[name] = (inputs, thing)
             if thing is not None:
@@ -259,7 +265,7 @@ class TabScene:
         self._known = after
         if self._dragging in wanted:
             thing = wanted[self._dragging]
-            wanted[self._dragging] = structs.replace(thing, look="ghost")
+            wanted[self._dragging] = structs.replace(thing, appearance="ghost")
         return wanted
 
     def _draw_soon(self) -> None:
@@ -315,8 +321,13 @@ class TabScene:
 
     def _has_moved_joints(self, name: str) -> bool:
         """Return whether joints of a body have moved since it was drawn."""
-        thing, bends = self._things.get(name), self.page.live.bends.get(name)
-        return bends is not None and thing is not None and thing.model != BOX and thing.bends != bends
+        thing, joint_positions = self._things.get(name), self.page.live.joint_positions.get(name)
+        return (
+            joint_positions is not None
+            and thing is not None
+            and thing.model != BOX
+            and thing.joint_positions != joint_positions
+        )
 
     def _mark(self) -> None:
         """Draw outlines, the gizmo and labels."""
@@ -391,7 +402,7 @@ class TabScene:
 
     def _named(self, name: str) -> LabelText:
         thing = self._things[name]
-        return (f"{name}?" if thing.look == "believed" else name, _top(thing.pose, thing.size_m))
+        return (f"{name}?" if thing.appearance == "believed" else name, _top(thing.pose, thing.size_m))
 
     @staticmethod
     def _view(client: ClientHandle) -> View:
@@ -468,7 +479,7 @@ class TabScene:
                 name,
                 thing.pose,
                 _reach_of(thing),
-                surface_of(thing.model, thing.size_m, thing.bends),
+                surface_of(thing.model, thing.size_m, thing.joint_positions),
             )
             for name, thing in self._things.items()
             if name != without
@@ -506,7 +517,7 @@ class TabScene:
         """Draw the object where it is dragged; a ghost is drawn at its original pose."""
         thing = self._things.get(self._dragging)
         if thing is not None:
-            solid = structs.replace(thing, look="solid", pose=pose)
+            solid = structs.replace(thing, appearance="solid", pose=pose)
             self._dragged.show({self._dragging: solid})
 
     async def _move(self, name: str, pose: Pose) -> None:
@@ -615,7 +626,7 @@ def _cancel(*handles: asyncio.TimerHandle | None) -> None:
 def _reach_of(thing: Drawable) -> Size:
     """Return the size of a box around an object, including its open doors and drawers."""
     x, y, z = thing.size_m
-    return (3.0 * x + y, 3.0 * y + x, 1.5 * z) if thing.bends else thing.size_m
+    return (3.0 * x + y, 3.0 * y + x, 1.5 * z) if thing.joint_positions else thing.size_m
 
 
 def _middle(pose: Pose, size_m: Size) -> Vector:

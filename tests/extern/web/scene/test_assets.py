@@ -64,7 +64,7 @@ def test_failed_requests_are_repeated_and_a_new_simulator_has_new_walls(made):
     assert assets.walls is not None
 
 
-def test_files_are_cached_by_look(made):
+def test_files_are_cached_by_appearance(made):
     assets, _, _ = made
     asyncio.run(assets.fetch())
     key = ("solid", "chair", (0.5, 0.5, 1.0), ())

@@ -18,11 +18,11 @@ def show(an_entity, a_body, at=None, **how):
 
 def test_an_entity_with_a_body_has_its_model_and_current_pose():
     thing = show(entity("chair1"), body("chair1", pose(1.0)), pose(2.0))
-    assert (thing.look, thing.model, thing.pose) == ("solid", "chair", pose(2.0))
+    assert (thing.appearance, thing.model, thing.pose) == ("solid", "chair", pose(2.0))
 
 
 @pytest.mark.parametrize(
-    ("an_entity", "a_body", "look"),
+    ("an_entity", "a_body", "appearance"),
     [
         (entity("chair1"), body("chair1", ghost=True), "ghost"),
         (entity("chair1"), None, "believed"),
@@ -30,16 +30,16 @@ def test_an_entity_with_a_body_has_its_model_and_current_pose():
         (None, body("table", is_entity=False), "solid"),
     ],
 )
-def test_ghosts_and_entities_without_bodies_have_their_own_look(an_entity, a_body, look):
-    assert show(an_entity, a_body).look == look
+def test_ghosts_and_entities_without_bodies_have_their_own_appearance(an_entity, a_body, appearance):
+    assert show(an_entity, a_body).appearance == appearance
 
 
 def test_without_a_simulator_entities_are_solid():
-    assert show(entity("chair1"), None, simulated=False).look == "solid"
+    assert show(entity("chair1"), None, simulated=False).appearance == "solid"
 
 
-def test_past_entities_have_the_past_look():
-    assert show(entity("chair1"), None, past=True).look == "past"
+def test_past_entities_have_the_past_appearance():
+    assert show(entity("chair1"), None, past=True).appearance == "past"
 
 
 def test_places_and_entities_without_a_pose_are_not_drawn():
@@ -52,7 +52,7 @@ def test_unknown_models_are_boxes_of_the_entity_size():
     assert (thing.model, thing.size_m) == (BOX, (0.5, 0.5, 1.0))
 
 
-def test_each_model_and_look_has_one_batch():
+def test_each_model_and_appearance_has_one_batch():
     things = {
         "chair1": show(entity("chair1"), body("chair1", pose(1.0))),
         "vase1": show(entity("vase1", "Vase", size_m=(0.1, 0.1, 0.3), model="vase"), None),
@@ -75,7 +75,7 @@ def test_a_large_map_is_one_batch():
 
 def test_joint_positions_come_from_the_body_or_from_the_map():
     ajar = structs.replace(entity("chair1"), properties={"jointPositions": "door=1.2 freezer=0"})
-    assert show(ajar, None, past=True).bends == (("door", 1.2),)
-    open_wide = show(ajar, body("chair1"), bends=(("door", 1.5),))
-    assert open_wide.bends == (("door", 1.5),)
-    assert open_wide.key != show(ajar, body("chair1"), bends=()).key
+    assert show(ajar, None, past=True).joint_positions == (("door", 1.2),)
+    open_wide = show(ajar, body("chair1"), joint_positions=(("door", 1.5),))
+    assert open_wide.joint_positions == (("door", 1.5),)
+    assert open_wide.key != show(ajar, body("chair1"), joint_positions=()).key

@@ -39,11 +39,13 @@ def test_the_gltf_file_contains_the_surface():
     assert array(scene, binary, 2, "<f4").reshape(-1, 3)[0] == pytest.approx((1.0, 0.0, 0.0))
 
 
-@pytest.mark.parametrize(("look", "mode"), [("solid", "OPAQUE"), ("past", "OPAQUE"), ("ghost", "BLEND")])
-def test_transparent_looks_are_blended(look, mode):
-    material = parts(glb(surface(), look))[0]["materials"][0]
+@pytest.mark.parametrize(
+    ("appearance", "mode"), [("solid", "OPAQUE"), ("past", "OPAQUE"), ("ghost", "BLEND")]
+)
+def test_transparent_appearances_are_blended(appearance, mode):
+    material = parts(glb(surface(), appearance))[0]["materials"][0]
     assert material["alphaMode"] == mode
-    assert material["pbrMetallicRoughness"]["baseColorFactor"][3] == opacity_of(look)
+    assert material["pbrMetallicRoughness"]["baseColorFactor"][3] == opacity_of(appearance)
 
 
 def test_the_past_is_tinted():
