@@ -31,8 +31,8 @@ from semmap.nodes import bus
 from semmap.nodes.extern.testing import free_endpoint
 from semmap.nodes.extern.web.scene.bodies import Bodies
 from semmap.nodes.extern.web.scene.camera import first_view
+from semmap.nodes.extern.web.scene.drawables import Drawable
 from semmap.nodes.extern.web.scene.meshes import glb
-from semmap.nodes.extern.web.scene.shown import Shown
 from semmap.nodes.runtime.loop import Node
 from semmap.nodes.sim_node.models.facets import surface_of
 from semmap.nodes.sim_node.models.library import Model, build
@@ -249,7 +249,7 @@ def _bare(entities: int, seconds: float) -> tuple[float, float]:
         looks = {name: surface_of(model) for name, model in models.items()}
         at = _grid(entities)
         things = {
-            f"thing{i}": Shown(
+            f"thing{i}": Drawable(
                 "solid", model, models[model].size_m, (128, 128, 128), Pose(position_m=tuple(at[i].tolist()))
             )
             for i, model in ((i, _MODELS[i % len(_MODELS)]) for i in range(entities))

@@ -163,13 +163,13 @@ def page_why_png(tab: Page, client: Client) -> None:
 def page_time_png(tab: Page, client: Client) -> None:
     """The past beside now: what has moved since, in colours."""
     tab.get_by_label("Filter entities by text").fill("")
-    tab.get_by_label("marked against").click()
+    tab.get_by_label("Compare with").click()
     tab.get_by_role("option", name="now", exact=True).click()
     (seq,) = [commit.seq for commit in client.history() if commit.reason == "a mug, too"]
     field = tab.get_by_label("Go to a commit or a time")
     field.fill(str(seq))
     field.press("Enter")
-    tab.get_by_text(f"The past: commit {seq} of ").wait_for()
+    tab.get_by_text(f"Past: commit {seq} of ").wait_for()
     drawn(tab, 8.0)
     tab.screenshot(path=DOCS / "page-time.png")
     tab.keyboard.press("Home")

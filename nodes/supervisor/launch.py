@@ -181,7 +181,7 @@ def _web(settings: Settings) -> None:
     from semmap.nodes.extern.web.server import WebConfig, run
 
     token = os.environ.get(WEB_TOKEN_VARIABLE, "")
-    run(WebConfig(network=settings.network(WEB), port=settings.web_port, token=token), tell=_log_address)
+    run(WebConfig(network=settings.network(WEB), port=settings.web_port, token=token), on_ready=_log_address)
 
 
 def _log_address(address: str) -> None:

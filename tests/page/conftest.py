@@ -1,6 +1,6 @@
-"""A running system, the page, and tabs of Chromium: one of each for all tests of a process, for speed.
+"""A running system, its page, and Chromium, shared by all tests of a process for speed.
 
-So a test names what it adds as nobody else does, and says nothing of how many commits or entities there are.
+Tests therefore use unique names, and do not depend on the number of commits or entities.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ START_MS = 30_000
 
 
 def chromium_path() -> str | None:
-    """Where Chromium is."""
+    """Return the path of Chromium; None if it is not installed."""
     return os.environ.get("SEMMAP_CHROMIUM") or next(filter(None, map(shutil.which, _NAMES)), None)
 
 
@@ -56,7 +56,7 @@ class Web:
 
 @contextlib.contextmanager
 def serving(endpoint: str, *words: str) -> Iterator[Web]:
-    """`semmap web` for the system at `endpoint`, on a free port; ended with Ctrl-C."""
+    """Run `semmap web` for the system at `endpoint` on a free port, and end it with Ctrl-C."""
     command = [_BIN / "semmap", "web", "--port", "0", *words]
     environment = {**os.environ, "SEMMAP_CONNECT": endpoint}
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
@@ -74,13 +74,16 @@ def serving(endpoint: str, *words: str) -> Iterator[Web]:
 _TABS = pytest.StashKey[list[Any]]()
 """The tabs that a test has opened."""
 _LOOP: list[Any] = [None]
-"""Playwright's event loop. It counts as running in this thread for as long as Playwright lives, which no test
-of another folder can do with: they run loops of their own, in the same process."""
+"""Playwright's event loop.
+
+It counts as running in this thread for as long as Playwright lives. Tests of other folders in the same
+process need their own event loops.
+"""
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
-    """While a test of this folder goes on, with all that it sets up, that loop runs; afterwards none does."""
+    """Set Playwright's loop as running during tests of this folder, including their fixtures."""
     if Path(__file__).parent not in item.path.parents:  # xdist calls this of all tests
         return (yield)
     with _in_its_loop():
@@ -100,7 +103,7 @@ def pytest_runtest_makereport(item: pytest.Item) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _in_its_loop() -> Iterator[None]:
-    if _LOOP[0] is not None:  # else Playwright has begun just now, or has not
+    if _LOOP[0] is not None:  # otherwise Playwright has just started, or not yet
         asyncio._set_running_loop(_LOOP[0])
     try:
         yield
@@ -138,7 +141,7 @@ def web(system) -> Iterator[Web]:
 
 @pytest.fixture(scope="session")
 def profile(chromium):
-    """A function that gives a profile of the browser for such tabs, so that only the first fetches all."""
+    """A function that returns a browser profile for such tabs; profiles share loaded assets."""
     profiles = {}
 
     def of(width: int, height: int, dark: bool, scene: bool):
@@ -160,10 +163,10 @@ def profile(chromium):
 
 @pytest.fixture
 def open_tab(profile, request):
-    """A function that opens the page in a tab of its own: `open_tab(web)`, `open_tab(web, width=390)`.
+    """A function that opens the page in a new tab: `open_tab(web)`, `open_tab(web, width=390)`.
 
-    It draws the scene only with `scene=True`, for software does that slowly, on the thread of all else.
-    No tab may ask anything of another machine, nor report an error; that is looked at in the end.
+    It draws the scene only with `scene=True`, because software rendering blocks the thread of the page. At
+    the end it is checked that no tab has sent a request to another machine or reported an error.
     """
     asked, complained = [], []
     tabs = request.node.stash[_TABS] = []
@@ -190,5 +193,5 @@ def open_tab(profile, request):
 
 @pytest.fixture
 def tab(open_tab, web):
-    """The page in a tab, of a laptop's size."""
+    """The page in a tab of the size of a laptop screen."""
     return open_tab(web)

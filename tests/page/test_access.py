@@ -1,4 +1,4 @@
-"""Who is let in by the page as it runs: to each of its paths, its WebSockets, and the scene."""
+"""Access control of the running page: its paths, its WebSockets and the scene."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SOCKETS = ("/_nicegui_ws/socket.io/?EIO=4&transport=websocket", "/scene/some-pag
 
 
 def ask(web, path, **headers):
-    """Status, headers and body."""
+    """Return status, headers and body of a GET request."""
     with contextlib.closing(http.client.HTTPConnection("127.0.0.1", web.port, timeout=30)) as connection:
         connection.request(
             "GET", path, headers={name.replace("_", "-"): value for name, value in headers.items()}
@@ -35,27 +35,27 @@ def cookie(web):
 
 @pytest.fixture(scope="module")
 def paths(web, cookie):
-    """All that a page is made of, and what else there is."""
+    """The paths of the page, its assets, and its sockets."""
     page = ask(web, "/", cookie=cookie)[2].decode()
     found = sorted(set(re.findall(r'"(/_nicegui/[^"\s]+?\.(?:js|css|woff2?))"', page)))
     assert len(found) > 5, page[:2000]
     return ["/", *found, "/_nicegui_ws/socket.io/?EIO=4&transport=polling", "/scene/some-page/"]
 
 
-def test_every_path_needs_the_cookie(web, cookie, paths):
+def test_every_path_requires_the_cookie(web, cookie, paths):
     for path in paths:
         assert ask(web, path)[0] == 401, path
         assert ask(web, path, cookie=cookie, accept_encoding="gzip")[0] < 400, path
 
 
-def test_every_path_refuses_another_origin_and_a_foreign_name(web, cookie, paths):
+def test_every_path_rejects_other_origins_and_hosts(web, cookie, paths):
     for path in (*paths, "/?" + urlsplit(web.url).query):
         assert ask(web, path, cookie=cookie, origin="http://evil.example")[0] == 403, path
         assert ask(web, path, cookie=cookie, host=f"evil.example:{web.port}")[0] == 403, path
 
 
 @pytest.mark.parametrize("path", SOCKETS)
-def test_websockets_too(web, cookie, path):
+def test_websockets_require_the_cookie_and_the_own_origin(web, cookie, path):
     def status(**headers):
         with pytest.raises(InvalidStatus) as caught:
             connect(f"ws://127.0.0.1:{web.port}{path}", additional_headers=headers, proxy=None)
@@ -75,14 +75,14 @@ def test_websockets_too(web, cookie, path):
         assert websocket.recv(timeout=30)
 
 
-def test_the_page_listens_at_one_port_of_loopback_and_viser_at_none(web):
+def test_the_page_listens_on_one_loopback_port_and_viser_on_none(web):
     listening = [
         c.laddr for c in psutil.Process(web.process.pid).net_connections("inet") if c.status == "LISTEN"
     ]
     assert [(at.ip, at.port) for at in listening] == [("127.0.0.1", web.port)]
 
 
-def test_the_socket_of_viser_is_in_a_folder_of_this_user_alone(web):
+def test_the_socket_of_viser_is_private_to_the_user(web):
     unix = psutil.Process(web.process.pid).net_connections("unix")
     folders = {Path(c.laddr).parent for c in unix if "semmap-scene" in str(c.laddr)}
     assert folders

@@ -1,4 +1,4 @@
-"""The panels of data in a browser: SPARQL, standing queries, files, plan, graph, nodes; markup is text."""
+"""Panels in a browser: SPARQL, standing queries, files, plan, graph and nodes; markup is text."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def write_query(tab, text):
     tab.keyboard.insert_text(text)
 
 
-def test_sparql_runs_selects_refuses_and_watches(tab, system):
+def test_sparql_queries_run_select_and_become_standing_queries(tab, system):
     name = fresh("cup")
     turn_to(tab, "SPARQL")
     write_query(tab, "SELECT ?thing { ?thing a dm:Bed }")
@@ -49,7 +49,7 @@ def test_sparql_runs_selects_refuses_and_watches(tab, system):
         tab.get_by_text("0 rows, commit").wait_for()
 
 
-def test_files_are_tried_first_and_loaded_then_refused_or_downloaded(tab, system, tmp_path):
+def test_files_have_a_dry_run_and_are_loaded_or_rejected(tab, system, tmp_path):
     name = fresh("cup")
     more, large, prose = (tmp_path / file for file in ("more.ttl", "film.bin", "prose.txt"))
     more.write_text(f"<{ABOX}{name}> a <{DM}Cup> .\n")
@@ -60,11 +60,11 @@ def test_files_are_tried_first_and_loaded_then_refused_or_downloaded(tab, system
     turn_to(tab, "Files")
     chooser = tab.locator("input[type=file]")
     chooser.set_input_files(large)
-    tab.get_by_role("alert").get_by_text("film.bin is not text; what can be loaded is").wait_for()
+    tab.get_by_role("alert").get_by_text("film.bin: unsupported binary format").wait_for()
     chooser.set_input_files(prose)
     tab.get_by_role("alert").get_by_text("prose.txt").wait_for()
     chooser.set_input_files(more)
-    tab.get_by_text("If more.ttl is loaded:").wait_for()
+    tab.get_by_text("Changes by more.ttl:").wait_for()
     with system.client() as client:
         assert name not in {entity.name for entity in client.list("Cup")}
         tab.get_by_role("button", name="Load more.ttl").click()
@@ -76,7 +76,7 @@ def test_files_are_tried_first_and_loaded_then_refused_or_downloaded(tab, system
     assert name in download.value.path().read_text()
 
 
-def test_what_is_sent_or_tried_can_be_stopped(tab, system, tmp_path):
+def test_uploads_and_dry_runs_can_be_stopped(tab, system, tmp_path):
     name, many = fresh("cup"), tmp_path / "many.ttl"
     many.write_text("".join(f"<{ABOX}{name}_{n}> a <{DM}Cup> .\n" for n in range(30_000)))
     turn_to(tab, "Files")
@@ -86,23 +86,23 @@ def test_what_is_sent_or_tried_can_be_stopped(tab, system, tmp_path):
     network.send("Network.enable")
     network.send("Network.emulateNetworkConditions", slow)
     chooser.set_input_files(many)
-    tab.get_by_text("Sending the file").wait_for()
+    tab.get_by_text("Uploading ...").wait_for()
     stop.click()
-    tab.get_by_text("Stopped: nothing was loaded.").wait_for()
+    tab.get_by_text("Stopped; no changes.").wait_for()
     network.send("Network.emulateNetworkConditions", slow | {"uploadThroughput": -1})
 
     chooser.set_input_files(many)
-    tab.get_by_text("Trying many.ttl").wait_for()
+    tab.get_by_text("Checking many.ttl").wait_for()
     stop.click()
-    tab.get_by_text("Stopped: nothing was loaded.").wait_for()
+    tab.get_by_text("Stopped; no changes.").wait_for()
     assert not stop.is_visible()
     with system.client() as client:  # whose answer comes after that to what was tried
         assert not {entity.name for entity in client.list("Cup") if entity.name.startswith(name)}
-    assert tab.get_by_text("is loaded:").count() == 0
-    assert tab.get_by_role("alert").get_by_text("not sent whole").count() == 0
+    assert tab.get_by_text("Changes by").count() == 0
+    assert tab.get_by_role("alert").get_by_text("upload incomplete").count() == 0
 
 
-def test_the_plan_the_graph_the_check_and_the_nodes(tab):
+def test_plan_graph_check_and_nodes_are_shown(tab):
     turn_to(tab, "Plan")
     image = tab.get_by_role("img", name="Plan of the rooms").locator("img")
     until(lambda: image.evaluate("image => image.naturalWidth") > 1000, "the plan is drawn")
@@ -113,20 +113,20 @@ def test_the_plan_the_graph_the_check_and_the_nodes(tab):
     assert {"kitchen", "bed1"} <= set(words)
 
     turn_to(tab, "Graph")
-    tab.get_by_text("Nothing is selected: this is all, by places").wait_for()
-    tab.get_by_text("As a table").click()
+    tab.get_by_text("No selection: the graph shows all places").wait_for()
+    tab.get_by_role("button", name="Table").click()
     tab.get_by_role("row", name="kitchen").get_by_text("isLocatedIn").first.wait_for()
 
     turn_to(tab, "System")
     tab.get_by_role("row", name="kb_node").get_by_text("ready").first.wait_for()
-    tab.get_by_label("Filter the log").fill("begun from")
+    tab.get_by_label("Filter log").fill("begun from")
     tab.get_by_role("row", name="begun from flat.ttl").first.wait_for()
 
     turn_to(tab, "Check")
     tab.get_by_text("consistent (").wait_for()
 
 
-def test_markup_in_references_is_text_everywhere(tab, system):
+def test_markup_in_labels_is_text_everywhere(tab, system):
     name = fresh("cup")
     markup = "<img src=x onerror=\"document.title='run'\"><script>document.title='run'</script>"
     with system.client() as client:

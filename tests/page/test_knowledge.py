@@ -1,4 +1,4 @@
-"""The panels of knowledge and of change in a browser."""
+"""Panels for entities, details and changes in a browser."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def client(system):
 
 @pytest.fixture
 def added(client):
-    """A function that adds a cup on the floor, where nothing stands, and tells its name."""
+    """A function that adds a cup in a free place on the floor, and returns its name."""
 
     def add(**fields):
         name = fresh("cup")
@@ -58,7 +58,7 @@ def select(tab, name):
 
 
 def section(tab, title):
-    """A section of the details, opened."""
+    """Return a section of the details, opened."""
     header = tab.locator(".semmap-detail .q-expansion-item").filter(has_text=title).first
     button = header.get_by_role("button").first
     if button.get_attribute("aria-expanded") != "true":
@@ -67,20 +67,20 @@ def section(tab, title):
 
 
 def open_add(tab):
-    """The panel that adds something, turned to."""
+    """Show the panel for adding, and return it."""
     tab.get_by_role("tab", name="Add").click()
     tab.get_by_role("button", name="Add", exact=True).wait_for()
     return tab.get_by_role("tabpanel", name="Add")
 
 
 def choose_class(tab, form, typed):
-    """Type into the form's field of the class; the table's filter has one of that name, too."""
+    """Type into the class field of the form; the filter of the table has one with the same name."""
     form.get_by_role("combobox", name="Class").click()
-    tab.get_by_role("option").first.wait_for()  # the classes have come; they take away what was typed before
+    tab.get_by_role("option").first.wait_for()  # when the classes arrive, they clear typed text
     tab.keyboard.type(typed)
 
 
-def test_the_table_filters_selects_and_follows(tab, client, added):
+def test_the_table_filters_selects_and_follows_changes(tab, client, added):
     name = added(ref="blue cup")
     look_for(tab, name)
     row(tab, name).wait_for()
@@ -101,20 +101,20 @@ def test_a_class_chosen_in_the_tree_filters_the_table(tab, added):
     tab.get_by_role("tab", name="Entities").click()
     row(tab, name).wait_for()
     assert not row(tab, "chair1").is_visible()
-    tab.get_by_role("button", name="Show all").click()
+    tab.get_by_role("button", name="Clear filter").click()
     row(tab, "apple1").wait_for()
-    tab.get_by_role("tab", name="Classes").click()  # where it is marked no more, so that one click chooses it
+    tab.get_by_role("tab", name="Classes").click()  # it is not selected any more, so one click selects it
     tab.locator(".q-tree__node--selected").wait_for(state="detached")
     tab.get_by_label("Classes").get_by_text("Drinking_Vessel").click()
     tab.get_by_role("tab", name="Entities").click()
     row(tab, "apple1").wait_for(state="detached")
 
 
-def test_something_is_added_by_typing_what_it_is_called(tab, client):
+def test_entities_are_added_by_typing_a_label(tab, client):
     name = fresh("machine")
     choose_class(tab, open_add(tab), "macchina del")
     tab.get_by_role("option", name="Coffee_Machine").click()
-    tab.get_by_label("Name (made").fill(name)
+    tab.get_by_label("Name (empty").fill(name)
     for axis, value in (("x", "2.5"), ("y", "3.1"), ("z", "1.2")):
         tab.get_by_label(f"position {axis}").fill(value)
     tab.get_by_role("button", name="Add", exact=True).click()
@@ -126,7 +126,7 @@ def test_something_is_added_by_typing_what_it_is_called(tab, client):
     tab.get_by_text(f"{name} ·").wait_for()
 
 
-def test_enter_takes_the_class_that_is_called_what_was_typed(tab):
+def test_enter_selects_the_class_with_the_typed_label(tab):
     form = open_add(tab)
     choose_class(tab, form, "tazz")
     tab.get_by_role("option", name="Cup ·").first.wait_for()
@@ -135,7 +135,7 @@ def test_enter_takes_the_class_that_is_called_what_was_typed(tab):
     until(lambda: field.input_value().startswith("Cup ·"), "the class that was meant is chosen")
 
 
-def test_the_table_is_one_stop_of_the_keyboard(tab):
+def test_the_table_is_one_tab_stop(tab):
     row(tab, "apple1").locator('[col-id="name"]').click()
     tab.keyboard.press("ArrowDown")
     focused = "document.activeElement.closest('.entity-table') !== null"
@@ -146,20 +146,20 @@ def test_the_table_is_one_stop_of_the_keyboard(tab):
     assert tab.get_by_role("heading", level=1).all_inner_texts() == ["semmap"]
 
 
-def test_a_refused_add_says_why_and_is_mended_by_a_button(tab, client, added):
+def test_a_rejected_add_shows_the_reason_and_a_fix(tab, client, added):
     name = added()
     choose_class(tab, open_add(tab), "Cup ·")
     tab.get_by_role("option", name="Cup ·").first.click()
-    tab.get_by_label("Name (made").fill(name)
+    tab.get_by_label("Name (empty").fill(name)
     tab.get_by_role("button", name="Add", exact=True).click()
-    dialog = tab.get_by_role("dialog", name="Refused")
+    dialog = tab.get_by_role("dialog", name="Rejected")
     dialog.get_by_text(f"the name '{name}' is taken").wait_for()
     before = {e.name for e in client.list()}
-    dialog.get_by_role("button", name="call it").click()
+    dialog.get_by_role("button", name="Use the name").click()
     until(lambda: {e.name for e in client.list()} > before, "it is added under another name")
 
 
-def test_a_contradiction_is_shown_step_by_step_and_mended(tab, client, added):
+def test_a_contradiction_shows_its_proof_and_a_fix(tab, client, added):
     name = added()
     client.set(name, "isSwitchedOn", True)
     select(tab, name)
@@ -170,19 +170,19 @@ def test_a_contradiction_is_shown_step_by_step_and_mended(tab, client, added):
     tab.keyboard.type("Kitchen ·")
     tab.get_by_role("option", name="Kitchen ·").first.click()
     tab.get_by_role("button", name="Save").click()
-    dialog = tab.get_by_role("dialog", name="Refused")
+    dialog = tab.get_by_role("dialog", name="Rejected")
     dialog.get_by_text("as a Kitchen it would be a place").wait_for()
-    dialog.get_by_role("button", name="do it nevertheless").click()
+    dialog.get_by_role("button", name="Force the change").click()
     steps = dialog.get_by_label("Steps")
     steps.get_by_text(f"{name} is switched on").wait_for()
     steps.get_by_text("nothing is both a location and an object").wait_for()
     assert client.get(name).class_ == "Cup"
-    dialog.get_by_role("button", name=f"take back that {name} isSwitchedOn true").click()
+    dialog.get_by_role("button", name=f"Unset {name} isSwitchedOn true and retry").click()
     until(lambda: client.get(name).class_ == "Kitchen", "it is a kitchen")
     client.remove(name)
 
 
-def test_why_is_answered_step_by_step(tab):
+def test_explanations_are_shown_step_by_step(tab):
     select(tab, "milk1")
     why = tab.get_by_role("button", name="Why: is food")
     why.click()
@@ -194,18 +194,18 @@ def test_why_is_answered_step_by_step(tab):
     steps.wait_for(state="detached")
 
 
-def test_no_click_is_lost_and_reasons_stay_while_the_map_changes(tab, client, added):
+def test_clicks_are_not_lost_while_the_map_changes(tab, client, added):
     name = added()
     select(tab, name)
     why = tab.get_by_role("button", name="Why: is an object")
     reasons = tab.locator(".semmap-why")
     for number in range(10):
         is_on = number % 2 == 0
-        if is_on:  # which adds a fact above the others, or takes it away: the button moves
+        if is_on:  # adds or removes a fact above the others, which moves the button
             done = client.set(name, "isSwitchedOn", True)
         else:
             done = client.unset(name, "isSwitchedOn")
-        why.click()  # while the page takes that in
+        why.click()  # while the page processes the change
         has_commit(tab, done.commit)
         asserted = tab.locator(".semmap-detail").get_by_text(f"Asserted ({1 + is_on})")
         asserted.wait_for()
@@ -215,10 +215,10 @@ def test_no_click_is_lost_and_reasons_stay_while_the_map_changes(tab, client, ad
             reasons.wait_for(state="detached")
 
 
-def test_a_reference_is_edited_and_the_change_undone(tab, client, added):
+def test_a_label_is_edited_and_the_change_undone(tab, client, added):
     name = added(ref="cup")
     select(tab, name)
-    section(tab, "Edit").get_by_label("Called", exact=True).fill("grandmother's cup")
+    section(tab, "Edit").get_by_label("Label", exact=True).fill("grandmother's cup")
     tab.get_by_role("button", name="Save").click()
     until(lambda: client.get(name).preferred_reference == "grandmother's cup", "it is called so")
     tab.get_by_role("heading", name="grandmother's cup").wait_for()
@@ -228,18 +228,18 @@ def test_a_reference_is_edited_and_the_change_undone(tab, client, added):
     tab.get_by_role("heading", name="cup", exact=True).wait_for()
 
 
-def test_a_state_is_set_and_taken_back(tab, client, added):
+def test_a_state_is_set_and_unset(tab, client, added):
     name = added()
     select(tab, name)
     fields = section(tab, "States")
     fields.get_by_label("mass").fill("0.25")
     fields.get_by_label("mass").press("Enter")
     until(lambda: client.get(name).properties.get("mass") == 0.25, "the mass is set")
-    tab.get_by_role("button", name="Take back mass").click()
+    tab.get_by_role("button", name="Unset mass").click()
     until(lambda: "mass" not in client.get(name).properties, "the mass is unset")
 
 
-def test_deleting_is_confirmed_and_says_what_else_goes(tab, client, added):
+def test_deletion_is_confirmed_and_lists_its_effects(tab, client, added):
     name = added()
     select(tab, name)
     tab.keyboard.press("Escape")
@@ -255,7 +255,7 @@ def test_deleting_is_confirmed_and_says_what_else_goes(tab, client, added):
     until(lambda: name not in {e.name for e in client.list()}, "it is gone")
 
 
-def test_several_are_moved_and_deleted_at_once(tab, client, added):
+def test_several_entities_are_moved_and_deleted_together(tab, client, added):
     one, two = added(ref="twin"), added(ref="twin")
     look_for(tab, "twin")
     row(tab, one).click()
@@ -266,12 +266,12 @@ def test_several_are_moved_and_deleted_at_once(tab, client, added):
     tab.get_by_text(f"changed 2: {one} and {two}").wait_for()
     ((first,), (second,)) = (client.history(limit=1, name=name) for name in (one, two))
     assert (first.seq, first.verb) == (second.seq, "batch")
-    tab.get_by_role("button", name="Delete all of them").click()
+    tab.get_by_role("button", name="Delete all").click()
     tab.get_by_role("dialog", name="Delete").get_by_role("button", name="Delete", exact=True).click()
     until(lambda: not {one, two} & {e.name for e in client.list()}, "both are gone")
 
 
-def test_words_select_what_they_describe_or_ask_back(tab):
+def test_descriptions_select_entities_or_list_candidates(tab):
     box = tab.get_by_label("Find by words")
     box.fill("il latte")
     box.press("Enter")
@@ -287,7 +287,7 @@ def test_words_select_what_they_describe_or_ask_back(tab):
     tab.locator(".semmap-answer").get_by_text("elephant").wait_for()
 
 
-def test_markup_is_shown_as_text_and_long_texts_do_no_harm(tab, client, added):
+def test_markup_is_text_and_long_texts_fit(tab, client, added):
     evil = "<script>document.title='gone'</script><img src=x onerror=\"document.title='gone'\">{{ 7*7 }}"
     name = added(ref=evil, alt=("long " * 199,))
     select(tab, name)

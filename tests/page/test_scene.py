@@ -1,4 +1,4 @@
-"""The scene in a browser that draws it, in software: a click selects, and what is dragged is moved."""
+"""The scene in a browser with software rendering: selection and dragging."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ import pytest
 from semmap.commands import Add, Remove
 from semmap.nodes import bus
 from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view
-from semmap.nodes.extern.web.scene.dragging import arm_m
-from semmap.nodes.extern.web.scene.seen import wxyz_of
+from semmap.nodes.extern.web.scene.gizmo import arm_m
+from semmap.nodes.extern.web.scene.sensor_overlay import wxyz_of
 from semmap.schemas import keys
 from semmap.schemas.scenes import Scene, SceneQuery
 from tests.page.conftest import START_MS, chromium_path
@@ -29,13 +29,13 @@ _GL = (
 )
 _WIDTH, _HEIGHT = 640, 480
 _RING, _ARROW = 0.65, 0.7
-"""Where along an arm the gizmo has its ring, and where it is well held by an arrow."""
+"""Positions of the ring and of an arrow along an arm of the gizmo, as fractions of its length."""
 _DRAWN_S = 90.0
 
 
 @pytest.fixture(scope="module")
 def seeing(chromium):
-    """A Chromium with WebGL; the one for other tests goes without, which is quicker."""
+    """A Chromium with WebGL; other tests use one without it, which is faster."""
     browser = chromium.browser_type.launch(executable_path=chromium_path(), args=[*_GL])
     yield browser
     browser.close()
@@ -43,7 +43,7 @@ def seeing(chromium):
 
 @pytest.fixture(scope="module")
 def narrow(seeing):
-    """A profile for tabs that are so narrow that the scene is all of the page; only the first fetches all."""
+    """A profile for tabs so narrow that they show the scene only; the assets are loaded once."""
     context = seeing.new_context(viewport={"width": _WIDTH, "height": _HEIGHT})
     yield context
     context.close()
@@ -51,7 +51,7 @@ def narrow(seeing):
 
 @pytest.fixture
 def tab(narrow, web):
-    """The page, as narrow as that."""
+    """The page in a narrow tab."""
     page = narrow.new_page()
     complained = []
     page.on("pageerror", lambda error: complained.append(str(error)))
@@ -65,14 +65,14 @@ def tab(narrow, web):
 
 @pytest.fixture
 def chair(system):
-    """A chair of the test's own, in the middle of the living room."""
+    """A new chair in the middle of the living room."""
     with standing(system, (3.0, 2.2, 0.0)) as name:
         yield name
 
 
 @contextlib.contextmanager
 def standing(system, at, yaw=0.0):
-    """A chair with a body, removed afterwards; its name."""
+    """Add a chair with a body, yield its name, and remove it."""
     name = f"chair_{uuid.uuid4().hex[:8]}"
     with system.client() as client:
         client.send(Add(class_="Chair", name=name, at=at, yaw=yaw))
@@ -82,7 +82,7 @@ def standing(system, at, yaw=0.0):
 
 
 def looking(tab, client) -> View:
-    """How the scene is seen at first."""
+    """Return the initial view of the scene."""
     frame = tab.locator("iframe").bounding_box()
     eye, target = first_view(extent(client.list()), frame["width"] / frame["height"])
     ahead = np.subtract(target, eye) / np.linalg.norm(np.subtract(target, eye))
@@ -92,19 +92,19 @@ def looking(tab, client) -> View:
 
 
 def pixel(tab, view, point):
-    """Where on the page a point [m] is seen."""
+    """Return the pixel on the page of a point [m]."""
     frame = tab.locator("iframe").bounding_box()
     x, y, _ = view.project(np.array([point], dtype=float))[0]
     return frame["x"] + x, frame["y"] + y
 
 
 def until(condition, what: str) -> None:
-    """Software takes long to draw, on a machine that does much else."""
-    assert comes(condition, _DRAWN_S), f"waited {_DRAWN_S:g} s in vain: {what}"
+    """Wait long enough for software rendering on a busy machine."""
+    assert becomes_true(condition, _DRAWN_S), f"not true within {_DRAWN_S:g} s: {what}"
 
 
-def comes(condition, within_s: float = 2.0) -> bool:
-    """Whether it becomes so, soon: what was done before the scene was drawn is done again otherwise."""
+def becomes_true(condition, within_s: float = 2.0) -> bool:
+    """Return whether a condition becomes true soon; otherwise the caller repeats its input."""
     deadline_s = time.monotonic() + within_s
     while not (result := condition()) and time.monotonic() < deadline_s:
         time.sleep(0.02)
@@ -112,7 +112,7 @@ def comes(condition, within_s: float = 2.0) -> bool:
 
 
 def draw(tab, frames: int = 2) -> None:
-    """Wait until the scene has been drawn so many times more: what the mouse did is taken in then."""
+    """Wait for a number of frames, in which the scene handles mouse input."""
     scene = tab.frames[-1]
     for _ in range(frames):
         scene.evaluate("new Promise((drawn) => requestAnimationFrame(drawn))")
@@ -123,18 +123,18 @@ def selected(tab) -> str:
 
 
 def select(tab, view, entity) -> None:
-    """Click at a thing until it is selected: nothing is there to be clicked before it is drawn."""
+    """Click on an entity until it is selected, which needs the scene to be drawn."""
     x, y, z = entity.pose.position_m
     at = pixel(tab, view, (x, y, z + 0.45 * entity.size_m[2]))
 
     def click() -> bool:
         tab.mouse.click(*at)
-        return comes(lambda: selected(tab) == entity.name)
+        return becomes_true(lambda: selected(tab) == entity.name)
 
     until(click, f"{entity.name} is selected")
 
 
-def test_nothing_of_viser_s_own_panels_is_shown(tab):
+def test_panels_of_viser_are_hidden(tab):
     panel = tab.frame_locator("iframe").get_by_text("Scene tree")
     for width in (480, 900):  # it has one for phones, and one for all others
         tab.set_viewport_size({"width": width, "height": 320})
@@ -142,7 +142,7 @@ def test_nothing_of_viser_s_own_panels_is_shown(tab):
         assert not panel.is_visible()
 
 
-def test_a_click_selects_and_one_beside_things_selects_nothing(tab, system, chair):
+def test_a_click_selects_and_a_click_on_the_background_deselects(tab, system, chair):
     with system.client() as client:
         view, entity = looking(tab, client), client.get(chair)
         select(tab, view, entity)
@@ -150,13 +150,13 @@ def test_a_click_selects_and_one_beside_things_selects_nothing(tab, system, chai
 
         def click_beside() -> bool:
             tab.mouse.click(frame["x"] + frame["width"] - 60, frame["y"] + 0.5 * frame["height"])
-            return comes(lambda: selected(tab) == "")
+            return becomes_true(lambda: selected(tab) == "")
 
         until(click_beside, "nothing is selected")
 
 
 def drag_along_x(tab, view, client, name, done=None) -> None:
-    """By the arrow along x, until the map follows, or else until it is `done()`.
+    """Drag by the arrow along x until the map has changed, or until `done()`.
 
     Before the arrow is drawn, the mouse turns the view instead.
     """
@@ -166,17 +166,17 @@ def drag_along_x(tab, view, client, name, done=None) -> None:
     done = done or (lambda: client.get(name).pose.position_m[0] > x + 0.5)
 
     def drag() -> bool:
-        tab.get_by_role("button", name="Look at everything").click()
+        tab.get_by_role("button", name="Show all").click()
         settle(tab)
         draw(tab)
-        dragged(tab, view, *((x + grip + 0.2 * step, y, z) for step in range(6)))
+        drag_along(tab, view, *((x + grip + 0.2 * step, y, z) for step in range(6)))
         tab.mouse.up()
-        return comes(done)
+        return becomes_true(done)
 
     until(drag, "the chair was dragged")
 
 
-def test_what_is_dragged_with_the_mouse_is_moved_and_the_map_follows(tab, system, chair):
+def test_a_dragged_entity_is_moved_in_the_map(tab, system, chair):
     with system.client() as client:
         view, entity = looking(tab, client), client.get(chair)
         select(tab, view, entity)
@@ -188,17 +188,17 @@ def test_what_is_dragged_with_the_mouse_is_moved_and_the_map_follows(tab, system
         assert math.isclose(moved.yaw_rad, entity.pose.yaw_rad, abs_tol=0.05)
 
 
-def test_what_is_dragged_into_another_thing_goes_back_and_that_is_named(tab, system, chair):
+def test_an_entity_dragged_into_another_one_returns(tab, system, chair):
     with standing(system, (4.0, 2.2, 0.0)) as other, system.client() as client:
         view, entity = looking(tab, client), client.get(chair)
         select(tab, view, entity)
-        said = tab.get_by_text(f"There is no room for {chair} there: it would stand in {other}.")
+        said = tab.get_by_text(f"{chair}: no free space, the position overlaps {other}")
         drag_along_x(tab, view, client, chair, lambda: said.count() > 0)
         until(lambda: client.get(chair).body.status == "present", "the chair stands")
         assert client.get(chair).pose.position_m == pytest.approx(entity.pose.position_m, abs=0.05)
 
 
-def test_what_is_dragged_keeps_its_yaw_whatever_was_selected_before(tab, system, chair):
+def test_a_dragged_entity_keeps_its_yaw(tab, system, chair):
     with standing(system, (1.6, 2.2, 0.0), yaw=math.radians(180.0)) as turned, system.client() as client:
         view = looking(tab, client)
         select(tab, view, client.get(turned))
@@ -209,8 +209,8 @@ def test_what_is_dragged_keeps_its_yaw_whatever_was_selected_before(tab, system,
         assert math.isclose(client.get(chair).pose.yaw_rad, 0.0, abs_tol=0.05)
 
 
-def dragged(tab, view, *points) -> None:
-    """Press at the first of these points [m], and go on to the others; the button stays pressed."""
+def drag_along(tab, view, *points) -> None:
+    """Press the mouse at the first of these points [m], and move it to the others without a release."""
     tab.mouse.move(*pixel(tab, view, points[0]))
     draw(tab)
     tab.mouse.down()
@@ -220,12 +220,12 @@ def dragged(tab, view, *points) -> None:
 
 
 def height(client, name) -> float:
-    """How high the body stands just now [m]."""
+    """Return the current height of a body [m]."""
     scene = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene)
     return next(body.pose.position_m[2] for body in scene.bodies if body.name == name)
 
 
-def test_a_thing_is_turned_by_the_ring(tab, system, chair):
+def test_the_ring_turns_an_entity(tab, system, chair):
     with system.client() as client:
         view, entity = looking(tab, client), client.get(chair)
         select(tab, view, entity)
@@ -234,9 +234,9 @@ def test_a_thing_is_turned_by_the_ring(tab, system, chair):
         angles = [math.pi / 4.0 + 0.2 * step for step in range(6)]
 
         def turn() -> bool:
-            dragged(tab, view, *((x + radius * math.cos(a), y + radius * math.sin(a), z) for a in angles))
+            drag_along(tab, view, *((x + radius * math.cos(a), y + radius * math.sin(a), z) for a in angles))
             tab.mouse.up()
-            return comes(lambda: abs(client.get(chair).pose.yaw_rad) > 0.5)
+            return becomes_true(lambda: abs(client.get(chair).pose.yaw_rad) > 0.5)
 
         until(turn, "the map says that the chair was turned")
         turned = client.get(chair).pose
@@ -244,7 +244,7 @@ def test_a_thing_is_turned_by_the_ring(tab, system, chair):
         assert turned.position_m == pytest.approx(entity.pose.position_m, abs=0.06)
 
 
-def test_a_thing_is_lifted_by_the_upright_arrow(tab, system, chair):
+def test_the_vertical_arrow_lifts_an_entity(tab, system, chair):
     with system.client() as client:
         view, entity = looking(tab, client), client.get(chair)
         select(tab, view, entity)
@@ -252,22 +252,22 @@ def test_a_thing_is_lifted_by_the_upright_arrow(tab, system, chair):
         grip = z + _ARROW * arm_m(entity.size_m)
 
         def lift() -> bool:
-            """It falls at once, and has hardly begun to when it is looked at first."""
-            dragged(tab, view, *((x, y, grip + 0.15 * step) for step in range(6)))
+            """Return whether the chair was high after the release, when it starts to fall."""
+            drag_along(tab, view, *((x, y, grip + 0.15 * step) for step in range(6)))
             tab.mouse.up()
-            return comes(lambda: height(client, chair) - z > 0.3)
+            return becomes_true(lambda: height(client, chair) - z > 0.3)
 
         until(lift, "the chair was up in the air")
         until(lambda: height(client, chair) < 0.05, "it has come down again")
 
 
-def test_a_tab_that_is_closed_in_mid_drag_has_moved_nothing(narrow, tab, web, system, chair):
+def test_closing_a_tab_during_a_drag_moves_nothing(narrow, tab, web, system, chair):
     with system.client() as client:
         view, entity = looking(tab, client), client.get(chair)
         select(tab, view, entity)
         x, y, z = entity.pose.position_m
         grip = _RING * arm_m(entity.size_m)
-        dragged(tab, view, *((x + grip + 0.2 * step, y, z) for step in range(6)))
+        drag_along(tab, view, *((x + grip + 0.2 * step, y, z) for step in range(6)))
         before = client.status().commit
         tab.close()
         page = narrow.new_page()

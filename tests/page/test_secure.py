@@ -1,4 +1,4 @@
-"""The page of a secure system acts under its own certificate's role, and shows only what that may do."""
+"""The page of a secure system has the role of its certificate, and shows only what that role may do."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def address(system):
 
 @pytest.fixture(scope="module")
 def secured(folder, tmp_path_factory):
-    """A secure system with the page of a viewer."""
+    """A secure system with a page for a viewer."""
     words = ("--no-record", "--secure", folder, "--web", "--web-port", "0", "--web-as", "vera")
     with running(tmp_path_factory.mktemp("page-secured") / "d", *words) as system:
         yield system
@@ -39,10 +39,10 @@ def shown(tab):
     tab.get_by_text("Inferred (").wait_for()
 
 
-def test_up_starts_the_page_as_a_viewer_which_shows_all_and_no_way_to_change(chromium, open_tab, secured):
+def test_a_page_for_a_viewer_has_no_buttons_for_changes(chromium, open_tab, secured):
     tab = open_tab(Web(address(secured), secured.process))
     shown(tab)
-    for name in ("Add an entity", "Undo the last change (u)", "Save", "Delete", "Take back isOpen", "yes"):
+    for name in ("Add an entity", "Undo the last change (u)", "Save", "Delete", "Unset isOpen", "yes"):
         assert tab.get_by_role("button", name=name, exact=True).count() == 0, name
     assert tab.get_by_role("tab", name="Details").count() == 1
     assert tab.get_by_role("tab", name="Add").count() == 0
@@ -59,14 +59,14 @@ def test_up_starts_the_page_as_a_viewer_which_shows_all_and_no_way_to_change(chr
         tab.get_by_role("tab", name=panel, exact=True).click()
         tab.get_by_label(panel, exact=True).get_by_text(told).first.wait_for()
     tab.get_by_role("tab", name="Files").click()
-    assert tab.get_by_text("Choose a file, or drop it here").count() == 0
+    assert tab.get_by_text("Choose or drop a file").count() == 0
     tab.keyboard.press("Delete")
-    tab.get_by_text("Your certificate may not delete").wait_for()
+    tab.get_by_text("deletion is not permitted").wait_for()
     tab.keyboard.press("u")
-    tab.get_by_text("Your certificate may not undo").wait_for()
+    tab.get_by_text("undo is not permitted").wait_for()
 
 
-def test_the_page_of_an_operator_changes(chromium, open_tab, secured, folder):
+def test_a_page_for_an_operator_changes_the_map(chromium, open_tab, secured, folder):
     with serving(secured.endpoint, "--identity", str(folder / "bob")) as web:
         tab = open_tab(web)
         shown(tab)
@@ -77,7 +77,7 @@ def test_the_page_of_an_operator_changes(chromium, open_tab, secured, folder):
         tab.get_by_text("undid ").first.wait_for()
 
 
-def test_a_secure_page_is_told_whom_it_acts_for(folder, tmp_path, capsys):
+def test_a_secure_page_requires_an_identity(folder, tmp_path, capsys):
     from semmap.nodes.extern.cli.app import execute
 
     assert execute(["up", "--data", str(tmp_path), "--secure", str(folder), "--web"]) == 2

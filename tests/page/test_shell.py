@@ -1,4 +1,4 @@
-"""The shell of the page in a browser: keys, looks, the phone, two tabs, and a system that goes and comes."""
+"""The layout of the page in a browser: keys, theme, phone, several tabs, and a lost system."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ def fresh(stem: str) -> str:
     return f"{stem}_{uuid.uuid4().hex[:8]}"
 
 
-def test_it_opens_with_the_map_and_the_token_is_gone_from_the_address(tab, web, system):
+def test_the_page_opens_with_the_map_and_without_the_token(tab, web, system):
     assert tab.url == f"{web.origin}/"
     with system.client() as client:
         until(lambda: commit_of(tab) == client.status().commit, "the page is at the newest commit")
     assert "scene" in tab.locator("iframe").get_attribute("title").lower()
 
 
-def test_two_tabs_agree_on_a_change_from_elsewhere(open_tab, web, system):
+def test_two_tabs_show_a_change_by_another_client(open_tab, web, system):
     one, two = open_tab(web), open_tab(web)
     with system.client() as client:
         done = client.send(Add(class_="Cup", name=fresh("cup"), at=(2.0, 3.0, 1.0)))
@@ -32,7 +32,7 @@ def test_two_tabs_agree_on_a_change_from_elsewhere(open_tab, web, system):
     assert one.locator(".semmap-state").inner_text() == two.locator(".semmap-state").inner_text()
 
 
-def test_u_undoes_and_a_question_mark_shows_the_keys(tab, system):
+def test_keys_undo_and_show_the_shortcuts(tab, system):
     name = fresh("cup")
     with system.client() as client:
         done = client.send(Add(class_="Cup", name=name, at=(2.0, 3.0, 1.0)))
@@ -40,12 +40,12 @@ def test_u_undoes_and_a_question_mark_shows_the_keys(tab, system):
         tab.keyboard.press("u")
         until(lambda: name not in {e.name for e in client.list()}, "it is undone")
     tab.keyboard.press("?")
-    tab.get_by_role("dialog", name="Keys").get_by_text("undo the last change").wait_for()
+    tab.get_by_role("dialog", name="Keyboard shortcuts").get_by_text("undo the last change").wait_for()
     tab.keyboard.press("Escape")
-    tab.get_by_role("dialog", name="Keys").wait_for(state="detached")
+    tab.get_by_role("dialog", name="Keyboard shortcuts").wait_for(state="detached")
 
 
-def test_what_was_pressed_is_clicked_though_it_moves_away_before_the_release(tab):
+def test_a_pressed_element_that_moves_is_clicked(tab):
     box = tab.get_by_role("tab", name="History").bounding_box()
     tab.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     tab.mouse.down()
@@ -54,16 +54,16 @@ def test_what_was_pressed_is_clicked_though_it_moves_away_before_the_release(tab
     tab.get_by_role("tabpanel", name="History").wait_for()
 
 
-def test_it_fits_a_phone(open_tab, web):
+def test_the_page_fits_a_phone(open_tab, web):
     tab = open_tab(web, width=390, height=800)
     assert tab.evaluate("document.documentElement.scrollWidth") <= 390
     tab.get_by_role("tab", name="Scene").wait_for()
-    tab.get_by_role("tab", name="Entities").wait_for(state="hidden")  # the page has learned how wide it is
+    tab.get_by_role("tab", name="Entities").wait_for(state="hidden")  # the browser has reported its width
     tab.get_by_role("button", name="Show or hide the lists").click()
     tab.get_by_role("tab", name="Entities").wait_for()
 
 
-def test_on_a_phone_the_list_stays_while_boxes_are_ticked_and_ends_when_a_row_is_chosen(open_tab, web):
+def test_on_a_phone_check_boxes_keep_the_list_open_and_rows_close_it(open_tab, web):
     tab = open_tab(web, width=390, height=800)
     tab.get_by_role("button", name="Show or hide the lists").click()
     rows = tab.locator(".entity-table .ag-center-cols-container .ag-row")
@@ -78,14 +78,14 @@ def test_on_a_phone_the_list_stays_while_boxes_are_ticked_and_ends_when_a_row_is
 
 
 @pytest.mark.parametrize("dark", [False, True])
-def test_it_looks_as_the_browser_does_until_it_is_told(open_tab, web, dark):
+def test_the_theme_follows_the_browser_until_toggled(open_tab, web, dark):
     tab = open_tab(web, dark=dark)
     assert ("body--dark" in tab.locator("body").get_attribute("class")) is dark
-    tab.get_by_role("button", name="Dark or light").click()
+    tab.get_by_role("button", name="Toggle dark mode").click()
     tab.wait_for_selector("body:not(.body--dark)" if dark else "body.body--dark")
 
 
-def test_a_system_that_ends_is_said_to_be_away_and_another_map_is_begun_anew(chromium, open_tab, tmp_path):
+def test_a_lost_system_is_reported_and_a_new_map_resets_the_page(chromium, open_tab, tmp_path):
     words = ("--no-record", "--no-sim")
     with running(tmp_path / "one", *words) as first:
         endpoint = first.endpoint
@@ -93,15 +93,15 @@ def test_a_system_that_ends_is_said_to_be_away_and_another_map_is_begun_anew(chr
             tab = open_tab(web)
             until(lambda: "78 entities" in tab.locator(".semmap-state").inner_text(), "the flat shows")
             first.stop()
-            tab.get_by_text("The knowledge base does not answer").wait_for()
+            tab.get_by_text("No response from the knowledge base").wait_for()
             with running(tmp_path / "two", "--abox", "none", *words, endpoint=endpoint):
-                tab.get_by_text("Another map is behind this address now").wait_for()
+                tab.get_by_text("the system now serves another map").wait_for()
                 until(lambda: "78" not in tab.locator(".semmap-entities").inner_text(), "it is empty")
                 assert not tab.locator(".semmap-away").is_visible()
 
 
-def test_a_page_that_is_stopped_blocks_no_node(web, tab, system):
-    """SIGSTOP: it reads nothing any more, and the system does not notice."""
+def test_a_stopped_page_does_not_block_nodes(web, tab, system):
+    """After SIGSTOP the page reads nothing; the system is not affected."""
     import signal
     import time
 

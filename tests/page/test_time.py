@@ -1,4 +1,4 @@
-"""The past in a browser: the slider, one commit back and on, play, what is marked, and back to now."""
+"""The timeline in a browser: slider, steps, playback, differences, and the return to now."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.page.waiting import has_commit, settle
 
 @pytest.fixture
 def cup(system):
-    """A cup that was added, moved, and moved again; its name and its three commits."""
+    """The name of a cup that was added and moved twice, and the three commits."""
     name = fresh("cup")
     with system.client() as client:
         added = client.send(Add(class_="Cup", name=name, at=(2.0, 3.0, 0.0))).commit
@@ -32,71 +32,71 @@ def caption(tab):
 def go_to(tab, when):
     if isinstance(when, int):
         has_commit(tab, when)
-    field = tab.get_by_label("Go to a commit or a time")
+    field = tab.get_by_label("Go to commit or time")
     field.fill(str(when))
     field.press("Enter")
 
 
 def chips(tab):
-    return tab.get_by_label("What is different").inner_text()
+    return tab.get_by_label("Differences").inner_text()
 
 
-def test_back_and_on_by_commit_and_home_again(tab, cup):
+def test_the_timeline_steps_and_returns_to_now(tab, cup):
     name, _, moved, again = cup
-    tab.get_by_role("tab", name="History").click()  # the scene costs a browser without graphics much
+    tab.get_by_role("tab", name="History").click()  # the scene is slow in a browser without a GPU
     has_commit(tab, again)
     go_to(tab, moved)
-    until(lambda: caption(tab).startswith(f"The past: commit {moved} of "), "it shows the past")
+    until(lambda: caption(tab).startswith(f"Past: commit {moved} of "), "it shows the past")
     until(lambda: "1 moved by this commit" in chips(tab), "what it moved is marked")
     assert name in chips(tab)
-    tab.get_by_role("button", name="One commit back").click()
+    tab.get_by_role("button", name="Previous commit").click()
     until(lambda: "1 added by this commit" in chips(tab), "what it added is marked")
     tab.locator(".q-slider__track-container").press("ArrowRight")
-    until(lambda: caption(tab).startswith(f"The past: commit {moved} of "), "the slider goes on by one")
+    until(lambda: caption(tab).startswith(f"Past: commit {moved} of "), "the slider goes on by one")
     tab.keyboard.press("Home")
     until(lambda: caption(tab).startswith("Now: commit "), "it is now again")
     assert chips(tab) == ""
 
 
-def test_home_right_after_the_slider_stays_now(tab, cup):
+def test_home_directly_after_the_slider_returns_to_now(tab, cup):
     _, _, moved, _ = cup
     tab.get_by_role("tab", name="History").click()
     go_to(tab, moved - 1)
-    until(lambda: caption(tab).startswith("The past: "), "it shows the past")
+    until(lambda: caption(tab).startswith("Past: "), "it shows the past")
     tab.locator(".q-slider__track-container").press("ArrowRight")
     tab.keyboard.press("Home")
     settle(tab)
     assert caption(tab).startswith("Now: commit ")
 
 
-def test_the_past_is_compared_with_now_and_cannot_be_changed(tab, cup, system):
+def test_the_past_is_compared_with_now_and_is_read_only(tab, cup, system):
     name, added, *_ = cup
     tab.get_by_role("tab", name="History").click()
     go_to(tab, added)
-    until(lambda: caption(tab).startswith(f"The past: commit {added} of "), "it shows the past")
-    tab.get_by_label("marked against").click()
+    until(lambda: caption(tab).startswith(f"Past: commit {added} of "), "it shows the past")
+    tab.get_by_label("Compare with").click()
     tab.get_by_role("option", name="now", exact=True).click()
     until(lambda: re.search(r"\d moved since then", chips(tab)), "what has moved since is marked")
     assert name in chips(tab)
     with system.client() as client:
         before = client.status().commit
         tab.keyboard.press("u")
-        tab.get_by_text("This is the past, which does not change").wait_for()
+        tab.get_by_text("the past is read-only").wait_for()
         assert client.status().commit == before
 
 
-def test_it_plays_to_the_end(tab, cup):
+def test_playback_runs_to_the_end(tab, cup):
     _, added, *_ = cup
     tab.get_by_role("tab", name="History").click()
     go_to(tab, added)
-    until(lambda: caption(tab).startswith(f"The past: commit {added} of "), "it shows the past")
+    until(lambda: caption(tab).startswith(f"Past: commit {added} of "), "it shows the past")
     tab.get_by_role("button", name="Play").click()
     until(lambda: caption(tab).startswith("Now: commit "), "it has played to now")
 
 
-def test_a_moment_that_there_was_not_is_refused_in_a_sentence(tab, cup):
+def test_invalid_moments_are_rejected_with_a_message(tab, cup):
     for said, why in (
-        ("1000000", "there is no commit 1000000 yet"),
+        ("1000000", "commit 1000000 does not exist yet"),
         ("soonish", "'soonish' is neither a commit"),
     ):
         go_to(tab, said)
@@ -104,13 +104,13 @@ def test_a_moment_that_there_was_not_is_refused_in_a_sentence(tab, cup):
     assert caption(tab).startswith("Now: commit ")
 
 
-def test_the_history_of_what_is_selected_goes_to_its_commits(tab, cup):
+def test_the_history_of_selected_entities_opens_their_commits(tab, cup):
     name, added, moved, again = cup
     go_to(tab, added)
     until(lambda: name in chips(tab), "what it added is marked")
-    tab.get_by_label("What is different").get_by_text(name).click()
+    tab.get_by_label("Differences").get_by_text(name).click()
     tab.get_by_role("tab", name="History").click()
-    tab.get_by_role("checkbox", name="Only commits of what is selected").click()
+    tab.get_by_role("checkbox", name="Selected entities only").click()
     table = tab.get_by_label("Commits").locator("tbody.q-virtual-scroll__content")
 
     def rows():
@@ -123,19 +123,19 @@ def test_the_history_of_what_is_selected_goes_to_its_commits(tab, cup):
 
     until(lists_its_commits, "only its commits are listed, and all of them")
     table.get_by_text(str(moved), exact=True).click()
-    until(lambda: caption(tab).startswith(f"The past: commit {moved} of "), "the page goes there")
+    until(lambda: caption(tab).startswith(f"Past: commit {moved} of "), "the page goes there")
 
 
-def test_details_of_the_past_have_the_facts_of_then(tab, cup):
+def test_details_of_the_past_show_past_facts(tab, cup):
     name, added, _, again = cup
     has_commit(tab, again)
     tab.get_by_label("Filter entities by text").fill(name)
     tab.locator(f'[row-id="{name}"] [col-id="name"]').click()
     tab.locator(".semmap-fact", has_text="class: Cup").wait_for()
     go_to(tab, added)
-    until(lambda: caption(tab).startswith(f"The past: commit {added} of "), "it shows the past")
+    until(lambda: caption(tab).startswith(f"Past: commit {added} of "), "it shows the past")
     details = tab.locator(".semmap-detail")
-    details.get_by_text("there are no proofs of the past").wait_for()
+    details.get_by_text("available for the current map only").wait_for()
     details.locator(".semmap-fact", has_text="class: Cup").wait_for()
     details.locator(".semmap-fact", has_text="Dishware").first.wait_for(timeout=60_000)
     assert details.get_by_role("button", name="Why").count() == 0

@@ -1,4 +1,4 @@
-"""What tests of the page wait for: marks of the page itself, never time."""
+"""Waiting in tests of the page, by its status attributes and never by time."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from tests.conftest import until
 
 
 def mark(tab: Any, name: str) -> str:
-    """One of the attributes that the page keeps for those who wait for it, such as `commit`."""
+    """Return a status attribute of the page, such as `commit`."""
     return str(tab.locator(".semmap-marks").get_attribute(f"data-{name}"))
 
 
 def commit_of(tab: Any) -> int:
-    """The commit that the tab shows."""
+    """Return the commit that the tab shows."""
     return int(mark(tab, "commit"))
 
 
@@ -23,5 +23,5 @@ def has_commit(tab: Any, commit: int) -> None:
 
 
 def settle(tab: Any) -> None:
-    """Wait until the page has taken in all that was done in the tab, and shows what came of it."""
+    """Wait until the page has processed all input and shows the result."""
     tab.evaluate("semmapSettled()")

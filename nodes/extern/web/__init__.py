@@ -1,6 +1,8 @@
-"""The page: the map in a browser, to look at and to work on.
+"""The web page, which shows the map in a browser and edits it.
 
-`live.py` follows the map, the poses and the health of the nodes; `page.py` is one open tab and what it shows;
-`layout.py` and `panels/` draw it, `scene/` the part in three dimensions. `access.py` lets in who may come in,
-and `server.py` runs it all in one process.
+- `live.py` receives the map, the poses and the health of the nodes
+- `page.py` is the state of one open tab
+- `layout.py` and `panels/` draw a tab, `scene/` its 3-D view, from the plain data of `views/`
+- `access.py` authenticates browsers
+- `server.py` runs all of it in one process
 """

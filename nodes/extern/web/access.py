@@ -1,6 +1,6 @@
-"""Who may come in: those who know the token that was printed, and no page of another origin.
+"""Access control: browsers need the printed token, and pages of other origins are rejected.
 
-Everything that is served is behind this: pages, assets, WebSockets, the scene.
+It covers everything that is served: pages, assets, WebSockets and the scene.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _LOOPBACK: Final = frozenset(("127.0.0.1", "localhost", "::1"))
 _POLICY: Final = (
     "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; frame-ancestors 'self'; form-action 'self'"
 )
-"""Nothing that the page shows may fetch anything from elsewhere; the browser itself sees to it."""
+"""The page may not load anything from other origins; the browser enforces this."""
 _HEADERS: Final = (
     (b"content-security-policy", _POLICY.encode()),
     (b"referrer-policy", b"no-referrer"),
@@ -33,10 +33,10 @@ _HEADERS: Final = (
 
 
 class Access:
-    """An ASGI application that lets in who knows the token, or has the cookie that it was exchanged for."""
+    """An ASGI application that requires the token, or the cookie that was given in exchange for it."""
 
     def __init__(self, app: App, host: str, port: int, token: str) -> None:
-        """`host` and `port` are where the page listens. `token` is valid as long as this process lives."""
+        """`host` and `port` are the address of the page. `token` is valid until this process ends."""
         self._app = app
         self._port = port
         self._hosts = _LOOPBACK | {host.lower(), socket.gethostname().lower()}
@@ -44,49 +44,50 @@ class Access:
         self._token = token.encode()
         self._cookie = hmac.digest(self._token, b"cookie", "sha256").hex()
         self._cookie_name = f"semmap-{port}"
-        """A browser sends the cookies of a host to all its ports."""
+        """It contains the port, because a browser sends the cookies of a host to all its ports."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer, or let the application answer."""
+        """Pass an authorized request to the application, and reject others."""
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
         headers = _headers(scope)
         if not self._is_own_host(headers.get("host", "")):
-            await _refuse(
-                scope, send, 403, "this address is not the page's; open the one that semmap printed"
-            )
+            await _reject(scope, send, 403, "unknown host name; open the address that semmap printed")
         elif not self._is_own_origin(headers):
-            await _refuse(scope, send, 403, "the page does not answer pages of another origin")
-        elif scope["type"] == "http" and self._has_token(
-            scope
-        ):  # which leaves the address even if it is known
+            await _reject(scope, send, 403, "requests from other origins are not allowed")
+        elif scope["type"] == "http" and self._has_token(scope):  # also with a cookie: it hides the token
             await self._exchange(scope, send)
-        elif self._is_known(headers):
-            await self._answer(scope, receive, send)
+        elif self._has_cookie(headers):
+            await self._forward(scope, receive, send)
         else:
-            await _refuse(scope, send, 401, "open the address with the token that semmap printed")
+            await _reject(
+                scope, send, 401, "token required; open the address with the token that semmap printed"
+            )
 
-    async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Let the application answer; where the browser has gone meanwhile, no answer is no error."""
-        is_gone = False
+    async def _forward(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request to the application.
+
+        A missing reply is not an error if the browser disconnected.
+        """
+        is_disconnected = False
 
         async def receiving() -> MutableMapping[str, Any]:
-            nonlocal is_gone
+            nonlocal is_disconnected
             message = await receive()
-            is_gone = is_gone or message["type"] == "http.disconnect"
+            is_disconnected = is_disconnected or message["type"] == "http.disconnect"
             return message
 
         try:
             await self._app(scope, receiving, _with_headers(send))
         except RuntimeError:
-            if not is_gone:
+            if not is_disconnected:
                 raise
 
-    def _is_own_host(self, said: str) -> bool:
-        """Is it an address of the page's own? A foreign name may be made to point here (rebinding)."""
+    def _is_own_host(self, header: str) -> bool:
+        """Return whether the header has an address of the page; this prevents DNS rebinding."""
         try:
-            parts = urlsplit(f"//{said}")
+            parts = urlsplit(f"//{header}")
             host, port = (parts.hostname or "").lower(), parts.port
         except ValueError:
             return False
@@ -95,11 +96,11 @@ class Access:
         return host in self._hosts or (self._any_address and _is_address(host))
 
     def _is_own_origin(self, headers: dict[str, str]) -> bool:
-        """A browser says from which origin a page asks; a program that is none need not say."""
+        """Return whether the request has the origin of the page, or none, as from other programs."""
         origin = headers.get("origin")
         return origin is None or origin.lower() == f"http://{headers['host']}".lower()
 
-    def _is_known(self, headers: dict[str, str]) -> bool:
+    def _has_cookie(self, headers: dict[str, str]) -> bool:
         try:
             cookie = SimpleCookie(headers.get("cookie", "")).get(self._cookie_name)
         except CookieError:
@@ -107,11 +108,11 @@ class Access:
         return cookie is not None and hmac.compare_digest(cookie.value.encode(), self._cookie.encode())
 
     def _has_token(self, scope: Scope) -> bool:
-        said = parse_qs(scope["query_string"].decode("latin-1")).get(TOKEN, [])
-        return len(said) == 1 and hmac.compare_digest(said[0].encode(), self._token)
+        tokens = parse_qs(scope["query_string"].decode("latin-1")).get(TOKEN, [])
+        return len(tokens) == 1 and hmac.compare_digest(tokens[0].encode(), self._token)
 
     async def _exchange(self, scope: Scope, send: Send) -> None:
-        """Give the cookie, and go on without the token: it stays neither in the address nor in a log."""
+        """Set the cookie, and open the page without the token, which is then in no address or log."""
         cookie = f"{self._cookie_name}={self._cookie}; Path=/; HttpOnly; SameSite=Strict"
         headers = [
             (b"content-type", b"text/html; charset=utf-8"),
@@ -119,14 +120,14 @@ class Access:
             (b"set-cookie", cookie.encode()),
             *_HEADERS,
         ]
-        # A redirection would be part of the visit of whoever has the link, and a strict cookie not be sent.
+        # After an HTTP redirect from a link on another site, the browser would not send a strict cookie.
         text = '<!doctype html><title>semmap</title><meta http-equiv="refresh" content="0; url=/">'
         await send({"type": "http.response.start", "status": 200, "headers": headers})
         await send({"type": "http.response.body", "body": text.encode()})
 
 
 def _headers(scope: Scope) -> dict[str, str]:
-    """By name, in lower case. Of what is said twice the values are joined, which is then no valid one."""
+    """Return the headers by lower-case name. Values of repeated headers are joined, and thus invalid."""
     found: dict[str, str] = {}
     for name, value in scope["headers"]:
         key, text = name.decode("latin-1").lower(), value.decode("latin-1")
@@ -135,7 +136,7 @@ def _headers(scope: Scope) -> dict[str, str]:
     return found
 
 
-async def _refuse(scope: Scope, send: Send, status: int, text: str) -> None:
+async def _reject(scope: Scope, send: Send, status: int, text: str) -> None:
     body = f"{text}\n".encode()
     headers = [(b"content-type", b"text/plain; charset=utf-8"), (b"content-length", str(len(body)).encode())]
     kind = "http"
@@ -158,7 +159,7 @@ def _with_headers(send: Send) -> Send:
 
 
 def _is_any(host: str) -> bool:
-    """Does it listen at all addresses of this machine?"""
+    """Return whether the address stands for all addresses of this machine."""
     return _is_address(host) and ipaddress.ip_address(host).is_unspecified
 
 

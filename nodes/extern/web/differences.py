@@ -1,4 +1,4 @@
-"""How two states of the map differ, entity by entity. Pure."""
+"""Differences between two states of the map, by entity."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ MARKS: Final[tuple[Mark, ...]] = ("added", "removed", "moved", "changed")
 
 
 class Difference(Struct, frozen=True, kw_only=True):
-    """How an entity differs between two states: in words, and as it was and is; None where it is not there.
+    """The difference of one entity between two states, with the entity in both; None where it does not exist.
 
-    `moved` is one whose position or orientation alone is another.
+    An entity is `moved` if only its position or orientation differs.
     """
 
     mark: Mark
@@ -28,22 +28,22 @@ class Difference(Struct, frozen=True, kw_only=True):
     now: Entity | None
 
 
-def differences(was: Mapping[str, Entity], now: Mapping[str, Entity]) -> dict[str, Difference]:
-    """What is otherwise than it was, by name: what came, went, moved or changed."""
+def find_differences(was: Mapping[str, Entity], now: Mapping[str, Entity]) -> dict[str, Difference]:
+    """Return the entities that were added, removed, moved or changed, by name."""
     found = {
         name: difference
         for name, entity in now.items()
-        if (before := was.get(name)) != entity and (difference := between(before, entity)) is not None
+        if (before := was.get(name)) != entity and (difference := compare(before, entity)) is not None
     }
     for name in sorted(was.keys() - now.keys()):
         found[name] = Difference(mark="removed", text="removed", was=was[name], now=None)
     return found
 
 
-def between(was: Entity | None, now: Entity) -> Difference | None:
-    """How an entity differs from what it was; None where it does not.
+def compare(was: Entity | None, now: Entity) -> Difference | None:
+    """Return the difference of an entity; None without one.
 
-    Replies of the past fill in sizes that the map does not state, so one that is not known counts as equal.
+    An unknown size equals any size, because replies about the past contain default sizes.
     """
     if was is None:
         return Difference(mark="added", text=f"added as {now.class_}", was=None, now=now)
@@ -58,26 +58,26 @@ def _is_of_unknown_size(change: Change) -> bool:
     return change.kind == "size" and (change.was is None or change.now is None)
 
 
-def counted(found: Mapping[str, Difference]) -> str:
-    """`2 added, 1 moved`; how many there are of each kind."""
+def format_counts(found: Mapping[str, Difference]) -> str:
+    """Return the number of differences of each kind: `2 added, 1 moved`."""
     number = {mark: sum(d.mark == mark for d in found.values()) for mark in MARKS}
     return ", ".join(f"{count} {mark}" for mark, count in number.items() if count) or "no differences"
 
 
-def bodies_otherwise(was: Scene | None, now: Scene | None) -> frozenset[str] | None:
-    """The names of bodies that came, went, or look otherwise than before, wherever they are.
+def find_changed_bodies(was: Scene | None, now: Scene | None) -> frozenset[str] | None:
+    """Return the names of bodies that were added, removed, or changed their appearance; poses do not count.
 
-    None, for all things, where there was no scene or is none.
+    The result is None, for all bodies, if one of the scenes does not exist.
     """
     if was is None or now is None:
         return None if was is not now else frozenset()
-    before, after = _looks(was), _looks(now)
+    before, after = _appearances(was), _appearances(now)
     return frozenset(name for name in before.keys() | after.keys() if before.get(name) != after.get(name))
 
 
-def _looks(scene: Scene) -> dict[str, tuple[object, ...]]:
-    return {body.name: _look(body) for body in scene.bodies}
+def _appearances(scene: Scene) -> dict[str, tuple[object, ...]]:
+    return {body.name: _appearance(body) for body in scene.bodies}
 
 
-def _look(body: Body) -> tuple[object, ...]:
+def _appearance(body: Body) -> tuple[object, ...]:
     return (body.model, body.size_m, body.ghost, body.entity)

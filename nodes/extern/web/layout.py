@@ -1,4 +1,4 @@
-"""How a tab is laid out: what there is to the left, the scene in the middle, details to the right."""
+"""The layout of a tab: lists on the left, views in the middle, details on the right."""
 
 from __future__ import annotations
 
@@ -9,26 +9,25 @@ from typing import Any, Final
 from nicegui import events, ui
 from nicegui.elements.mixins.text_element import TextElement
 
-from semmap.nodes.extern.web.deleting import delete_selected, undo
-from semmap.nodes.extern.web.marks import marks
 from semmap.nodes.extern.web.page import Page
-from semmap.nodes.extern.web.panels.add import add
-from semmap.nodes.extern.web.panels.classes import classes
 from semmap.nodes.extern.web.panels.commits import commits
 from semmap.nodes.extern.web.panels.consistency import consistency
-from semmap.nodes.extern.web.panels.detail import detail
+from semmap.nodes.extern.web.panels.details.add import add
+from semmap.nodes.extern.web.panels.details.deletion import delete_selected, undo
+from semmap.nodes.extern.web.panels.details.detail import detail
+from semmap.nodes.extern.web.panels.details.rejection import show_rejection
 from semmap.nodes.extern.web.panels.entities import entities
 from semmap.nodes.extern.web.panels.files import files
 from semmap.nodes.extern.web.panels.find import find
 from semmap.nodes.extern.web.panels.graph import graph
 from semmap.nodes.extern.web.panels.log import log
-from semmap.nodes.extern.web.panels.places import places
 from semmap.nodes.extern.web.panels.plan import plan
-from semmap.nodes.extern.web.panels.refused import refused
 from semmap.nodes.extern.web.panels.sparql import sparql
-from semmap.nodes.extern.web.panels.standing import standing
+from semmap.nodes.extern.web.panels.standing_queries import standing_queries
 from semmap.nodes.extern.web.panels.status import status
 from semmap.nodes.extern.web.panels.timeline import timeline
+from semmap.nodes.extern.web.panels.trees import classes, places
+from semmap.nodes.extern.web.status_attributes import add_status_attributes
 from semmap.schemas import wording
 
 Panel = Callable[[Page], None]
@@ -45,26 +44,26 @@ CENTRE: Final[Panels] = {
     "History": (commits,),
     "Graph": (graph,),
     "Plan": (plan,),
-    "SPARQL": (sparql, standing),
+    "SPARQL": (sparql, standing_queries),
     "Check": (consistency,),
     "Files": (files,),
     "System": (status, log),
 }
 _LIST_PX, _TABLE_PX = 340, 760
-"""How wide the lists are: with the columns that most want, and with all."""
+"""Width of the lists with the main columns, and with all columns."""
 KEYS: Final = {
     "/": "search",
-    "Del": "delete what is selected, after a confirmation",
+    "Del": "delete the selected entities, after a confirmation",
     "u": "undo the last change",
-    "Home": "back to now",
-    "Esc": "leave a drag or pointing at a place; otherwise select nothing",
-    "?": "this list",
+    "Home": "return to the current map",
+    "Esc": "cancel dragging or picking; otherwise clear the selection",
+    "?": "show this list",
 }
 
 
 def layout(page: Page) -> None:
-    """Draw everything of a tab."""
-    page.refuse = lambda command, error: refused(page, command, error)
+    """Draw a tab."""
+    page.show_rejection = lambda command, error: show_rejection(page, command, error)
     ui.add_css(_CSS)
     ui.add_body_html(f"<script>{_SCRIPT}</script>")
     ui.colors(primary="#0f766e", secondary="#475569", accent="#0f766e", dark="#171b20", dark_page="#101316")
@@ -72,14 +71,14 @@ def layout(page: Page) -> None:
     with ui.header(elevated=False).classes("semmap-header") as header:
         pass
     with ui.left_drawer(bordered=False, value=True).props(f"width={_LIST_PX} breakpoint=960") as left:
-        page.widen = lambda wide: left.props(f"width={_TABLE_PX if wide else _LIST_PX}")
-        _Tabs(page, LEFT, "What there is").draw()
+        page.set_wide_lists = lambda wide: left.props(f"width={_TABLE_PX if wide else _LIST_PX}")
+        _Tabs(page, LEFT, "Lists").draw()
     with ui.right_drawer(bordered=False, value=True).props("width=370 breakpoint=960") as right:
-        may = {name: panels for name, panels in RIGHT.items() if name != "Add" or page.may("add")}
-        details = _Tabs(page, may, "Details of what is selected, and adding")
+        allowed = {name: panels for name, panels in RIGHT.items() if name != "Add" or page.is_allowed("add")}
+        details = _Tabs(page, allowed, "Details and adding")
         details.draw()
     with ui.column().classes("semmap-centre"):
-        _away(page)
+        _draw_offline_banner(page)
         centre = _Tabs(page, CENTRE, "Views")
         centre.draw()
         stage = centre.containers["Scene"].classes("semmap-scene")
@@ -91,64 +90,64 @@ def layout(page: Page) -> None:
         details.show("Add")
 
     with header:
-        _header(page, left, right, dark, open_add)
-    _keys(page)
-    _look(page, left, right)
-    marks(page)
+        _draw_header(page, left, right, dark, open_add)
+    _bind_keys(page)
+    _bind_appearance(page, left, right)
+    add_status_attributes(page)
     ui.on("semmap_scene", lambda: _begin_scene(page, stage))
-    ui.timer(0.05, lambda: _ready(page), once=True)
+    ui.timer(0.05, lambda: _mark_ready(page), once=True)
 
 
-def _ready(page: Page) -> None:
-    """Everything but the scene is drawn: whoever waits for that, such as a test, sees it."""
+def _mark_ready(page: Page) -> None:
+    """Mark the page as drawn, except the scene. Tests wait for this mark."""
     page.client.run_javascript("semmapStart(); document.body.classList.add('semmap-ready')")
 
 
 def _begin_scene(page: Page, stage: ui.element) -> None:
-    """The scene begins when the browser has drawn the rest: both are drawn on the same thread there."""
+    """Draw the scene. It comes last, because the browser draws everything on one thread."""
     draw, page.draw_scene = page.draw_scene, None
     if draw is not None:
         with stage:
             draw()
 
 
-def _header(
+def _draw_header(
     page: Page, left: ui.left_drawer, right: ui.right_drawer, dark: ui.dark_mode, open_add: Callable[[], None]
 ) -> None:
-    _opens(_icon("menu", "Show or hide the lists", left.toggle), left)
+    _bind_expanded(_icon("menu", "Show or hide the lists", left.toggle), left)
     heading("semmap", 1).classes("semmap-name")
     with ui.element("div").classes("semmap-search").props('role="search"'):
         find(page)
     ui.element("div").classes("semmap-space")
-    _state(page)
-    if page.may("add"):
+    _draw_state(page)
+    if page.is_allowed("add"):
         _icon("add", "Add an entity", open_add)
-    if page.may("undo"):
+    if page.is_allowed("undo"):
         _icon("undo", "Undo the last change (u)", lambda: undo(page))
 
     def toggle_dark() -> None:
         dark.value = not page.dark
 
-    _icon("dark_mode", "Dark or light", toggle_dark)
-    _icon("keyboard", "Keys (?)", help_).classes("semmap-wide")
-    _opens(_icon("view_sidebar", "Show or hide the details", right.toggle), right)
+    _icon("dark_mode", "Toggle dark mode", toggle_dark)
+    _icon("keyboard", "Keyboard shortcuts (?)", show_keys).classes("semmap-wide")
+    _bind_expanded(_icon("view_sidebar", "Show or hide the details", right.toggle), right)
 
 
 def heading(text: str, level: int) -> TextElement:
-    """A heading, 1 for that of the page and 2 for those of its panels."""
+    """Draw a heading: level 1 for the page, 2 for its panels."""
     return TextElement(tag=f"h{level}", text=text)
 
 
 def _icon(icon: str, label: str, on_click: Callable[..., Any]) -> ui.button:
-    """A button that is a picture, with its name for those who do not see it."""
+    """Draw an icon button with an accessible label."""
     button = ui.button(icon=icon, on_click=on_click).props(
         f'flat round dense color=secondary aria-label="{label}"'
     )
     return button.tooltip(label)
 
 
-def _opens(button: ui.button, drawer: ui.left_drawer | ui.right_drawer) -> None:
-    """Have the button say whether the drawer is open."""
+def _bind_expanded(button: ui.button, drawer: ui.left_drawer | ui.right_drawer) -> None:
+    """Keep `aria-expanded` of the button equal to the state of the drawer."""
 
     def show() -> None:
         button.props["aria-expanded"] = str(bool(drawer.value)).lower()
@@ -157,12 +156,12 @@ def _opens(button: ui.button, drawer: ui.left_drawer | ui.right_drawer) -> None:
     show()
 
 
-def _state(page: Page) -> None:
-    """Which moment is shown, whether it goes on with the map, and the way back to now."""
+def _draw_state(page: Page) -> None:
+    """Draw the commit shown, the number of entities, and a button that returns to the current map."""
     with ui.element("div").classes("semmap-state").props('role="status"'):
         dot = ui.element("span").classes("semmap-dot")
         commit = ui.label().classes("semmap-commit")
-        many = ui.label().classes("semmap-entities")
+        count = ui.label().classes("semmap-entities")
         back = ui.button("Back to now", on_click=lambda: page.go_to(None)).props("flat dense color=warning")
 
     def show() -> None:
@@ -174,7 +173,7 @@ def _state(page: Page) -> None:
         if not is_away:
             dot.classes(remove="is-away")
         commit.text = f"commit {page.state.commit:,}" if page.state.commit >= 0 else ""
-        many.text = wording.entities(len(page.state.entities)) if page.state.commit >= 0 else ""
+        count.text = wording.entities(len(page.state.entities)) if page.state.commit >= 0 else ""
         back.visible = not is_now
 
     page.on_change(show)
@@ -182,34 +181,34 @@ def _state(page: Page) -> None:
     show()
 
 
-def _away(page: Page) -> None:
-    """A strip that says so while the knowledge base is not there."""
-    strip = ui.label().classes("semmap-away").props('role="alert"')
+def _draw_offline_banner(page: Page) -> None:
+    """Draw a banner that is visible while there is no connection to the knowledge base."""
+    banner = ui.label().classes("semmap-away").props('role="alert"')
 
     def show() -> None:
-        strip.text = f"{page.live.why_not[:1].upper()}{page.live.why_not[1:]}."
-        strip.visible = not page.live.connected
+        banner.text = f"{page.live.offline_reason[:1].upper()}{page.live.offline_reason[1:]}."
+        banner.visible = not page.live.connected
 
     page.on_connection(show)
     show()
 
 
-def _keys(page: Page) -> None:
-    page.on_key("u", lambda: page.later(undo(page)))
-    page.on_key("Delete", lambda: page.later(delete_selected(page)))
+def _bind_keys(page: Page) -> None:
+    page.on_key("u", lambda: page.start_task(undo(page)))
+    page.on_key("Delete", lambda: page.start_task(delete_selected(page)))
     page.on_key("Home", lambda: page.go_to(None))
     page.on_key("Escape", page.escape)
-    page.on_key("?", help_)
-    ui.on("semmap_key", lambda event: page.press(_told(event).get("key", "")))
+    page.on_key("?", show_keys)
+    ui.on("semmap_key", lambda event: page.press(_event_data(event).get("key", "")))
 
 
-def _look(page: Page, left: ui.left_drawer, right: ui.right_drawer) -> None:
-    """What only the browser knows: is it dark, is it a phone?"""
+def _bind_appearance(page: Page, left: ui.left_drawer, right: ui.right_drawer) -> None:
+    """Receive from the browser whether it is dark and narrow; a narrow one shows one drawer at a time."""
 
-    def looks(event: events.GenericEventArguments) -> None:
-        said = _told(event)
-        is_first, was_narrow = not page.is_seen, page.narrow
-        page.looks(dark=said.get("dark") is True, narrow=said.get("narrow") is True)
+    def on_report(event: events.GenericEventArguments) -> None:
+        report = _event_data(event)
+        is_first, was_narrow = not page.is_appearance_known, page.narrow
+        page.set_appearance(dark=report.get("dark") is True, narrow=report.get("narrow") is True)
         if page.narrow and (is_first or not was_narrow):
             left.hide()
             right.hide()
@@ -219,34 +218,34 @@ def _look(page: Page, left: ui.left_drawer, right: ui.right_drawer) -> None:
             left.hide()
             right.show()
 
-    ui.on("semmap_look", looks)
+    ui.on("semmap_appearance", on_report)
     page.on_select(on_select)
 
 
-def _told(event: events.GenericEventArguments) -> dict[str, Any]:
-    """What the browser says of an event; it may be anything."""
-    said = event.args[0] if isinstance(event.args, list) and event.args else event.args
-    return said if isinstance(said, dict) else {}
+def _event_data(event: events.GenericEventArguments) -> dict[str, Any]:
+    """Return the data of a browser event; empty if it is not an object."""
+    data = event.args[0] if isinstance(event.args, list) and event.args else event.args
+    return data if isinstance(data, dict) else {}
 
 
-def help_() -> None:
-    """Show which keys there are."""
-    with ui.dialog(value=True).props('aria-label="Keys"') as dialog, ui.card():
-        heading("Keys", 2).classes("text-h6")
+def show_keys() -> None:
+    """Show the keyboard shortcuts in a dialog."""
+    with ui.dialog(value=True).props('aria-label="Keyboard shortcuts"') as dialog, ui.card():
+        heading("Keyboard shortcuts", 2).classes("text-h6")
         with ui.element("table").classes("semmap-keys"), ui.element("tbody"):
-            for key, does in KEYS.items():
+            for key, action in KEYS.items():
                 with ui.element("tr"):
                     with ui.element("td"):
                         TextElement(tag="kbd", text=key)
                     with ui.element("td"):
-                        ui.label(does)
+                        ui.label(action)
         with ui.row().classes("w-full justify-end"):
             ui.button("Close", on_click=dialog.close).props("flat autofocus")
     dialog.on("hide", dialog.delete)
 
 
 class _Tabs:
-    """Tabs, of which one is shown. Each is drawn when it is shown first, and stays while others are."""
+    """Tabs of panels. Each tab is drawn when it is first shown."""
 
     def __init__(self, page: Page, panels: Panels, label: str) -> None:
         self._page = page
@@ -256,10 +255,10 @@ class _Tabs:
         self.containers: dict[str, ui.column] = {}
 
     def draw(self) -> None:
-        """Draw them where it is called, with the first one shown."""
+        """Draw the tabs, and show the first one."""
         first = next(iter(self._panels))
         with ui.column().classes("semmap-drawer"):
-            self._tabs = ui.tabs(on_change=lambda event: self._turn_to(str(event.value)))
+            self._tabs = ui.tabs(on_change=lambda event: self._on_change(str(event.value)))
             self._tabs.classes("semmap-tabs").props(f'dense align=left no-caps aria-label="{self._label}"')
             with self._tabs:
                 for name in self._panels:
@@ -270,10 +269,10 @@ class _Tabs:
         self.show(first)
 
     def show(self, name: str) -> None:
-        """Turn to a tab."""
+        """Show a tab."""
         self._tabs.value = name
 
-    def _turn_to(self, name: str) -> None:
+    def _on_change(self, name: str) -> None:
         for other, container in self.containers.items():
             container.visible = other == name
         if name not in self._drawn:
@@ -282,4 +281,4 @@ class _Tabs:
                 heading(name, 2).classes("semmap-unseen")
                 for panel in self._panels[name]:
                     panel(self._page)
-        self._page.turned()
+        self._page.tab_changed()

@@ -1,4 +1,4 @@
-"""What the nodes of this machine use of it."""
+"""CPU time and memory of the nodes on this machine."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from collections.abc import Iterable
 
 import psutil  # type: ignore[import-untyped]
 
-from semmap.nodes.extern.web.views.rates import Load
+from semmap.nodes.extern.web.views.system_status import Load
 from semmap.schemas.health import Health
 
 
-def loads_of(beats: Iterable[Health]) -> dict[int, Load]:
-    """By process id, the load of each node that runs here; of others, and of dead ones, nothing is known."""
-    here = socket.gethostname()
+def measure_loads(beats: Iterable[Health]) -> dict[int, Load]:
+    """Return the load of each node that runs on this machine, by process id."""
+    own_host = socket.gethostname()
     found: dict[int, Load] = {}
     for beat in beats:
-        if beat.host in ("", here):
+        if beat.host in ("", own_host):
             with contextlib.suppress(psutil.Error):
                 process = psutil.Process(beat.pid)
                 with process.oneshot():
-                    spent = process.cpu_times()
-                    found[beat.pid] = Load(spent.user + spent.system, process.memory_info().rss)
+                    times = process.cpu_times()
+                    found[beat.pid] = Load(times.user + times.system, process.memory_info().rss)
     return found

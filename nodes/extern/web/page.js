@@ -1,5 +1,4 @@
-// What has to happen in the browser: keys, and the look of the browser, which only it knows. The scene's frame
-// passes on the keys that are pressed in it.
+// Keyboard shortcuts and reports about the browser window. The frame of the scene forwards its key presses.
 (() => {
   const HANDLED = new Set(["/", "?", "u", "Delete", "Home", "Escape"]);
   const isWriting = (element) =>
@@ -12,7 +11,7 @@
       if (event.key === "Escape") element.blur();
       return;
     }
-    if (document.querySelector(".q-dialog")) return; // it has its own
+    if (document.querySelector(".q-dialog")) return; // a dialog handles its own keys
     if (event.key === "/") {
       const search = document.querySelector(".semmap-search input");
       if (search) { event.preventDefault(); window.focus(); search.focus(); search.select(); }
@@ -22,22 +21,22 @@
     emitEvent("semmap_key", { key: event.key });
   }
 
-  // The table of entities is one stop: arrow keys move within it, and Tab goes on from it.
+  // The table of entities is one tab stop: arrow keys move within it, and Tab leaves it.
   const FOCUSED = "a[href], button, input, select, textarea, iframe, [tabindex]";
 
   function leaveTable(event) {
     const table = event.key === "Tab" && event.target.closest?.(".entity-table");
     if (!table) return;
     const side = event.shiftKey ? Node.DOCUMENT_POSITION_PRECEDING : Node.DOCUMENT_POSITION_FOLLOWING;
-    const beside = [...document.querySelectorAll(FOCUSED)].filter((element) =>
+    const candidates = [...document.querySelectorAll(FOCUSED)].filter((element) =>
       element.tabIndex >= 0 && !element.disabled && element.checkVisibility() && !table.contains(element)
       && table.compareDocumentPosition(element) & side);
-    const next = event.shiftKey ? beside.at(-1) : beside[0];
+    const next = event.shiftKey ? candidates.at(-1) : candidates[0];
     if (next) { event.preventDefault(); event.stopPropagation(); next.focus(); }
   }
 
-  // What was pressed is clicked, also where something that came in before the release has moved it away from under the
-  // pointer: a browser clicks at nothing then.
+  // Click a pressed element even if an update moved it away from the pointer before the release. The browser itself
+  // would not send a click then.
   const CLICKABLE = "button, [role=button], [role=tab], .q-chip--clickable, .q-item--clickable";
   const STILL_PX = 5;
   let pressed = null;
@@ -54,15 +53,15 @@
     if (Math.hypot(event.clientX - x, event.clientY - y) < STILL_PX) element.click();
   }
 
-  function tellLook() {
-    emitEvent("semmap_look", {
+  function reportAppearance() {
+    emitEvent("semmap_appearance", {
       dark: document.body.classList.contains("body--dark"),
       narrow: window.innerWidth <= 960,
     });
   }
 
-  // The scene is drawn on the same thread as the rest: it begins when the first rows of the table have been painted
-  // and the browser has a moment to spare, or when there will not be any rows soon.
+  // The scene is drawn on the same thread as the rest. It starts when the first rows of the table are painted and the
+  // browser is idle, or after a timeout.
   let hasBegun = false;
   window.semmapBeginScene = () => {
     if (hasBegun) return;
@@ -72,7 +71,7 @@
     requestAnimationFrame(() => requestAnimationFrame(() => whenIdle(begin, { timeout: 1000 })));
   };
 
-  // For whoever drives this browser: it comes back when all that was done here before has been taken in and shown.
+  // For programs that drive this browser: resolves when all earlier input has been processed and its result is shown.
   const settling = new Map();
   let settles = 0;
   window.semmapSettled = () => new Promise((settled) => {
@@ -91,9 +90,9 @@
   document.addEventListener("pointercancel", () => { pressed = null; }, true);
   document.addEventListener("keydown", leaveTable, true);
   window.semmapStart = () => {
-    new MutationObserver(tellLook).observe(document.body, { attributeFilter: ["class"] });
-    window.matchMedia("(max-width: 960px)").addEventListener("change", tellLook);
-    tellLook();
+    new MutationObserver(reportAppearance).observe(document.body, { attributeFilter: ["class"] });
+    window.matchMedia("(max-width: 960px)").addEventListener("change", reportAppearance);
+    reportAppearance();
     setTimeout(semmapBeginScene, 5000);
   };
 })();

@@ -1,4 +1,4 @@
-"""The scene behind the page's own origin: viser's client and its WebSocket, at `/scene/<page>/`."""
+"""A proxy for the client and the WebSocket of viser, at `/scene/<page>/` of the page's origin."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ div:has(canvas) ~ div, .mantine-Notifications-root { display: none !important; }
 addEventListener("keydown", (event) => {
   if (event.target.closest && event.target.closest("input, textarea, select")) return;
   const { key, code, shiftKey, ctrlKey, altKey, metaKey } = event;
-  const told = { key, code, shiftKey, ctrlKey, altKey, metaKey, bubbles: true };
-  parent.document.body.dispatchEvent(new KeyboardEvent("keydown", told));
+  const init = { key, code, shiftKey, ctrlKey, altKey, metaKey, bubbles: true };
+  parent.document.body.dispatchEvent(new KeyboardEvent("keydown", init));
 });
 </script>"""
-"""The scene has no panel of its own, and the page hears the keys that are pressed in it."""
+"""Hides the panels of viser, and forwards key presses to the page."""
 
 
 def router(at: Path) -> APIRouter:
-    """What answers under `/scene`, for a viser that listens at the socket `at` in the file system."""
+    """Return the routes under `/scene` for a viser server on the Unix socket `at`."""
 
     async def relay(websocket: WebSocket) -> None:
         await _relay(websocket, at)
@@ -47,9 +47,9 @@ def router(at: Path) -> APIRouter:
 
 
 async def _client(request: Request) -> Response:
-    """Viser's client: one file, in which everything is."""
+    """Return the client of viser, which is a single file."""
     if "gzip" not in request.headers.get("accept-encoding", ""):
-        return PlainTextResponse("a browser is needed", 406)
+        return PlainTextResponse("gzip encoding required; open this address in a browser", 406)
     headers = {"content-encoding": "gzip", "cache-control": "private, max-age=3600"}
     return Response(_packed(), media_type="text/html", headers=headers)
 
@@ -61,14 +61,14 @@ def _packed() -> bytes:
 
 
 async def _relay(websocket: WebSocket, at: Path) -> None:
-    """Pass on what the browser and viser say to one another, until either hangs up."""
+    """Relay messages between the browser and viser until one of them closes the connection."""
     page = websocket.path_params["page"]
-    said = [Subprotocol(word) for word in websocket.scope.get("subprotocols", ())]
+    subprotocols = [Subprotocol(name) for name in websocket.scope.get("subprotocols", ())]
     try:
         connection = await unix_connect(
             str(at),
             f"ws://localhost/{page}",
-            subprotocols=said or None,
+            subprotocols=subprotocols or None,
             compression=None,
             max_size=_LARGEST,
             ping_interval=None,
@@ -78,7 +78,7 @@ async def _relay(websocket: WebSocket, at: Path) -> None:
         return
     async with connection:
         await websocket.accept(connection.subprotocol)
-        await _first_of(_to_viser(websocket, connection), _to_browser(websocket, connection))
+        await _run_until_first(_to_viser(websocket, connection), _to_browser(websocket, connection))
 
 
 async def _to_viser(websocket: WebSocket, connection: ClientConnection) -> None:
@@ -87,24 +87,27 @@ async def _to_viser(websocket: WebSocket, connection: ClientConnection) -> None:
             message = await websocket.receive()
             if message["type"] == "websocket.disconnect":
                 return
-            said = message.get("bytes")
-            await connection.send(message["text"] if said is None else said)
+            content = message.get("bytes")
+            await connection.send(message["text"] if content is None else content)
     except (ConnectionClosed, WebSocketDisconnect, RuntimeError):
         return
 
 
 async def _to_browser(websocket: WebSocket, connection: ClientConnection) -> None:
     try:
-        async for said in connection:
-            await (websocket.send_bytes(said) if isinstance(said, bytes) else websocket.send_text(said))
+        async for message in connection:
+            if isinstance(message, bytes):
+                await websocket.send_bytes(message)
+            else:
+                await websocket.send_text(message)
         await websocket.close(_GONE)
     except (ConnectionClosed, WebSocketDisconnect, RuntimeError):
         return
 
 
-async def _first_of(*ways: Awaitable[None]) -> None:
-    """Until one has ended; the other is then ended, too."""
-    tasks = [asyncio.ensure_future(way) for way in ways]
+async def _run_until_first(*directions: Awaitable[None]) -> None:
+    """Run both directions until one has ended, and cancel the other."""
+    tasks = [asyncio.ensure_future(direction) for direction in directions]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     finally:

@@ -1,4 +1,4 @@
-"""The page's process: one server on one port, for the page, its assets and the scene."""
+"""The server of the page, its assets and the scene, on one port."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from fastapi import FastAPI
 from msgspec import Struct
 
 from semmap.nodes import bus
+from semmap.nodes.extern import connection
 from semmap.nodes.extern.web.access import TOKEN, Access
 from semmap.nodes.identity import Identity
 from semmap.nodes.runtime.web_token import new_token
@@ -28,31 +29,46 @@ _LARGEST_MESSAGE: Final = 64 << 20
 
 
 class WebConfig(Struct, frozen=True, kw_only=True):
-    """Where the page listens, and which system it shows."""
+    """Configuration of the page: the system it shows, and the address it listens on."""
 
     network: bus.Network
     host: str = HOST
     port: int = PORT
-    """0 is any port that is free."""
+    """0 is any free port."""
     token: str = ""
-    """What opens the page; one is made up where none is given."""
+    """The token that gives access to the page; empty generates one."""
 
     @property
     def identity(self) -> Identity | None:
-        """Whose role the page acts under, where the system is secure."""
+        """The identity whose role the page has in a secure system."""
         return self.network.identity
 
 
-def run(config: WebConfig, tell: Callable[[str], None]) -> None:
-    """Serve the page until SIGINT or SIGTERM; `tell` is given its address when it can be opened.
+def resolve_network(where: str | None, identity: str | None, namespace: str | None) -> bus.Network:
+    """Return how to reach the system that `semmap.connect` would connect to with these arguments.
 
-    Raises BadRequest for a port that is taken, an address that is not this machine's, or a bad token.
+    The returned network reconnects for as long as the process runs. Raises NoAnswer when the system does not
+    respond now, and the other errors of `connect`.
+    """
+    found = connection.identity(identity)
+    where = where or connection.endpoint(connection.namespace(namespace))
+    name = connection.namespace(namespace, where)
+    with connection.open_session(where, name, found, mode="client"):
+        pass
+    at = where if found is None else bus.over_tls(where)
+    return bus.Network(connect=(at,), mode="client", namespace=name, patience_s=bus.FOREVER_S, identity=found)
+
+
+def run(config: WebConfig, on_ready: Callable[[str], None]) -> None:
+    """Serve the page until SIGINT or SIGTERM. `on_ready` is called with its address when it can be opened.
+
+    Raises BadRequest for a port in use, an address of another machine, or an invalid token.
     """
     token = new_token(config.token)
-    with contextlib.closing(_listen(config.host, config.port)) as listening, _own_storage():
+    with contextlib.closing(_listen(config.host, config.port)) as listening, _temporary_storage():
         bus.read_links_apart()
         with bus.open_session(config.network) as session:
-            _serve(config, token, session, listening, tell)
+            _serve(config, token, session, listening, on_ready)
 
 
 def _serve(
@@ -60,50 +76,50 @@ def _serve(
     token: str,
     session: bus.Session,
     listening: socket.socket,
-    tell: Callable[[str], None],
+    on_ready: Callable[[str], None],
 ) -> None:
-    with _as_if_not_installed("aiohttp", "requests"):
-        from nicegui import Client, ui  # after its storage has a place
+    with _hidden_modules("aiohttp", "requests"):
+        from nicegui import Client, ui  # after its storage path is set
 
     from semmap.nodes.extern.web import proxy
     from semmap.nodes.extern.web.layout import layout
     from semmap.nodes.extern.web.live import Live
     from semmap.nodes.extern.web.page import Page
-    from semmap.nodes.extern.web.scene.stage import Stage
+    from semmap.nodes.extern.web.scene.scene_manager import SceneManager
     from semmap.nodes.extern.web.scene.viser_server import SceneServer
 
     live, scene = Live(session, config.network, config.identity), SceneServer()
-    stage = Stage(live, scene)
+    scenes = SceneManager(live, scene)
     port = listening.getsockname()[1]
 
     @contextlib.asynccontextmanager
-    async def living(_: FastAPI) -> AsyncIterator[None]:
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         live.start()
-        address = f"http://{_written(config.host)}:{port}/"
+        address = f"http://{_url_host(config.host)}:{port}/"
         live.ready(address)
-        tell(f"{address}?{TOKEN}={token}")
+        on_ready(f"{address}?{TOKEN}={token}")
         try:
             yield
         finally:
             live.stop()
             scene.close()
 
-    app = FastAPI(lifespan=living, docs_url=None, redoc_url=None, openapi_url=None)
+    app = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
 
     app.include_router(proxy.router(scene.at))
 
     @ui.page("/", title="semmap", language="en-US")
     def tab(client: Client) -> None:
         page = Page(live, client)
-        stage.show(page)
+        scenes.add_tab(page)
         layout(page)
 
     ui.run_with(
         app,
         title="semmap",
         dark=None,
-        tailwind=False,  # it works out styles in the browser; page.css has those that are used
-        gzip_middleware_factory=None,  # it takes longer than to send it within this machine
+        tailwind=False,  # it computes styles in the browser; page.css has the ones in use
+        gzip_middleware_factory=None,  # on one machine compression takes longer than sending
         show_welcome_message=False,
         reconnect_timeout=30.0,
     )
@@ -133,19 +149,20 @@ def _listen(host: str, port: int) -> socket.socket:
         listening.listen(128)
     except OSError as error:
         listening.close()
-        hint = "another program uses the port; choose another with --port, or --port 0 for any that is free"
-        reason = hint if port else error.strerror
-        raise errors.BadRequest(f"the page cannot listen on {_written(host)}:{port}: {reason}") from None
+        reason = "port in use; choose another with --port, or any free one with --port 0"
+        raise errors.BadRequest(
+            f"cannot listen on {_url_host(host)}:{port}: {reason if port else error.strerror}"
+        ) from None
     return listening
 
 
-def _written(host: str) -> str:
+def _url_host(host: str) -> str:
     return f"[{host}]" if ":" in host else host
 
 
 @contextlib.contextmanager
-def _as_if_not_installed(*modules: str) -> Iterator[None]:
-    """NiceGUI's sockets import these for clients that ask elsewhere, where they are there; it takes 0.2 s."""
+def _hidden_modules(*modules: str) -> Iterator[None]:
+    """Hide modules that NiceGUI imports for clients of other servers if installed, which takes 0.2 s."""
     absent = [module for module in modules if module not in sys.modules]
     sys.modules.update(dict.fromkeys(absent))  # type: ignore[arg-type]
     try:
@@ -156,8 +173,8 @@ def _as_if_not_installed(*modules: str) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _own_storage() -> Iterator[None]:
-    """NiceGUI keeps a folder for its storage, of which the page needs nothing: it is not the user's."""
+def _temporary_storage() -> Iterator[None]:
+    """Have NiceGUI use a temporary folder for its storage, which the page does not need."""
     logging.getLogger("nicegui").setLevel(logging.WARNING)
     with tempfile.TemporaryDirectory(prefix="semmap-web-") as folder:
         os.environ["NICEGUI_STORAGE_PATH"] = folder

@@ -1,4 +1,4 @@
-"""Who is let in: with the token or the cookie, by an address of the page itself, from no other origin."""
+"""Access control: token, cookie, host and origin."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ async def inside(scope, receive, send):
 
 
 def ask(*headers, path="/", query="", kind="http", host="127.0.0.1", port=8080, extensions=None, access=None):
-    """What is sent back, as a list of messages."""
+    """Return the messages of the reply."""
     sent = []
 
     async def send(message):
@@ -60,12 +60,15 @@ def sent_back():
 @pytest.mark.parametrize(
     "path", ["/", "/_nicegui/3.18.0/static/nicegui.css", "/scene/x/", "/docs", "/no/such"]
 )
-def test_without_token_or_cookie_every_path_answers_401(path):
+def test_every_path_without_token_or_cookie_returns_401(path):
     assert status(HOST, path=path) == 401
-    assert ask(HOST, path=path)[1]["body"] == b"open the address with the token that semmap printed\n"
+    assert (
+        ask(HOST, path=path)[1]["body"]
+        == b"token required; open the address with the token that semmap printed\n"
+    )
 
 
-def test_the_token_is_exchanged_for_a_cookie_that_scripts_and_other_sites_cannot_use():
+def test_the_token_is_exchanged_for_a_strict_http_only_cookie():
     said = cookie()
     assert said.startswith("semmap-8080=")
     assert {"HttpOnly", "SameSite=Strict", "Path=/"} <= {part.strip() for part in said.split(";")}
@@ -76,18 +79,18 @@ def test_the_token_is_exchanged_for_a_cookie_that_scripts_and_other_sites_cannot
 @pytest.mark.parametrize(
     "query", ["token=wrong", "token=", f"token={TOKEN}&token={TOKEN}", f"Token={TOKEN}", "%"]
 )
-def test_what_is_not_the_token_opens_nothing(query):
+def test_invalid_tokens_are_rejected(query):
     assert status(HOST, query=query) == 401
 
 
 @given(st.text(max_size=40))
-def test_no_cookie_but_the_right_one_opens(text):
+def test_invalid_cookies_are_rejected(text):
     said = text.encode("utf-8").decode("latin-1")
     assert status(HOST, ("cookie", f"semmap-8080={said}")) == 401
     assert status(HOST, ("cookie", said)) == 401
 
 
-def test_the_cookie_of_a_page_at_another_port_is_none():
+def test_cookies_of_other_ports_are_rejected():
     assert status(("host", "127.0.0.1:9"), sent_back(), port=9) == 401
 
 
@@ -102,12 +105,12 @@ def test_the_cookie_of_a_page_at_another_port_is_none():
     ],
 )
 @pytest.mark.parametrize("kind", ["http", "websocket"])
-def test_another_origin_is_refused_even_with_the_cookie(origin, kind):
+def test_other_origins_are_rejected_even_with_the_cookie(origin, kind):
     assert status(HOST, sent_back(), ("origin", origin), kind=kind) == 403
 
 
 @pytest.mark.parametrize("kind", ["http", "websocket"])
-def test_the_own_origin_is_let_in(kind):
+def test_the_own_origin_is_accepted(kind):
     first = ask(HOST, sent_back(), ("origin", "http://127.0.0.1:8080"), kind=kind)[0]
     assert first["type"] == ("http.response.start" if kind == "http" else "websocket.accept")
 
@@ -125,12 +128,12 @@ def test_the_own_origin_is_let_in(kind):
         "192.168.0.7:8080",
     ],
 )
-def test_a_foreign_host_is_refused_as_by_rebinding_a_name(host):
+def test_foreign_hosts_are_rejected_as_in_dns_rebinding(host):
     assert status(("host", host), sent_back()) == 403
     assert status(("host", host), query=f"token={TOKEN}") == 403
 
 
-def test_without_a_host_nobody_comes_in():
+def test_requests_without_a_valid_host_are_rejected():
     assert status(sent_back()) == 403
     assert status(HOST, HOST, sent_back()) == 403
 
@@ -138,29 +141,29 @@ def test_without_a_host_nobody_comes_in():
 @pytest.mark.parametrize(
     "host", ["localhost:8080", "[::1]:8080", "LOCALHOST:8080", f"{socket.gethostname()}:8080"]
 )
-def test_this_machine_has_several_names(host):
+def test_all_names_of_this_machine_are_accepted(host):
     assert status(("host", host), sent_back()) == 200
 
 
-def test_listening_everywhere_it_is_called_by_addresses_and_by_no_foreign_name():
+def test_the_wildcard_address_accepts_ip_addresses_but_no_foreign_names():
     assert status(("host", "192.168.0.7:8080"), sent_back(), host="0.0.0.0") == 200
     assert status(("host", "evil.example:8080"), sent_back(), host="0.0.0.0") == 403
 
 
-def test_a_websocket_without_cookie_is_refused_with_401_and_the_token_does_not_open_it():
+def test_websockets_need_the_cookie_and_do_not_accept_the_token():
     assert status(HOST, kind="websocket") == 401
     assert status(HOST, kind="websocket", query=f"token={TOKEN}") == 401
     assert ask(HOST, kind="websocket", extensions={})[0]["type"] == "websocket.close"
 
 
-def test_what_is_shown_may_fetch_nothing_from_elsewhere():
+def test_the_security_policy_allows_no_other_origins():
     headers = dict(ask(HOST, sent_back())[0]["headers"])
     assert b"default-src 'self'" in headers[b"content-security-policy"]
     assert b"http:" not in headers[b"content-security-policy"]
     assert headers[b"referrer-policy"] == b"no-referrer"
 
 
-def test_a_browser_that_has_gone_is_no_error_and_a_fault_is_one():
+def test_a_missing_reply_is_an_error_unless_the_browser_disconnected():
     async def gone():
         return {"type": "http.disconnect"}
 
@@ -182,5 +185,5 @@ def test_a_browser_that_has_gone_is_no_error_and_a_fault_is_one():
         asyncio.run(access(scope, request, send))
 
 
-def test_the_start_and_the_end_of_the_server_pass():
+def test_lifespan_messages_are_forwarded():
     assert ask(kind="lifespan") == []

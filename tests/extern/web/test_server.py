@@ -9,29 +9,27 @@ from semmap.nodes.extern.web.server import WebConfig, run
 from semmap.schemas import errors
 
 
-def test_a_port_that_is_taken_is_told_before_anything_begins():
+def test_a_port_in_use_is_reported_before_the_start():
     endpoint = free_endpoint()
     with bus.open_session(bus.Network(connect=(), listen=(endpoint,), mode="peer")):
         taken = int(endpoint.rpartition(":")[2])
-        with pytest.raises(
-            errors.BadRequest, match=f"cannot listen on 127.0.0.1:{taken}: another program uses"
-        ):
+        with pytest.raises(errors.BadRequest, match=f"cannot listen on 127.0.0.1:{taken}: port in use"):
             run(WebConfig(network=bus.Network(connect=(endpoint,)), port=taken), print)
 
 
 _IMPORTED = """
 import sys
-from semmap.nodes.extern.web.server import _as_if_not_installed
-with _as_if_not_installed("aiohttp", "requests"):
+from semmap.nodes.extern.web.server import _hidden_modules
+with _hidden_modules("aiohttp", "requests"):
     import nicegui
 assert "aiohttp" not in sys.modules and "requests" not in sys.modules
 import requests
-with _as_if_not_installed("requests"):  # what is there already stays
+with _hidden_modules("requests"):  # what is there already stays
     assert sys.modules["requests"] is requests
 """
 
 
-def test_clients_that_the_page_has_no_use_for_are_not_imported_and_can_be_by_others():
+def test_hidden_modules_are_not_imported_and_available_again():
     pytest.importorskip("nicegui")
     pytest.importorskip("requests")
     done = subprocess.run([sys.executable, "-c", _IMPORTED], capture_output=True, text=True, check=False)

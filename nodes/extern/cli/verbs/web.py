@@ -53,9 +53,8 @@ def web(
                 f" of SSH (ssh -L {port}:127.0.0.1:{port} THIS_HOST), or say --insecure"
             )
         complain(f"warning: the page at {host} is plain HTTP: its token and the map can be read on the way")
-    from semmap.nodes.extern.web.joining import network_of
-    from semmap.nodes.extern.web.server import WebConfig, run
+    from semmap.nodes.extern.web.server import WebConfig, resolve_network, run
 
-    network = network_of(where, identity, namespace)
+    network = resolve_network(where, identity, namespace)
     token = os.environ.get(WEB_TOKEN_VARIABLE, "")
-    run(WebConfig(network=network, host=host, port=port, token=token), tell=say)
+    run(WebConfig(network=network, host=host, port=port, token=token), on_ready=say)

@@ -1,1 +1,1 @@
-"""The panels of the page: one file each, and in it one function that draws it into where it is called."""
+"""The panels of the page. Each has a function that draws it."""

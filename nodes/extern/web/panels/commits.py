@@ -1,4 +1,4 @@
-"""The commits: a table of those around the moment shown, of all or of the selected things."""
+"""The table of commits around the moment shown, of all or of the selected entities."""
 
 from __future__ import annotations
 
@@ -12,78 +12,76 @@ from semmap.nodes.extern.web.page import Page
 from semmap.schemas.replies import LoggedCommit
 
 ROWS: Final = 200
-"""That many are in the table at once."""
+"""Maximum number of rows in the table."""
 _WRAPPED: Final = "white-space: normal"
 _COLUMNS: Final[list[dict[Any, Any]]] = [
     {"name": "seq", "label": "Commit", "field": "seq", "align": "right", "sortable": True},
     {"name": "time", "label": "Time", "field": "time", "align": "left"},
     {"name": "by", "label": "By", "field": "by", "align": "left"},
-    {"name": "why", "label": "Why", "field": "why", "align": "left", "style": _WRAPPED},
-    {"name": "what", "label": "What", "field": "what", "align": "left", "style": _WRAPPED},
+    {"name": "why", "label": "Reason", "field": "why", "align": "left", "style": _WRAPPED},
+    {"name": "what", "label": "Changes", "field": "what", "align": "left", "style": _WRAPPED},
 ]
 
 
 def commits(page: Page) -> None:
-    """Draw it where it is called."""
+    """Draw the table."""
     _Commits(page)
 
 
 class _Commits:
-    """Of one tab."""
-
     def __init__(self, page: Page) -> None:
         self._page = page
         self._end: int | None = None
-        """The last commit of the table; None follows the moment shown."""
+        """The last commit in the table; None follows the moment shown."""
         with ui.row().classes("items-center gap-4"):
-            self._only = ui.checkbox("Only commits of what is selected", on_change=lambda: self._turn(None))
-            self._older = ui.button("Older", on_click=lambda: self._page_on(-1)).props("flat dense")
-            self._newer = ui.button("Newer", on_click=lambda: self._page_on(1)).props("flat dense")
-            self._told = ui.label().classes("text-caption").props('role="status"')
+            self._only = ui.checkbox("Selected entities only", on_change=lambda: self._go_to_page(None))
+            self._older = ui.button("Older", on_click=lambda: self._turn_page(-1)).props("flat dense")
+            self._newer = ui.button("Newer", on_click=lambda: self._turn_page(1)).props("flat dense")
+            self._count = ui.label().classes("text-caption").props('role="status"')
         self._table = ui.table(columns=_COLUMNS, rows=[], row_key="seq").classes("w-full")
         self._table.props('dense flat virtual-scroll aria-label="Commits" table-style="max-height: 60vh"')
         self._table.on("rowClick", self._on_click)
-        page.on_moment(lambda: self._turn(None))
+        page.on_moment(lambda: self._go_to_page(None))
         page.on_change(self._show)
-        page.on_select(lambda: self._turn(None) if self._only.value else None)
-        page.client.on_delete(page.tape.listen(self._show_told))
+        page.on_select(lambda: self._go_to_page(None) if self._only.value else None)
+        page.client.on_delete(page.history.listen(self._on_history))
         self._show()
 
-    def _show_told(self) -> None:
+    def _on_history(self) -> None:
         with self._page.client:
             self._show()
 
-    def _turn(self, end: int | None) -> None:
+    def _go_to_page(self, end: int | None) -> None:
         self._end = end
         self._show()
 
-    def _page_on(self, by: int) -> None:
+    def _turn_page(self, by: int) -> None:
         shown = self._table.rows
         if not shown:
             return
         seqs = [row["seq"] for row in shown]
-        self._turn(min(seqs) - 1 if by < 0 else max(seqs) + ROWS)
+        self._go_to_page(min(seqs) - 1 if by < 0 else max(seqs) + ROWS)
 
     def _on_click(self, event: Any) -> None:
         seq = int(event.args[1]["seq"])
         self._page.go_to(None if seq >= self._page.live.commit else seq)
 
     def _show(self) -> None:
-        page, known = self._page, self._page.tape.rows
+        page, known = self._page, self._page.history.rows
         names = {*page.selected} if self._only.value else None
         chosen = known if names is None else of_names(known, names)
         end = self._end if self._end is not None else page.state.commit + ROWS // 4
-        upto = [row for row in chosen if row.seq <= end] or chosen[:ROWS]
-        rows = upto[-ROWS:]
+        until = [row for row in chosen if row.seq <= end] or chosen[:ROWS]
+        rows = until[-ROWS:]
         self._table.rows = [_cells(row, is_shown=row.seq == page.state.commit) for row in reversed(rows)]
         self._older.set_enabled(bool(rows) and rows[0] is not chosen[0])
         self._newer.set_enabled(bool(rows) and rows[-1] is not chosen[-1])
-        of = "" if names is None else f" of {', '.join(sorted(names)) or 'nothing: select something first'}"
-        self._told.text = f"{len(chosen)} commits{of}" if len(chosen) != 1 else f"1 commit{of}"
+        of = "" if names is None else f" of {', '.join(sorted(names)) or 'the selection, which is empty'}"
+        self._count.text = f"{len(chosen)} commits{of}" if len(chosen) != 1 else f"1 commit{of}"
 
 
 def of_names(rows: list[LoggedCommit], names: set[str]) -> list[LoggedCommit]:
-    """The commits that touched any of these entities."""
+    """Return the commits that changed any of these entities."""
     return [row for row in rows if not names.isdisjoint(row.changed) or not names.isdisjoint(row.removed)]
 
 

@@ -1,4 +1,4 @@
-"""Consistency: contradictions, what is withheld or denied, and doubts, each with its entities and why."""
+"""The consistency check: contradictions, suppressed and denied facts, and doubts, with their entities."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import Final
 from nicegui import ui
 
 from semmap.nodes.extern.web.page import Page
-from semmap.nodes.extern.web.panels.redrawing import Redrawing
-from semmap.nodes.extern.web.views.findings import TITLES, Finding, findings, verdict
-from semmap.schemas import errors
+from semmap.nodes.extern.web.panels.widgets.redraw import LazyRedraw
+from semmap.nodes.extern.web.views.findings import TITLES, Finding, collect_findings, format_verdict
+from semmap.schemas import errors, wording
 from semmap.schemas.commands import Check, List
 from semmap.schemas.entities import Entity
 
@@ -17,7 +17,7 @@ _MOST: Final = 200
 _TIMEOUT_S: Final = 120.0
 _ICONS: Final = {
     "contradiction": ("error", "negative"),
-    "withheld": ("block", "warning"),
+    "suppressed": ("block", "warning"),
     "denied": ("wrong_location", "warning"),
     "doubt": ("help", "info"),
     "body": ("view_in_ar", "info"),
@@ -26,7 +26,7 @@ _ICONS: Final = {
 
 
 def consistency(page: Page) -> None:
-    """The verdict, and below it what there is to look at, the gravest first."""
+    """Draw the verdict and the list of problems, the most severe first."""
     _Consistency(page)
 
 
@@ -43,27 +43,25 @@ class _Consistency:
                 self._button.props("dense no-caps").classes("px-3")
             self._stale = ui.label().classes("text-caption")
             self._list = ui.column().classes("w-full gap-1").props('role="list"').mark("check-findings")
-        Redrawing(page, self._check_first)
-        page.on_change(self._look)
+        LazyRedraw(page, self._check_first)
+        page.on_change(self._show_age)
 
     async def _check_first(self) -> None:
         if self._checked < 0:
             await self._check()
 
-    def _look(self) -> None:
-        """Say what the verdict is of, where that is not what is shown."""
+    def _show_age(self) -> None:
+        """Show which commit was checked, if another one is shown."""
         self._stale.text = ""
         if self._checked >= 0 and not self._page.moment.is_now:
-            self._stale.text = (
-                f"This is of the map as it was after commit {self._checked}, not of the past shown."
-            )
+            self._stale.text = f"The check applies to commit {self._checked}, not to the commit shown."
         elif 0 <= self._checked < self._page.live.commit:
             more = self._page.live.commit - self._checked
-            self._stale.text = f"The map has had {more} more commit{'s' * (more > 1)} since this check."
+            self._stale.text = f"Checked at commit {self._checked}, {wording.counted(more, 'commit')} ago."
 
     async def _check(self) -> None:
         self._button.set_enabled(False)
-        self._stale.text = "checking ..."
+        self._stale.text = "Checking ..."
         try:
             checked = await self._page.live.ask(Check(), _TIMEOUT_S)
             listed = await self._page.live.ask(List(), _TIMEOUT_S)
@@ -73,37 +71,37 @@ class _Consistency:
         finally:
             self._button.set_enabled(True)
         entities = [entity for entity in listed if isinstance(entity, Entity)]
-        found = findings(checked, entities, self._page.live.classes)
+        found = collect_findings(checked, entities, self._page.live.classes)
         self._checked = self._page.live.commit
-        self._verdict.text = verdict(checked)
+        self._verdict.text = format_verdict(checked)
         self._icon.name = "check_circle" if checked.consistent else "error"
         self._icon.props(f"color={'positive' if checked.consistent else 'negative'}")
-        self._look()
+        self._show_age()
         self._draw(found)
 
     def _draw(self, found: tuple[Finding, ...]) -> None:
         self._list.clear()
         with self._list:
             if not found:
-                ui.label("Nothing is withheld, denied or in doubt.").props('role="listitem"')
+                ui.label("No problems found.").props('role="listitem"')
             for finding in found[:_MOST]:
-                self._one(finding)
+                self._draw_finding(finding)
             if len(found) > _MOST:
-                ui.label(f"and {len(found) - _MOST} more").props('role="listitem"')
+                ui.label(f"… and {len(found) - _MOST} more").props('role="listitem"')
 
-    def _one(self, finding: Finding) -> None:
-        icon, colour = _ICONS[finding.gravity]
+    def _draw_finding(self, finding: Finding) -> None:
+        icon, colour = _ICONS[finding.kind]
         with ui.card().classes("w-full p-2 gap-1").props('flat bordered role="listitem"'):
             with ui.row().classes("w-full items-center no-wrap gap-2"):
                 ui.icon(icon).props(f'color={colour} aria-hidden="true"')
-                ui.label(TITLES[finding.gravity]).classes("text-caption")
+                ui.label(TITLES[finding.kind]).classes("text-caption")
             ui.label(finding.text).classes("whitespace-pre-wrap")
             with ui.row().classes("gap-1"):
                 for name in finding.names:
                     self._chip(name)
-            if finding.why:
-                with ui.expansion("Why", icon="account_tree").classes("w-full").props("dense"):
-                    for line in finding.why:
+            if finding.proof:
+                with ui.expansion("Proof", icon="account_tree").classes("w-full").props("dense"):
+                    for line in finding.proof:
                         ui.label(line).classes("text-caption whitespace-pre-wrap")
 
     def _chip(self, name: str) -> None:

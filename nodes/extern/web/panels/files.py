@@ -1,4 +1,4 @@
-"""Files: load by upload, tried first and done then; and export by download."""
+"""Files: loading of uploads, after a dry run, and export by download."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from semmap.nodes.extern.web.page import Page
 from semmap.nodes.extern.web.views.uploads import (
     BEGINNING,
     LARGEST,
+    check_upload,
     megabytes,
-    refusal,
+    size_error,
     spatial_roots,
     takes_long,
-    too_large,
 )
 from semmap.schemas import errors
 from semmap.schemas.commands import Export, Load, RdfFormat
@@ -35,122 +35,122 @@ _ENDINGS: Final[dict[RdfFormat, str]] = {
 
 
 def files(page: Page) -> None:
-    """Loading, where that is permitted, and exporting."""
+    """Draw the forms for loading and exporting, as far as they are permitted."""
     with ui.row().classes("w-full gap-4 items-stretch"):
-        if page.may("load"):
-            _Loading(page)
-        if page.may("export"):
-            _exporting(page)
+        if page.is_allowed("load"):
+            _LoadForm(page)
+        if page.is_allowed("export"):
+            _draw_export(page)
 
 
-class _Loading:
-    """A file is tried as soon as it is chosen: what it would do is said, and done when somebody says so."""
+class _LoadForm:
+    """The form that loads a file: an upload starts a dry run, and a button loads the file."""
 
     def __init__(self, page: Page) -> None:
         self._page = page
         self._tried: Load | None = None
         self._size = 0
-        """Bytes of the file as it was uploaded; on the wire it is packed."""
-        self._turn = 0
-        """Which file, and which try of it, is waited for; what comes of an earlier one is left."""
+        """Size of the uploaded file [bytes]; it is compressed for sending."""
+        self._request = 0
+        """Number of the current file or dry run; results of earlier ones are ignored."""
         with ui.card().classes("grow").props("flat bordered").style("min-width: 18rem; flex-basis: 24rem"):
             ui.label("Load").classes("text-subtitle1")
             ui.label(
                 "A map in any RDF syntax or OWL, a scene in JSON, a HuRIC map, or an ontology; up to "
-                f"{megabytes(LARGEST)}. It is tried first, and nothing changes until you say so."
+                f"{megabytes(LARGEST)}. A dry run shows the changes before the file is loaded."
             ).classes("text-caption")
             with ui.row().classes("gap-2"):
-                self._replace = ui.checkbox("In place of what is there", on_change=self._again)
-                self._skip = ui.checkbox("Leave out unknown classes", on_change=self._again)
-                self._tbox = ui.checkbox("It is the ontology (TBox)", on_change=self._again)
-            self._roots = ui.input("Classes of things in space").props("dense outlined clearable")
-            self._roots.classes("w-full").on("keydown.enter", self._rooted).on("blur", self._rooted)
-            self._roots.tooltip("By IRI or name, where the ontology does not tell by itself")
+                self._replace = ui.checkbox("Replace map", on_change=self._again)
+                self._skip = ui.checkbox("Skip unknown classes", on_change=self._again)
+                self._tbox = ui.checkbox("Ontology (TBox)", on_change=self._again)
+            self._roots = ui.input("Classes with positions").props("dense outlined clearable")
+            self._roots.classes("w-full").on("keydown.enter", self._on_roots).on("blur", self._on_roots)
+            self._roots.tooltip(
+                "IRIs or names of the classes of physical objects, if the ontology does not state them"
+            )
             self._roots.bind_visibility_from(self._tbox, "value")
             self._upload = ui.upload(
-                label="Choose a file, or drop it here",
+                label="Choose or drop a file",
                 auto_upload=True,
                 max_files=None,
                 max_file_size=LARGEST,
-                on_begin_upload=self._begun,
-                on_upload=self._uploaded,
-                on_rejected=self._rejected,
+                on_begin_upload=self._on_begin,
+                on_upload=self._on_upload,
+                on_rejected=self._on_rejected,
             )
-            self._upload.classes("w-full").props("flat bordered").mark("upload").on("failed", self._failed)
-            self._said = ui.column().classes("w-full gap-0").props('role="status"').mark("load-said")
+            self._upload.classes("w-full").props("flat bordered").mark("upload").on("failed", self._on_failed)
+            self._status = ui.column().classes("w-full gap-0").props('role="status"').mark("load-status")
             self._error = ui.label().classes("text-negative whitespace-pre-wrap").props('role="alert"')
             self._error.mark("load-error")
             with ui.row().classes("gap-2"):
                 self._button = ui.button("Load", icon="file_upload", on_click=self._load)
                 self._button.props("no-caps dense").classes("px-3").mark("load-button")
-                self._stop = ui.button("Stop", icon="stop", on_click=self._stopped)
+                self._stop = ui.button("Stop", icon="stop", on_click=self._cancel)
                 self._stop.props("no-caps dense outline").classes("px-3").mark("load-stop")
             self._button.visible = self._stop.visible = False
 
-    def _rejected(self) -> None:
-        self._forget()
-        self._error.text = too_large("the file", LARGEST + 1).replace(
-            f" has {megabytes(LARGEST + 1)}", " is larger"
-        )
+    def _on_rejected(self) -> None:
+        self._reset()
+        self._error.text = size_error("file")
 
-    def _begun(self) -> None:
-        self._forget()
+    def _on_begin(self) -> None:
+        self._reset()
         self._stop.visible = True
-        self._say("Sending the file ...")
+        self._show("Uploading ...")
 
-    async def _stopped(self) -> None:
-        """What is being sent or tried is left; a try that is under way in the system changes nothing."""
-        self._forget()
-        turn = self._turn
-        await self._empty()
-        if turn == self._turn:
-            self._say("Stopped: nothing was loaded.")
+    async def _cancel(self) -> None:
+        """Cancel an upload, or ignore the result of a dry run, which changes nothing."""
+        self._reset()
+        request = self._request
+        await self._clear_upload()
+        if request == self._request:
+            self._show("Stopped; no changes.")
 
-    async def _empty(self) -> None:
-        """Have the browser send nothing, and forget what it sent, before anybody is told to choose again.
+    async def _clear_upload(self) -> None:
+        """Have the browser cancel its upload and clear the field.
 
-        Told first, somebody quick had the next file taken away by this.
+        This comes before any message, because it would remove a file that the user has chosen since.
         """
-        with contextlib.suppress(TimeoutError):  # the tab may be gone
+        with contextlib.suppress(TimeoutError):  # the tab may be closed
             await self._upload.run_method("reset", timeout=_BROWSER_S)
 
-    def _failed(self) -> None:
-        if self._stop.visible:  # nobody stopped it
-            self._forget()
-            self._error.text = "The file was not sent whole; choose it again."
+    def _on_failed(self) -> None:
+        if self._stop.visible:  # not stopped by the user
+            self._reset()
+            self._error.text = "upload incomplete; choose the file again"
 
-    async def _uploaded(self, event: events.UploadEventArguments) -> None:
-        self._forget()
-        turn = self._turn
-        await self._empty()
-        if turn != self._turn:
+    async def _on_upload(self, event: events.UploadEventArguments) -> None:
+        self._reset()
+        request = self._request
+        await self._clear_upload()
+        if request != self._request:
             return
         file = event.file
         beginning = b""
         async for chunk in file.iterate(chunk_size=BEGINNING):
             beginning = chunk
             break
-        if sentence := refusal(file.name, file.size(), beginning):
-            self._error.text = sentence
+        if error := check_upload(file.name, file.size(), beginning):
+            self._error.text = error
             return
         self._stop.visible = True
         content = await asyncio.to_thread(packed, await file.read())
-        if turn != self._turn:
+        if request != self._request:
             return
         self._tried, self._size = Load(content=content, filename=file.name), file.size()
-        await self._try()
+        await self._dry_run()
 
     async def _again(self) -> None:
-        """Another way to load the same file."""
+        """Repeat the dry run with other options."""
         if self._tried is not None:
-            await self._try()
+            await self._dry_run()
 
-    async def _rooted(self) -> None:
-        """Other classes are said to be of things in space."""
+    async def _on_roots(self) -> None:
+        """Repeat the dry run if the classes with positions have changed."""
         if self._tried is not None and spatial_roots(self._roots.value) != self._tried.spatial_root:
-            await self._try()
+            await self._dry_run()
 
-    async def _try(self) -> None:
+    async def _dry_run(self) -> None:
         if self._tried is None:
             raise errors.InternalError("no file was uploaded")
         self._tried = Load(
@@ -164,28 +164,28 @@ class _Loading:
         )
         name, size, began_s = self._tried.filename, self._size, time.monotonic()
         self._error.text, self._button.visible, self._stop.visible = "", False, True
-        self._turn += 1
-        turn = self._turn
-        self._say(
-            f"Trying {name} ({megabytes(size)}) ..."
-            + (" this may take a while" if takes_long(len(self._tried.content)) else "")
+        self._request += 1
+        request = self._request
+        self._show(
+            f"Checking {name} ({megabytes(size)}) ..."
+            + (" This may take several seconds." if takes_long(len(self._tried.content)) else "")
         )
-        with self._said:
+        with self._status:
             elapsed = ui.label().classes("text-caption")
-            ticking = ui.timer(1.0, lambda: elapsed.set_text(f"{time.monotonic() - began_s:.0f} s so far"))
+            ticking = ui.timer(1.0, lambda: elapsed.set_text(f"{time.monotonic() - began_s:.0f} s"))
         try:
             reply = await self._page.live.ask(self._tried, _TIMEOUT_S)
         except errors.SemmapError as error:
-            if turn == self._turn:
-                self._say()
+            if request == self._request:
+                self._show()
                 self._error.text, self._stop.visible = error.text, False
             return
         finally:
             ticking.cancel()
-        if turn != self._turn:
+        if request != self._request:
             return
         self._stop.visible = False
-        self._say(f"If {name} is loaded:", *changed(reply))
+        self._show(f"Changes by {name}:", *changed(reply))
         self._button.text = f"Load {name}"
         self._button.visible = True
 
@@ -208,29 +208,29 @@ class _Loading:
         finally:
             self._button.set_enabled(True)
         if reply is not None:
-            self._forget()
-            self._say(*changed(reply))
+            self._reset()
+            self._show(*changed(reply))
 
-    def _forget(self) -> None:
-        self._turn += 1
+    def _reset(self) -> None:
+        self._request += 1
         self._tried, self._error.text = None, ""
         self._button.visible = self._stop.visible = False
-        self._say()
+        self._show()
 
-    def _say(self, *lines: str) -> None:
-        self._said.clear()
-        with self._said:
+    def _show(self, *lines: str) -> None:
+        self._status.clear()
+        with self._status:
             for line in lines:
                 ui.label(line).classes("whitespace-pre-wrap")
 
 
-def _exporting(page: Page) -> None:
+def _draw_export(page: Page) -> None:
     with ui.card().classes("grow").props("flat bordered").style("min-width: 16rem; flex-basis: 18rem"):
         ui.label("Export").classes("text-subtitle1")
-        of = ui.label().classes("text-caption")
+        subject = ui.label().classes("text-caption")
         syntax = ui.select(dict(_FORMATS), value="turtle", label="Format").props("dense outlined")
         syntax.classes("w-full").mark("export-format")
-        inferred = ui.checkbox("With what follows").tooltip("Also what is inferred and measured")
+        inferred = ui.checkbox("Include inferred").tooltip("Include inferred and computed facts")
         error = ui.label().classes("text-negative whitespace-pre-wrap").props('role="alert"')
 
         async def export() -> None:
@@ -244,15 +244,15 @@ def _exporting(page: Page) -> None:
                 return
             name = f"map-{document.seq}.{_ENDINGS[command.format]}"
             ui.download.content(document.content, name, document.media_type)
-            page.tell(f"{name}: {document.triples:,} triples", "positive")
+            page.notify(f"{name}: {document.triples:,} triples", "positive")
 
         ui.button("Export", icon="file_download", on_click=export).props("no-caps dense").classes(
             "px-3"
         ).mark("export-button")
 
         def show() -> None:
-            moment = "as it is now" if page.moment.is_now else f"as it was after commit {page.state.commit}"
-            of.text = f"The map {moment}"
+            commit = page.state.commit
+            subject.text = "Current map" if page.moment.is_now else f"Map after commit {commit}"
 
         page.on_change(show)
         show()

@@ -1,4 +1,4 @@
-"""The search box: it takes words, and selects what they describe, or asks back."""
+"""The search box, which selects the entities that match a description."""
 
 from __future__ import annotations
 
@@ -7,89 +7,89 @@ from typing import Final
 from nicegui import ui
 
 from semmap.nodes.extern.web.page import Page
-from semmap.nodes.extern.web.panels.view import View
-from semmap.nodes.extern.web.views.answers import Answer, answer, reasons
+from semmap.nodes.extern.web.panels.widgets.map_view import MapView
+from semmap.nodes.extern.web.views.find_results import FindResult, format_reasons, summarize
 from semmap.schemas import errors
 from semmap.schemas.commands import Find
 from semmap.schemas.language import Candidate
 
 _BY: Final = "find"
-_TIME_S: Final = 20.0
+_TIMEOUT_S: Final = 20.0
 _ICONS: Final = {"found": "check_circle", "question": "help", "nothing": "search_off"}
 
 
 def find(page: Page) -> None:
-    """Draw it where it is called."""
+    """Draw the search box."""
     _Find(page)
 
 
 class _Find:
     def __init__(self, page: Page) -> None:
-        self._page, self._view = page, View.of(page)
+        self._page, self._view = page, MapView.of(page)
         with ui.element("div").classes("w-full"):
             self._words = (
                 ui.input(placeholder="the red cup on the table")
                 .props('dense outlined clearable aria-label="Find by words" maxlength=1000')
                 .classes("w-full semmap-find")
-                .on("keydown.enter", self._look)
+                .on("keydown.enter", self._find)
                 .on("clear", self._close)
             )
             with self._words.add_slot("prepend"):
                 ui.icon("search").props("size=sm")
-            self._answers = ui.menu().props("no-parent-event no-focus fit max-height=60vh")
+            self._results = ui.menu().props("no-parent-event no-focus fit max-height=60vh")
 
-    async def _look(self) -> None:
+    async def _find(self) -> None:
         text = (self._words.value or "").strip()
         if not text:
-            self._answers.close()
+            self._results.close()
             return
         try:
-            found = await self._page.live.ask(Find(text=text, viewpoint=self._page.viewpoint), _TIME_S)
+            found = await self._page.live.ask(Find(text=text, viewpoint=self._page.viewpoint), _TIMEOUT_S)
         except errors.SemmapError as error:
-            self._show(Answer("nothing", error.text, (), ()))
+            self._show(FindResult("nothing", error.text, (), ()))
             return
-        shown = answer(found)
+        shown = summarize(found)
         if shown.select:
             self._select(shown.select)
         self._show(shown)
 
     def _select(self, names: tuple[str, ...]) -> None:
-        """Select them; a filter of the table that would hide them is taken away."""
-        if not set(names) <= self._view.table().rows(self._view.wanted, names).keys():
-            self._view.want(text="", class_="", room="", bearer="", things=None)
+        """Select entities, and clear a filter of the table that would hide them."""
+        if not set(names) <= self._view.table().rows(self._view.filter, names).keys():
+            self._view.set_filter(text="", class_="", room="", support="", things=None)
         self._page.select(names, by=_BY)
 
-    def _show(self, shown: Answer) -> None:
-        self._answers.clear()
-        with self._answers, ui.column().classes("semmap-answer gap-1").props('role="status"'):
+    def _show(self, shown: FindResult) -> None:
+        self._results.clear()
+        with self._results, ui.column().classes("semmap-answer gap-1").props('role="status"'):
             with ui.row().classes("items-start gap-2 no-wrap"):
                 ui.icon(_ICONS[shown.tone]).classes("semmap-quiet").style("margin-top: 2px")
                 ui.label(errors.shortened(shown.text, 1000)).classes("semmap-sentence")
             if shown.tone == "nothing" and shown.choices:
-                ui.label("What fits least badly").classes("semmap-title")
+                ui.label("Closest matches").classes("semmap-title")
             with ui.list().props("dense").classes("w-full"):
                 for candidate in shown.choices:
-                    self._choice(candidate)
+                    self._draw_candidate(candidate)
             for note in shown.notes:
                 ui.label(note).classes("text-caption")
             if len(shown.select) > 1:
-                ui.button("Only these in the table", on_click=lambda: self._only(shown.select)).props(
+                ui.button("Filter table", on_click=lambda: self._filter_table(shown.select)).props(
                     "flat dense"
                 )
-        self._answers.open()
+        self._results.open()
 
-    def _choice(self, candidate: Candidate) -> None:
-        def choose() -> None:
+    def _draw_candidate(self, candidate: Candidate) -> None:
+        def select() -> None:
             self._select((candidate.entity,))
-            self._answers.close()
+            self._results.close()
 
-        with ui.item(on_click=choose).props("clickable"), ui.item_section():
+        with ui.item(on_click=select).props("clickable"), ui.item_section():
             ui.item_label(candidate.entity)
-            ui.item_label(reasons(candidate)).props("caption lines=2")
+            ui.item_label(format_reasons(candidate)).props("caption lines=2")
 
     def _close(self) -> None:
-        self._answers.close()
+        self._results.close()
 
-    def _only(self, names: tuple[str, ...]) -> None:
-        self._view.want(text="", class_="", room="", bearer="", things=frozenset(names))
-        self._answers.close()
+    def _filter_table(self, names: tuple[str, ...]) -> None:
+        self._view.set_filter(text="", class_="", room="", support="", things=frozenset(names))
+        self._results.close()

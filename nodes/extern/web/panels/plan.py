@@ -1,4 +1,4 @@
-"""The plan: the floor from above, at a scale, to look at, to select in, to print and to keep."""
+"""The floor plan, to scale: it can be printed and saved, and a click selects."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from nicegui import events, ui
 from semmap.nodes.extern.plan.floor import Floor, floor_of
 from semmap.nodes.extern.plan.svg import Drawing, draw
 from semmap.nodes.extern.web.page import Page
-from semmap.nodes.extern.web.panels.redrawing import Redrawing
+from semmap.nodes.extern.web.panels.widgets.redraw import LazyRedraw
 
 _MARKED: Final = 'fill="rgba(47,129,247,.25)" stroke="#2f81f7" stroke-width="2"'
 _PRINT: Final = """
@@ -22,15 +22,15 @@ const sheet = frame.contentDocument;
 const style = sheet.createElement("style");
 style.textContent = "@page { size: %(sheet)s; margin: 0 } body { margin: 0 } img { width: %(wide)gmm }";
 sheet.head.append(style);
-const picture = sheet.createElement("img");
-picture.onload = () => { frame.contentWindow.print(); setTimeout(() => frame.remove(), 60000) };
-picture.src = "%(source)s";
-sheet.body.append(picture);
+const image = sheet.createElement("img");
+image.onload = () => { frame.contentWindow.print(); setTimeout(() => frame.remove(), 60000) };
+image.src = "%(source)s";
+sheet.body.append(image);
 """
 
 
 def plan(page: Page) -> None:
-    """The plan of the moment shown; a click selects."""
+    """Draw the plan at the moment shown; a click selects."""
     _Plan(page)
 
 
@@ -39,7 +39,7 @@ class _Plan:
         self._page = page
         self._floor: Floor | None = None
         self._drawing: Drawing | None = None
-        self._redrawing: Redrawing | None = None
+        self._redraw: LazyRedraw | None = None
         with ui.column().classes("w-full gap-2"):
             with ui.row().classes("w-full items-center gap-2"):
                 self._title = ui.input("Title", value="Plan").props("dense outlined").classes("grow")
@@ -48,16 +48,16 @@ class _Plan:
                     "dense no-caps flat"
                 ).tooltip("Save the plan as a file").mark("plan-download")
                 ui.button("Print", icon="print", on_click=self._print).props("dense no-caps flat")
-            self._picture = ui.interactive_image(on_mouse=self._click, events=["click"], sanitize=False)
-            self._picture.classes("w-full semmap-framed").style("background: #fff")
-            self._picture.props('role="img" aria-label="Plan of the rooms and the furniture"').mark("plan")
-        self._redrawing = Redrawing(page, self._draw)
+            self._image = ui.interactive_image(on_mouse=self._click, events=["click"], sanitize=False)
+            self._image.classes("w-full semmap-framed").style("background: #fff")
+            self._image.props('role="img" aria-label="Plan of the rooms and the furniture"').mark("plan")
+        self._redraw = LazyRedraw(page, self._draw)
         page.on_change(self._again)
         page.on_select(self._mark)
 
     def _again(self) -> None:
-        if self._redrawing is not None:
-            self._redrawing.stale()
+        if self._redraw is not None:
+            self._redraw.mark_stale()
 
     async def _draw(self) -> None:
         state = self._page.state
@@ -74,11 +74,11 @@ class _Plan:
 
         self._floor, drawing = await asyncio.to_thread(drawn)
         self._drawing = drawing
-        self._picture.set_source(_source(drawing.svg))
+        self._image.set_source(_source(drawing.svg))
         self._mark()
 
     def _mark(self) -> None:
-        """Draw around what is selected; of it only numbers go into the picture."""
+        """Outline the selected entities. Only numbers go into the markup."""
         if self._floor is None or self._drawing is None:
             return
         shapes = {room.name: room.outline for room in (*self._floor.rooms, *self._floor.zones)}
@@ -89,7 +89,7 @@ class _Plan:
             for name in self._page.selected
             if (outline := shapes.get(name)) is not None
         ]
-        self._picture.content = "".join(marks)
+        self._image.content = "".join(marks)
 
     def _click(self, event: events.MouseEventArguments) -> None:
         if self._floor is None or self._drawing is None:
@@ -111,11 +111,11 @@ class _Plan:
 
 
 def _source(svg: str) -> str:
-    """The picture as an address; what is in a picture cannot run anything."""
+    """Return the plan as a data URL of an image, in which scripts do not run."""
     return f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
 
 
 def _stamp_ns(page: Page) -> int:
-    """When the commit shown was made, as far as that is known from what it changed."""
+    """Return the time of the last change of an entity, as an estimate for the time of the commit."""
     stamps = [e.provenance.stamp_ns for e in page.state.entities.values()]
     return max(stamps, default=0)

@@ -1,4 +1,4 @@
-"""The nodes: what is degraded first, then their state, and how busy the system has been for ten minutes."""
+"""The system: its problems first, then the state of the nodes, and charts of the last ten minutes."""
 
 from __future__ import annotations
 
@@ -7,20 +7,26 @@ from typing import Any, Final
 
 from nicegui import ui
 
-from semmap.nodes.extern.web.live import Happening
-from semmap.nodes.extern.web.loads import loads_of
+from semmap.nodes.extern.web.live import LiveEvent
+from semmap.nodes.extern.web.loads import measure_loads
 from semmap.nodes.extern.web.page import Page
-from semmap.nodes.extern.web.panels.redrawing import Redrawing
-from semmap.nodes.extern.web.panels.tables import table
-from semmap.nodes.extern.web.views.rates import KEPT_S, Sample, degraded, headline, node_rows
+from semmap.nodes.extern.web.panels.widgets.redraw import LazyRedraw
+from semmap.nodes.extern.web.panels.widgets.tables import table
+from semmap.nodes.extern.web.views.system_status import (
+    KEPT_S,
+    Sample,
+    format_headline,
+    list_problems,
+    node_rows,
+)
 from semmap.schemas import errors
 from semmap.schemas.commands import Status
 
 _COLUMNS: Final = (
-    ("node", "node"), ("state", "state"), ("detail", "says"), ("beat", "heartbeat"), ("up", "up for"),
+    ("node", "node"), ("state", "state"), ("detail", "detail"), ("beat", "heartbeat"), ("up", "uptime"),
     ("memory", "memory"), ("pid", "process"), ("host", "host"),
 )  # fmt: skip
-_ASKED_S: Final = 5.0
+_INTERVAL_S: Final = 5.0
 _GREY: Final = "#8b949e"
 _CURVES: Final = (
     ("commits/s", "#2f81f7", 0),
@@ -31,14 +37,14 @@ _CURVES: Final = (
 
 
 def status(page: Page) -> None:
-    """What does not work as it should, the nodes, and the plots."""
+    """Draw the problems, the table of nodes, and the charts."""
     _Status(page)
 
 
 class _Status:
     def __init__(self, page: Page) -> None:
         self._page = page
-        self._asked_s = 0.0
+        self._requested_s = 0.0
         with ui.column().classes("w-full gap-2"):
             with ui.column().classes("w-full gap-0").props('role="alert"') as self._alarm:
                 pass
@@ -46,40 +52,40 @@ class _Status:
             self._table = table("Nodes", _COLUMNS, key="node", height="18rem").mark("status-nodes")
             with ui.row().classes("w-full gap-2"):
                 self._charts = [_chart(axis) for axis in (0, 1)]
-        self._redrawing = Redrawing(page, self._draw)
-        page.client.on_delete(page.live.listen(self._hear))
+        self._redraw = LazyRedraw(page, self._draw)
+        page.client.on_delete(page.live.listen(self._on_event))
 
-    def _hear(self, happening: Happening) -> None:
-        if happening.kind in ("health", "connection"):
-            self._redrawing.stale()
+    def _on_event(self, event: LiveEvent) -> None:
+        if event.kind in ("health", "connection"):
+            self._redraw.mark_stale()
 
     async def _draw(self) -> None:
         live = self._page.live
         now_ns = time.time_ns()
-        self._say(degraded(live.health, "" if live.connected else live.why_not, now_ns))
-        self._table.rows = node_rows(live.health.values(), loads_of(live.health.values()), now_ns)
+        self._show_problems(list_problems(live.health, "" if live.connected else live.offline_reason, now_ns))
+        self._table.rows = node_rows(live.health.values(), measure_loads(live.health.values()), now_ns)
         for axis, chart in enumerate(self._charts):
             _plot(chart, axis, list(live.rates.samples))
-        if live.connected and time.monotonic() - self._asked_s > _ASKED_S:
-            self._asked_s = time.monotonic()
+        if live.connected and time.monotonic() - self._requested_s > _INTERVAL_S:
+            self._requested_s = time.monotonic()
             try:
-                said = await live.ask(Status())
+                status = await live.ask(Status())
             except errors.SemmapError as error:
                 self._headline.text = error.text
                 return
-            self._headline.text = headline(said)
-            if said.problems:
-                known = degraded(live.health, "", now_ns)
-                self._say((*known, *(text for text in said.problems if text not in known)))
+            self._headline.text = format_headline(status)
+            if status.problems:
+                known = list_problems(live.health, "", now_ns)
+                self._show_problems((*known, *(text for text in status.problems if text not in known)))
 
-    def _say(self, sentences: tuple[str, ...]) -> None:
+    def _show_problems(self, problems: tuple[str, ...]) -> None:
         shown = [label.text for label in self._alarm if isinstance(label, ui.label)]
-        if shown == list(sentences):
+        if shown == list(problems):
             return
         self._alarm.clear()
         with self._alarm:
-            for sentence in sentences:
-                ui.label(sentence).classes("text-negative whitespace-pre-wrap")
+            for problem in problems:
+                ui.label(problem).classes("text-negative whitespace-pre-wrap")
 
 
 def _chart(axis: int) -> ui.echart:
@@ -107,13 +113,13 @@ def _chart(axis: int) -> ui.echart:
             ],
         }
     )  # fmt: skip
-    said = " and ".join(name for name, _, _ in curves)
-    chart.props(f'role="img" aria-label="{said} over the last ten minutes"')
+    names = " and ".join(name for name, _, _ in curves)
+    chart.props(f'role="img" aria-label="{names} over the last ten minutes"')
     return chart.classes("grow").style("height: 13rem; min-width: 18rem")
 
 
 def _plot(chart: ui.echart, axis: int, samples: list[Sample]) -> None:
-    """Draw the curves of one chart; times are milliseconds since 1970, as ECharts takes them."""
+    """Update the curves of one chart; times are in milliseconds since 1970."""
     now_ms = round(1000.0 * time.time())
     chart.options["xAxis"]["min"], chart.options["xAxis"]["max"] = now_ms - round(1000.0 * KEPT_S), now_ms
     series: list[dict[str, Any]] = chart.options["series"]

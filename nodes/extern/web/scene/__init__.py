@@ -1,1 +1,1 @@
-"""The scene in three dimensions, drawn by viser in a frame of the page."""
+"""The 3-D scene, drawn by viser in a frame of the page."""

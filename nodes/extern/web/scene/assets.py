@@ -1,4 +1,4 @@
-"""What all tabs draw with: the surfaces of models and of the world, each asked for once."""
+"""The surfaces of models and of the world, requested once for all tabs."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from typing import Final
 from semmap.nodes.drawing.bending import Bends, bent
 from semmap.nodes.drawing.surfaces import Kind, SurfaceCache
 from semmap.nodes.extern.web.live import Live
+from semmap.nodes.extern.web.scene.drawables import BOX, Key
 from semmap.nodes.extern.web.scene.meshes import glb
-from semmap.nodes.extern.web.scene.shown import BOX, Key
 from semmap.schemas import errors, keys
 from semmap.schemas.entities import Size
 from semmap.schemas.scenes import Scene, Surface, SurfaceQuery, WorldQuery
 
-_AT_ONCE: Final = 50
+_PER_REQUEST: Final = 50
 
 
 class Assets:
-    """Surfaces as the simulator tells them; `changed` is called when there are more."""
+    """The surfaces from the simulator; `changed` is called when new ones have arrived."""
 
     def __init__(self, live: Live, changed: Callable[[], None]) -> None:
         self._live = live
@@ -29,26 +29,26 @@ class Assets:
         self._fetched: Scene | None = None
         self.walls: Surface | None = None
 
-    def surface_of(self, model: str, size_m: Size, bends: Bends = ()) -> Surface | None:
-        """What a model looks like at a size, with its joints moved, if that is known."""
+    def surface_of(self, model: str, size_m: Size, joint_positions: Bends = ()) -> Surface | None:
+        """Return the surface of a model at a size and with its joints moved; None if it is not known."""
         surface = None if model == BOX else self._surfaces.of_kind(model, size_m)
-        return surface if surface is None else bent(surface, bends)
+        return surface if surface is None else bent(surface, joint_positions)
 
     def glb(self, key: Key) -> bytes:
-        """The glTF file of a model at a size and with a look; it must be known."""
+        """Return the glTF file of a model, whose surface must be known, at a size and with an appearance."""
         if (known := self._glbs.get(key)) is not None:
             return known
-        look, model, size_m, bends = key
-        surface = self.surface_of(model, size_m, bends)
+        appearance, model, size_m, joint_positions = key
+        surface = self.surface_of(model, size_m, joint_positions)
         if surface is None:
-            raise errors.InternalError(f"the model '{model}' is unknown")
-        made = glb(surface, look)
-        if not bends:  # ways to stand open are many
+            raise errors.InternalError(f"unknown model '{model}'")
+        made = glb(surface, appearance)
+        if not joint_positions:  # there are too many joint positions to cache
             self._glbs[key] = made
         return made
 
     async def fetch(self) -> None:
-        """Ask what bodies look like, as far as that was never told, and the world if it is another one."""
+        """Request the surfaces that are not known, and those of the world if the simulator is another one."""
         while (scene := self._live.scene) is not self._fetched:
             await self._fetch(scene)
             self._fetched = scene
@@ -57,23 +57,23 @@ class Assets:
         if scene is None:
             return
         wanted = list(self._surfaces.wanted(scene.bodies).items())
-        news = bool(wanted)
-        for start in range(0, len(wanted), _AT_ONCE):
-            await self._fetch_some(dict(wanted[start : start + _AT_ONCE]))
+        is_changed = bool(wanted)
+        for start in range(0, len(wanted), _PER_REQUEST):
+            await self._fetch_some(dict(wanted[start : start + _PER_REQUEST]))
         if scene.run != self._run:
-            self._run, news = scene.run, True
+            self._run, is_changed = scene.run, True
             try:
                 self.walls = await self._live.query(keys.SIM, WorldQuery())
-            except errors.SemmapError:  # an older simulator, or one that this role may not ask
+            except errors.SemmapError:  # an older simulator, or not permitted for this role
                 self.walls = None
-        if news:
+        if is_changed:
             self._changed()
 
     async def _fetch_some(self, kinds: dict[str, Kind]) -> None:
         try:
-            told = await self._live.query(keys.SIM, SurfaceQuery(names=tuple(kinds)))
+            reply = await self._live.query(keys.SIM, SurfaceQuery(names=tuple(kinds)))
         except errors.SemmapError:
             self._surfaces.give_up(kinds.values())
             return
-        for name, surface in told.surfaces.items():
+        for name, surface in reply.surfaces.items():
             self._surfaces.take(kinds[name], surface)

@@ -1,4 +1,4 @@
-"""Where a viewer stands: the way from what the map holds to a first view, and from a view to what is seen."""
+"""Cameras: the initial view of a map, projection, and the selection of labels that do not overlap."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from semmap.schemas.relations import ViewPoint
 Floats = NDArray[np.float64]
 
 FOV_RAD: Final = math.radians(40.0)
-"""Of the first view, from top to bottom."""
+"""Vertical field of view of the initial view."""
 _TILT_RAD: Final = math.radians(52.0)
 _MARGIN: Final = 1.06
 _FARTHEST_M: Final = 200.0
@@ -32,7 +32,10 @@ _NEAREST_M: Final = 0.05
 
 
 class View(Struct, frozen=True):
-    """A pinhole: where it is [m], its optical frame (x right, y down, z ahead) as wxyz, and its picture."""
+    """A pinhole camera: position [m], orientation of the optical frame, and image size.
+
+    In the optical frame x is right, y down, and z ahead.
+    """
 
     position_m: Vector
     wxyz: tuple[float, float, float, float]
@@ -41,7 +44,7 @@ class View(Struct, frozen=True):
     height: float
 
     def project(self, points: Floats) -> Floats:
-        """(N, 3): pixels from the left, pixels from the top, and metres ahead of points (N, 3) [m]."""
+        """Return the pixel x, pixel y and depth [m] of points (N, 3) [m], as an array (N, 3)."""
         w, x, y, z = self.wxyz
         rotation = np.array(
             [
@@ -63,17 +66,17 @@ class View(Struct, frozen=True):
 
     @property
     def viewpoint(self) -> ViewPoint:
-        """Who asks what is left or behind from here: position [m] and heading [rad] about the map's z."""
+        """The position [m] and the heading about the z axis of the map [rad]."""
         w, x, y, z = self.wxyz
         ahead = (2 * (x * z + w * y), 2 * (y * z - w * x))
         up = (-2 * (x * y - w * z), -(1 - 2 * (x * x + z * z)))
-        east, north = ahead if math.hypot(*ahead) > 0.05 else up  # straight down: what is up in the picture
+        east, north = ahead if math.hypot(*ahead) > 0.05 else up  # straight down: the upper edge of the image
         px, py, pz = self.position_m
         return (px, py, pz, math.atan2(north, east))
 
 
 def extent(entities: Iterable[Entity]) -> Floats:
-    """(N, 3) [m]: points around what has a place, for a view of all of it; what is far off is left out."""
+    """Return the corners (N, 3) [m] of all entities with a pose, without distant outliers."""
     points = [
         corners_of(entity.pose, entity.size_m or _UNKNOWN_SIZE_M)
         for entity in entities
@@ -86,9 +89,9 @@ def extent(entities: Iterable[Entity]) -> Floats:
 
 
 def first_view(points: Floats, aspect: float) -> tuple[Vector, Vector]:
-    """Position and target [m] from which all of `points` (N, 3) is seen, from the south and above.
+    """Return the position and the target [m] of a view of all `points` (N, 3), from the south and above.
 
-    `aspect` is how much wider than high the picture is.
+    `aspect` is the width of the image divided by its height.
     """
     if not len(points):
         points = np.array([(-2.0, -2.0, 0.0), (2.0, 2.0, 1.0)])
@@ -104,12 +107,13 @@ def first_view(points: Floats, aspect: float) -> tuple[Vector, Vector]:
     return _vector(eye), _vector(middle)
 
 
-def uncrowded(
+def select_labels(
     view: View, labels: Mapping[str, tuple[str, Vector]], first: Iterable[str] = (), most: int = 40
 ) -> list[str]:
-    """The keys of those `labels` (a text and its place [m]) that fit into the picture side by side.
+    """Return the keys of at most `most` labels that do not overlap in the image.
 
-    The `first` have precedence in their order, then the nearest; at most so many.
+    A label is a text and its position [m]. Those in `first` have precedence, in their order, and then the
+    nearest.
     """
     if not labels:
         return []
@@ -117,7 +121,7 @@ def uncrowded(
     at = view.project(np.array([place for _, place in labels.values()], dtype=float))
     x, y, ahead = at.T
     halves = np.array([_width_px(text) / 2.0 + 5.0 for text, _ in labels.values()])
-    is_whole = (x >= halves) & (x <= view.width - halves)  # not cut off at an edge
+    is_whole = (x >= halves) & (x <= view.width - halves)  # not cut off at the edge
     rows = np.flatnonzero((ahead > _NEAREST_M) & is_whole & (y >= 0.0) & (y <= view.height))
     order = [ranks.get(keys[row], len(ranks)) for row in rows]
     rows = rows[np.lexsort((ahead[rows], order))]
@@ -128,16 +132,16 @@ def uncrowded(
     while is_free.any() and len(chosen) < most:
         this = int(is_free.argmax())
         chosen.append(keys[rows[this]])
-        beside = (left >= right[this]) | (right <= left[this])
-        above = np.abs(top - top[this]) >= _LABEL_PX  # or below: all are as high
-        is_free &= beside | above
+        is_separate_x = (left >= right[this]) | (right <= left[this])
+        is_separate_y = np.abs(top - top[this]) >= _LABEL_PX  # all labels have the same height
+        is_free &= is_separate_x | is_separate_y
         is_free[this] = False
     return chosen
 
 
 @lru_cache(maxsize=8192)
 def _width_px(text: str) -> float:
-    """About how wide a text is written; rooms have capitals, and larger ones."""
+    """Return the approximate width of a text [pixel]; names of rooms are in capitals."""
     return sum(_CAPITAL_PX if letter.isupper() else _LETTER_PX for letter in text)
 
 

@@ -1,4 +1,4 @@
-"""The scene in a tab: the frame in which viser draws, and above it what may be switched on."""
+"""The scene in a tab: the frame in which viser draws, and a toolbar with switches."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Final
 from nicegui import ui
 
 from semmap.nodes.extern.web.page import Page
-from semmap.nodes.extern.web.panels.redrawing import in_view
+from semmap.nodes.extern.web.panels.widgets.redraw import visibility_check
 from semmap.nodes.extern.web.proxy import PATH
 from semmap.nodes.extern.web.scene.tab import SWITCHES, Switch, TabScene
 
@@ -15,7 +15,7 @@ _ICONS: Final[dict[Switch, str]] = {
     "names": "label",
     "walls": "border_style",
     "relations": "timeline",
-    "from here": "visibility",
+    "viewer-relative relations": "visibility",
     "boxes": "check_box_outline_blank",
     "observations": "center_focus_weak",
     "cloud": "grain",
@@ -24,26 +24,26 @@ _ICONS: Final[dict[Switch, str]] = {
 
 
 def scene(page: Page, tab: TabScene) -> None:
-    """Draw it where it is called."""
-    tab.is_in_view = in_view()
-    frame = ui.element("iframe").props(f'src="{PATH}/{page.id}/" title="The scene in three dimensions"')
-    with ui.element("div").classes("semmap-scene-tools").props('role="toolbar" aria-label="The scene"'):
+    """Draw the scene."""
+    tab.is_in_view = visibility_check()
+    frame = ui.element("iframe").props(f'src="{PATH}/{page.id}/" title="3-D scene"')
+    with ui.element("div").classes("semmap-scene-tools").props('role="toolbar" aria-label="Scene"'):
         for name in SWITCHES:
             _switch(tab, name)
-        home = ui.button(icon="home", on_click=tab.look_over).tooltip("Look at everything")
-        home.props('flat dense round color=secondary aria-label="Look at everything"')
-    said = ui.label().classes("semmap-unseen").props('role="status" aria-label="Selected"')
+        home = ui.button(icon="home", on_click=tab.show_all).tooltip("Show all")
+        home.props('flat dense round color=secondary aria-label="Show all"')
+    selection = ui.label().classes("semmap-unseen").props('role="status" aria-label="Selected"')
     past = ui.label().classes("semmap-scene-past").props('role="status"')
 
     def show() -> None:
-        past.text = f"as it was after commit {page.state.commit:,}"
+        past.text = f"commit {page.state.commit:,}"
         past.visible = not page.moment.is_now
         frame.classes(**{"remove" if page.moment.is_now else "add": "is-past"})
 
-    def say() -> None:
-        said.text = ", ".join(page.selected[:20])
+    def show_selection() -> None:
+        selection.text = ", ".join(page.selected[:20])
 
-    page.on_select(say)
+    page.on_select(show_selection)
     page.on_change(show)
     page.on_moment(show)
     show()
@@ -57,9 +57,9 @@ def _switch(tab: TabScene, name: Switch) -> None:
         colour = "primary" if is_on else "grey-6"
         button.props(f'flat dense round color={colour} aria-pressed={str(is_on).lower()} aria-label="{name}"')
 
-    def turn() -> None:
+    def toggle() -> None:
         tab.switch(name, on=name not in tab.on)
         show()
 
-    button.on_click(turn)
+    button.on_click(toggle)
     show()

@@ -1,4 +1,4 @@
-"""Meshes as viser takes them: a model's surface as a binary glTF file, in its own or in paler colours."""
+"""Meshes for viser: the surface of a model as a binary glTF file, in its own or in tinted colours."""
 
 from __future__ import annotations
 
@@ -11,63 +11,69 @@ from numpy.typing import NDArray
 
 from semmap.schemas.scenes import Surface
 
-Look = Literal["solid", "ghost", "believed", "past", "wall"]
-"""`solid`: as it is. `ghost`: a body that does not collide. `believed`: an entity without a body. `past`: as
-it was then. `wall`: seen through."""
+Appearance = Literal["solid", "ghost", "believed", "past", "wall"]
+"""The appearance of an object.
+
+- `solid`: a normal body
+- `ghost`: a non-colliding body
+- `believed`: an entity without a body
+- `past`: an entity in the past
+- `wall`: a transparent wall
+"""
 
 _MAGIC, _VERSION, _JSON, _BINARY = 0x46546C67, 2, 0x4E4F534A, 0x004E4942
 _FLOATS, _NUMBERS = 5126, 5125
 _VERTICES, _INDICES = 34962, 34963
 
-_VEILS: Final[dict[Look, tuple[tuple[float, float, float], float, float]]] = {
+_TINTS: Final[dict[Appearance, tuple[tuple[float, float, float], float, float]]] = {
     "solid": ((0.0, 0.0, 0.0), 0.0, 1.0),
     "ghost": ((0.80, 0.84, 0.95), 0.45, 0.35),
     "believed": ((1.0, 0.80, 0.45), 0.55, 0.45),
     "past": ((0.96, 0.86, 0.66), 0.5, 1.0),
     "wall": ((0.95, 0.95, 0.96), 0.7, 0.2),
 }
-"""For each look a colour (linear RGB), how much of it is mixed in, and the opacity."""
+"""For each appearance a colour (linear RGB), its share, and the opacity."""
 
 
-def opacity_of(look: Look) -> float:
-    """How opaque things of a look are, 0 to 1."""
-    return _VEILS[look][2]
+def opacity_of(appearance: Appearance) -> float:
+    """Return the opacity of an appearance, 0 to 1."""
+    return _TINTS[appearance][2]
 
 
-def veiled(rgb: NDArray[np.floating[Any]], look: Look) -> NDArray[np.float32]:
-    """Linear colours (N, 3), 0 to 1, as things of this look have them."""
-    veil, share, _ = _VEILS[look]
-    return np.asarray(rgb * (1.0 - share) + np.array(veil) * share, dtype=np.float32)
+def tinted(rgb: NDArray[np.floating[Any]], appearance: Appearance) -> NDArray[np.float32]:
+    """Return linear colours (N, 3), 0 to 1, with the tint of an appearance."""
+    tint, share, _ = _TINTS[appearance]
+    return np.asarray(rgb * (1.0 - share) + np.array(tint) * share, dtype=np.float32)
 
 
 def linear(srgb: NDArray[np.uint8]) -> NDArray[np.float32]:
-    """Linear light, 0 to 1, of 8-bit sRGB: what glTF wants at vertices."""
+    """Convert 8-bit sRGB to linear RGB, 0 to 1, as glTF requires at vertices."""
     value = srgb.astype(np.float32) / 255.0
     return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4).astype(np.float32)
 
 
 def srgb(rgb: NDArray[np.floating[Any]]) -> NDArray[np.uint8]:
-    """8-bit sRGB of linear light, 0 to 1."""
+    """Convert linear RGB, 0 to 1, to 8-bit sRGB."""
     value = np.clip(rgb, 0.0, 1.0)
     encoded = np.where(value <= 0.0031308, 12.92 * value, 1.055 * value ** (1.0 / 2.4) - 0.055)
     return np.asarray(np.round(255.0 * encoded), dtype=np.uint8)
 
 
-def glb(surface: Surface, look: Look = "solid") -> bytes:
-    """A surface of one or more triangles as a binary glTF 2.0 file, with a colour at each vertex."""
+def glb(surface: Surface, appearance: Appearance = "solid") -> bytes:
+    """Return a surface of at least one triangle as a binary glTF 2.0 file with vertex colours."""
     points = np.frombuffer(surface.points, "<f4").reshape(-1, 3)
     normals = np.frombuffer(surface.normals, "<f4").reshape(-1, 3)
-    colours = veiled(linear(np.frombuffer(surface.colours, np.uint8).reshape(-1, 3)), look)
+    colours = tinted(linear(np.frombuffer(surface.colours, np.uint8).reshape(-1, 3)), appearance)
     triangles = np.frombuffer(surface.triangles, "<u4")
     arrays = (points, normals, colours, triangles)
     binary = b"".join(array.tobytes() for array in arrays)  # each is a multiple of four bytes long
     ends = np.cumsum([0, *(array.nbytes for array in arrays)]).tolist()
-    is_clear = opacity_of(look) < 1.0
+    is_clear = opacity_of(appearance) < 1.0
     material = {
         "pbrMetallicRoughness": {
             "metallicFactor": 0.0,
             "roughnessFactor": 0.85,
-            "baseColorFactor": [1.0, 1.0, 1.0, opacity_of(look)],
+            "baseColorFactor": [1.0, 1.0, 1.0, opacity_of(appearance)],
         },
         "alphaMode": "BLEND" if is_clear else "OPAQUE",
     }
@@ -116,7 +122,7 @@ def glb(surface: Surface, look: Look = "solid") -> bytes:
 
 
 def cube() -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
-    """Points (24, 3) and triangles (12, 3) of a cube of edge one that stands on its bottom centre."""
+    """Return points (24, 3) and triangles (12, 3) of a unit cube with the origin at its bottom centre."""
     points: list[NDArray[np.float64]] = []
     triangles: list[tuple[int, int, int]] = []
     for axis in range(3):

@@ -1,4 +1,4 @@
-"""Where a ray meets what is in the scene: places that are pointed at, and what is under a point."""
+"""Ray casting against the objects of the scene, for picking and for finding supports."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from semmap.schemas.scenes import Surface
 Floats = NDArray[np.float64]
 
 _UPWARD: Final = 0.5
-"""A surface is one to put things on if its normal is within 60 degrees of the vertical."""
+"""A surface supports objects if its normal is within 60 degrees of the vertical."""
 _EPSILON: Final = 1e-9
 
 
 class Solid(Struct, frozen=True):
-    """A thing that may be pointed at: its box, and its surface where that is known."""
+    """An object that can be picked: its box, and its surface if it is known."""
 
     name: str
     pose: Pose
@@ -29,7 +29,7 @@ class Solid(Struct, frozen=True):
 
 
 class Hit(Struct, frozen=True):
-    """Where a ray meets a thing (with an empty name: the floor), and the outward normal there, map frame."""
+    """The point where a ray hits an object, or the floor (empty name), and the outward normal; map frame."""
 
     name: str
     at: Vector
@@ -37,35 +37,35 @@ class Hit(Struct, frozen=True):
 
 
 def first_hit(origin: Vector, direction: Vector, solids: Iterable[Solid]) -> Hit | None:
-    """What a ray meets first, the floor (z = 0) included; None for one that goes up into the open."""
-    start, way = np.array(origin, dtype=float), np.array(direction, dtype=float)
-    way /= np.linalg.norm(way)
+    """Return the first hit of a ray with an object or the floor (z = 0); None without a hit."""
+    start, ray = np.array(origin, dtype=float), np.array(direction, dtype=float)
+    ray /= np.linalg.norm(ray)
     found: tuple[float, str, Floats] | None = None
-    if way[2] < -_EPSILON and start[2] > 0.0:
-        found = (-start[2] / way[2], "", np.array((0.0, 0.0, 1.0)))
-    for solid in _near(start, way, list(solids)):
-        met = _meets(start, way, solid)
-        if met is not None and (found is None or met[0] < found[0]):
-            found = (met[0], solid.name, met[1])
+    if ray[2] < -_EPSILON and start[2] > 0.0:
+        found = (-start[2] / ray[2], "", np.array((0.0, 0.0, 1.0)))
+    for solid in _candidates(start, ray, list(solids)):
+        hit = _intersect(start, ray, solid)
+        if hit is not None and (found is None or hit[0] < found[0]):
+            found = (hit[0], solid.name, hit[1])
     if found is None:
         return None
-    at = start + found[0] * way
+    at = start + found[0] * ray
     return Hit(found[1], _vector(at), _vector(found[2]))
 
 
 def is_level(hit: Hit) -> bool:
-    """May a thing be put down there?"""
+    """Return whether an object can be placed at the hit."""
     return hit.normal[2] > _UPWARD
 
 
 def support_m(at: Vector, solids: Iterable[Solid]) -> float:
-    """The height [m] of what is straight below a point: a thing's surface, or the floor at 0."""
+    """Return the height [m] of the surface below a point; 0 for the floor."""
     hit = first_hit(at, (0.0, 0.0, -1.0), solids)
     return 0.0 if hit is None else hit.at[2]
 
 
-def _near(origin: Floats, direction: Floats, solids: list[Solid]) -> list[Solid]:
-    """Those whose bounding ball a ray meets; a few of many, told by a few operations on all."""
+def _candidates(origin: Floats, direction: Floats, solids: list[Solid]) -> list[Solid]:
+    """Return the objects whose bounding sphere the ray hits, computed for all objects together."""
     if not solids:
         return []
     sizes = np.array([solid.size_m for solid in solids])
@@ -76,61 +76,61 @@ def _near(origin: Floats, direction: Floats, solids: list[Solid]) -> list[Solid]
     return [solids[row] for row in np.flatnonzero(apart <= reach).tolist()]
 
 
-def _meets(origin: Floats, direction: Floats, solid: Solid) -> tuple[float, Floats] | None:
-    """How far along a ray it meets a solid, and the outward normal there, in the map frame."""
+def _intersect(origin: Floats, direction: Floats, solid: Solid) -> tuple[float, Floats] | None:
+    """Return the distance along the ray to an object, and the outward normal there in the map frame."""
     rotation = rotation_of(solid.pose)
     start = (origin - np.array(solid.pose.position_m)) @ rotation
-    way = direction @ rotation
-    box = _meets_box(start, way, np.array(solid.size_m))
-    if box is None:
+    ray = direction @ rotation
+    hit = _intersect_box(start, ray, np.array(solid.size_m))
+    if hit is None:
         return None
     if solid.surface is not None:
-        box = _meets_surface(start, way, solid.surface)
-        if box is None:
+        hit = _intersect_surface(start, ray, solid.surface)
+        if hit is None:
             return None
-    return box[0], rotation @ box[1]
+    return hit[0], rotation @ hit[1]
 
 
-def _meets_box(start: Floats, way: Floats, size: Floats) -> tuple[float, Floats] | None:
-    """The same of a box that stands on the origin, in its own frame."""
+def _intersect_box(start: Floats, ray: Floats, size: Floats) -> tuple[float, Floats] | None:
+    """Return distance and normal for a box with the origin at its bottom centre, in its own frame."""
     low, high = np.array((-size[0] / 2, -size[1] / 2, 0.0)), np.array((size[0] / 2, size[1] / 2, size[2]))
-    safe = np.where(np.abs(way) < _EPSILON, _EPSILON, way)
-    ways = np.stack([(low - start) / safe, (high - start) / safe])
-    enters, leaves = ways.min(axis=0), ways.max(axis=0)
+    safe = np.where(np.abs(ray) < _EPSILON, _EPSILON, ray)
+    distances = np.stack([(low - start) / safe, (high - start) / safe])
+    enters, leaves = distances.min(axis=0), distances.max(axis=0)
     axis = int(enters.argmax())
     distance = float(enters[axis])
     if distance > leaves.min() or leaves.min() < 0.0:
         return None
     normal = np.zeros(3)
-    normal[axis] = -np.sign(way[axis])
+    normal[axis] = -np.sign(ray[axis])
     return max(0.0, distance), normal
 
 
-def _meets_surface(start: Floats, way: Floats, surface: Surface) -> tuple[float, Floats] | None:
-    """The same of triangles, by Möller and Trumbore's test, all at once."""
+def _intersect_surface(start: Floats, ray: Floats, surface: Surface) -> tuple[float, Floats] | None:
+    """Return distance and normal for triangles, by the Möller-Trumbore algorithm, vectorized."""
     points = np.frombuffer(surface.points, "<f4").reshape(-1, 3).astype(float)
     corners = points[np.frombuffer(surface.triangles, "<u4").reshape(-1, 3)]
     a, ab, ac = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    across = np.cross(way, ac)
+    across = np.cross(ray, ac)
     volume = np.einsum("ij,ij->i", ab, across)
     flat = np.abs(volume) < 1e-15
     inverse = 1.0 / np.where(flat, 1.0, volume)
     offset = start - a
     u = np.einsum("ij,ij->i", offset, across) * inverse
     along = np.cross(offset, ab)
-    v = (along @ way) * inverse
+    v = (along @ ray) * inverse
     distance = np.einsum("ij,ij->i", ac, along) * inverse
-    met = ~flat & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (distance > _EPSILON)
-    if not met.any():
+    is_hit = ~flat & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (distance > _EPSILON)
+    if not is_hit.any():
         return None
-    row = int(np.where(met, distance, np.inf).argmin())
+    row = int(np.where(is_hit, distance, np.inf).argmin())
     normal = np.cross(ab[row], ac[row])
     normal /= max(float(np.linalg.norm(normal)), _EPSILON)
-    return float(distance[row]), normal if normal @ way < 0.0 else -normal
+    return float(distance[row]), normal if normal @ ray < 0.0 else -normal
 
 
 def rotation_of(pose: Pose) -> Floats:
-    """(3, 3): the map from the thing's frame."""
+    """Return the rotation matrix (3, 3) from the frame of the object to the map frame."""
     w, x, y, z = pose.orientation_wxyz
     return np.array(
         [
@@ -142,7 +142,7 @@ def rotation_of(pose: Pose) -> Floats:
 
 
 def corners_of(pose: Pose, size_m: Size) -> Floats:
-    """(8, 3) [m]: the corners of a thing's box in the map frame, the four at the bottom first."""
+    """Return the corners of the box of an object in the map frame, (8, 3) [m], the bottom ones first."""
     x, y, z = size_m
     own = np.array([(sx * x / 2, sy * y / 2, sz * z) for sz in (0, 1) for sx, sy in _ROUND])
     return np.asarray(own @ rotation_of(pose).T + np.array(pose.position_m))
@@ -154,7 +154,7 @@ _EDGES = np.array([*_RING, *((4 + a, 4 + b) for a, b in _RING), *((a, 4 + a) for
 
 
 def edges_of(pose: Pose, size_m: Size) -> NDArray[np.float32]:
-    """(12, 2, 3) [m]: the edges of a thing's box in the map frame."""
+    """Return the edges of the box of an object in the map frame, of shape (12, 2, 3) [m]."""
     return np.asarray(corners_of(pose, size_m)[_EDGES], dtype=np.float32)
 
 

@@ -1,4 +1,4 @@
-"""The relations of a thing as lines, with their measures beside them."""
+"""The relations of an entity as labelled lines."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ _WORDS: Final[dict[RelationName, tuple[str, bool]]] = {
     "isBetween": ("between", False),
     "isVisibleFrom": ("visible from", False),
 }
-"""What each is called, and whether its distance says something."""
+"""The text of each relation, and whether its distance is shown."""
 _IMPLIED: Final[dict[RelationName, frozenset[RelationName]]] = {
     "isOn": frozenset(("isNear", "isNextTo", "touches", "isAbove", "isUnder")),
     "isInside": frozenset(("isNear", "isNextTo", "touches", "isUnder", "isAbove")),
     "isAttachedTo": frozenset(("isNear", "isNextTo", "touches")),
     "isNextTo": frozenset(("isNear",)),
 }
-"""What needs no saying beside the other."""
+"""Relations that are implied by another one, and thus not shown with it."""
 
 
 class RelationLine(Struct, frozen=True):
-    """A line between the middles of two things, with what is written on it."""
+    """A line between the centres of two entities, with its label."""
 
     a: Vector
     b: Vector
@@ -46,37 +46,36 @@ class RelationLine(Struct, frozen=True):
 
 
 def relation_lines(
-    of: str, relations: Iterable[Relation], middles: Mapping[str, Vector]
+    name: str, relations: Iterable[Relation], centres: Mapping[str, Vector]
 ) -> list[RelationLine]:
-    """One line for each other thing that `of` is related to, the nearest first.
+    """Return one line for each entity that is related to `name`, the nearest first.
 
-    `middles` has what can be drawn [m].
-    Places, which are not among them, are left out.
+    `centres` [m] has the entities that are drawn. Places are not among them, and get no lines.
     """
     by_other: dict[str, list[Relation]] = {}
     for relation in relations:
         if relation.holds:
-            for other in {relation.subject, relation.object, relation.and_object or ""} - {of, ""}:
+            for other in {relation.subject, relation.object, relation.and_object or ""} - {name, ""}:
                 by_other.setdefault(other, []).append(relation)
     return [
-        RelationLine(middles[of], middles[other], _text(of, found))
+        RelationLine(centres[name], centres[other], _text(name, found))
         for other, found in sorted(by_other.items(), key=lambda each: min(r.gap_m for r in each[1]))
-        if other in middles and of in middles
+        if other in centres and name in centres
     ]
 
 
-def _text(of: str, relations: list[Relation]) -> str:
+def _text(name: str, relations: list[Relation]) -> str:
     kinds = {relation.relation for relation in relations}
     implied = frozenset().union(*(_IMPLIED.get(kind, frozenset()) for kind in kinds))
-    said = [_words(of, relation) for relation in relations if relation.relation not in implied]
-    return ", ".join(dict.fromkeys(said))
+    texts = [_words(name, relation) for relation in relations if relation.relation not in implied]
+    return ", ".join(dict.fromkeys(texts))
 
 
-def _words(of: str, relation: Relation) -> str:
-    words, is_measured = _WORDS[relation.relation]
-    who = "" if relation.subject == of else f"{relation.subject} "
-    measure = f" {_distance(relation.gap_m)}" if is_measured else ""
-    return f"{who}{words}{measure}"
+def _words(name: str, relation: Relation) -> str:
+    words, has_distance = _WORDS[relation.relation]
+    subject = "" if relation.subject == name else f"{relation.subject} "
+    distance = f" {_distance(relation.gap_m)}" if has_distance else ""
+    return f"{subject}{words}{distance}"
 
 
 def _distance(metres: float) -> str:

@@ -1,4 +1,4 @@
-"""Rooms: a sheet on the floor for each place, its name, and the world's walls."""
+"""Places as coloured floors with names, and the walls of the world."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from viser import BatchedGlbHandle, MeshHandle, SceneApi
 
 from semmap.nodes.drawing.palette import colour_of
 from semmap.nodes.drawing.sheets import triangles_of
-from semmap.nodes.extern.web.scene.marks import Written
+from semmap.nodes.extern.web.scene.annotations import LabelText
 from semmap.nodes.extern.web.scene.meshes import cube, glb, linear, srgb
 from semmap.schemas import errors
 from semmap.schemas.entities import Entity
@@ -18,41 +18,46 @@ from semmap.schemas.polygons import Polygon, extent_of
 from semmap.schemas.scenes import Surface
 
 _SHEET_M = 0.01
-_ROOMS_IN_ROOM = 2
+_MAX_INNER_ROOMS = 2
 _LIGHT, _DARK = 0.12, 0.03
-"""What floors are toned down with, as linear light: less than a light background has, for lamps add to it."""
+"""Grey levels (linear) that are mixed into floor colours on a light and a dark background."""
 _PALE = 0.6
-"""How much of a room's colour that takes the place of."""
+"""Share of the grey in a floor colour."""
 
 
 class Rooms:
-    """The places of the map and the walls of the world, in one tab's view."""
+    """The places of the map and the walls of the world, in the scene of one tab."""
 
     def __init__(self, scene: SceneApi) -> None:
         self._scene = scene
         self._paper = _LIGHT
         self._drawn: tuple[tuple[object, ...], ...] = ()
         self._places: list[Entity] = []
-        self.names: dict[str, Written] = {}
-        """What the places are called, and where that may be written."""
+        self.names: dict[str, LabelText] = {}
+        """The names of the places, and their positions."""
         self._outlines: list[MeshHandle] = []
         self._walls: BatchedGlbHandle | None = None
 
     def show(self, entities: Mapping[str, Entity]) -> None:
-        """Draw the places among these; those that have a size as sheets, the smaller on the larger."""
+        """Draw the places among these entities.
+
+        Places with a size are sheets, the smaller above the larger.
+        """
         places = sorted(
             (entity for entity in entities.values() if entity.place and entity.pose is not None),
             key=lambda place: (-_area(place), place.name),
         )
-        drawn = tuple((p.name, p.class_, p.pose, p.size_m, extent_of(p), _called(p)) for p in places)
+        drawn = tuple((p.name, p.class_, p.pose, p.size_m, extent_of(p), _label(p)) for p in places)
         if drawn == self._drawn:
             return
         self._drawn, self._places = drawn, places
         self._sheets([place for place in places if place.size_m is not None])
-        self.names = {place.name: _written(place) for place in places if not _is_around(place, places)}
+        self.names = {
+            place.name: _label_text(place) for place in places if not _encloses_rooms(place, places)
+        }
 
     def darken(self, dark: bool) -> None:
-        """Let the floors go with a dark background, or a light one."""
+        """Adapt the floors to a dark or a light background."""
         paper = _DARK if dark else _LIGHT
         if paper != self._paper:
             self._paper = paper
@@ -95,7 +100,7 @@ class Rooms:
     def _outline(
         self, name: str, extent: Polygon, position: NDArray[np.float64], colour: NDArray[np.uint8]
     ) -> MeshHandle:
-        """A sheet in the shape of a polygon, as high as the upper side of a box's."""
+        """Draw a sheet in the shape of a polygon, at the height of the top of a box."""
         corners, triangles = triangles_of(extent)
         red, green, blue = (int(part) for part in colour)
         return self._scene.add_mesh_simple(
@@ -108,7 +113,7 @@ class Rooms:
         )
 
     def walls(self, surface: Surface | None) -> None:
-        """Draw the walls, seen through; None for none."""
+        """Draw transparent walls; None removes them."""
         if self._walls is not None:
             self._walls.remove()
             self._walls = None
@@ -128,8 +133,8 @@ def _area(place: Entity) -> float:
     return place.size_m[0] * place.size_m[1] if place.size_m is not None else 0.0
 
 
-def _is_around(place: Entity, places: Iterable[Entity]) -> bool:
-    """Does it have several others in it, so that its name belongs nowhere in particular?"""
+def _encloses_rooms(place: Entity, places: Iterable[Entity]) -> bool:
+    """Return whether a place contains several others, so that its name is not shown."""
     if place.pose is None or place.size_m is None:
         return False
     (x, y, _), (width, depth, _) = place.pose.position_m, place.size_m
@@ -138,14 +143,14 @@ def _is_around(place: Entity, places: Iterable[Entity]) -> bool:
         if other is not place and other.pose is not None:
             ox, oy, _ = other.pose.position_m
             inner += abs(ox - x) <= width / 2.0 and abs(oy - y) <= depth / 2.0
-    return inner > _ROOMS_IN_ROOM
+    return inner > _MAX_INNER_ROOMS
 
 
-def _written(place: Entity) -> Written:
+def _label_text(place: Entity) -> LabelText:
     if place.pose is None:
         raise errors.InternalError(f"{place.name} has no pose")
-    return _called(place).upper(), place.pose.position_m
+    return _label(place).upper(), place.pose.position_m
 
 
-def _called(place: Entity) -> str:
+def _label(place: Entity) -> str:
     return place.preferred_reference or place.name

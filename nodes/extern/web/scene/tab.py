@@ -1,4 +1,4 @@
-"""One tab's view of the scene: what is drawn there, and what a person does in it."""
+"""The scene of one tab: drawing, selection, picking and dragging."""
 
 from __future__ import annotations
 
@@ -13,33 +13,43 @@ from viser import ClientHandle
 from semmap.nodes.drawing.figures import still
 from semmap.nodes.extern.web.differences import Mark
 from semmap.nodes.extern.web.page import Page, Place
+from semmap.nodes.extern.web.scene.annotations import (
+    Labels,
+    LabelText,
+    Lines,
+    Rgb,
+    dashed_line,
+    join_segments,
+    line,
+)
 from semmap.nodes.extern.web.scene.assets import Assets
 from semmap.nodes.extern.web.scene.bodies import Bodies
-from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, uncrowded
-from semmap.nodes.extern.web.scene.differences import drawn
-from semmap.nodes.extern.web.scene.dragging import Gizmo, Phase, put_down
-from semmap.nodes.extern.web.scene.marks import Labels, Lines, Rgb, Written, dashed, joined, line
+from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, select_labels
+from semmap.nodes.extern.web.scene.difference_boxes import difference_boxes
+from semmap.nodes.extern.web.scene.drawables import BOX, Drawable, Key, drawable_of
+from semmap.nodes.extern.web.scene.gizmo import Gizmo, Phase, place_on_support
 from semmap.nodes.extern.web.scene.picking import Solid, edges_of, first_hit
 from semmap.nodes.extern.web.scene.relation_lines import relation_lines
 from semmap.nodes.extern.web.scene.rooms import Rooms
-from semmap.nodes.extern.web.scene.seen import Seen
-from semmap.nodes.extern.web.scene.shown import BOX, Key, Shown, shown
+from semmap.nodes.extern.web.scene.sensor_overlay import SensorOverlay
 from semmap.schemas import errors, keys
 from semmap.schemas.commands import Move, Relations
 from semmap.schemas.entities import Pose, Size, Vector
 from semmap.schemas.relations import Relation, ViewPoint
 from semmap.schemas.scenes import Body, SceneQuery
 
-Switch = Literal["names", "walls", "relations", "from here", "boxes", "observations", "cloud", "cameras"]
+Switch = Literal[
+    "names", "walls", "relations", "viewer-relative relations", "boxes", "observations", "cloud", "cameras"
+]
 SWITCHES: Final[dict[Switch, str]] = {
-    "names": "What things are called",
-    "walls": "The walls of the world",
-    "relations": "What the selected thing has to do with others, as measured",
-    "from here": "And what is left of it, behind it ..., as seen from here",
-    "boxes": "The boxes of all entities",
-    "observations": "What perception sees",
-    "cloud": "The points that perception sees",
-    "cameras": "The cameras with their pictures",
+    "names": "Names of entities and places",
+    "walls": "Walls of the world",
+    "relations": "Computed relations of the selected entity",
+    "viewer-relative relations": "Viewer-relative relations: left of, right of, in front of, behind",
+    "boxes": "Bounding boxes of all entities",
+    "observations": "Observations of perception",
+    "cloud": "Point cloud of perception",
+    "cameras": "Cameras and their images",
 }
 _ON: Final[frozenset[Switch]] = frozenset(("names", "walls", "relations"))
 
@@ -55,62 +65,69 @@ _CHANGED: Final[dict[Mark, Rgb]] = {
 _SKY: Final[Rgb] = (255, 255, 255)
 _GROUND: Final[Rgb] = (190, 180, 170)
 _LABELS_S: Final = 0.25
-_AFTER_S: Final = 0.03
-"""So long after the panels the scene follows a change: they are a matter of a moment, and it may not be."""
+_DRAW_DELAY_S: Final = 0.03
+"""Delay of the scene after a change, so that the panels, which are faster, are drawn first."""
 _MODIFIERS: Final = (None, "shift", "cmd/ctrl", "cmd/ctrl+shift")
-_TOLD_S: Final = 0.2
-"""After so long it is known that a body stands where it was put."""
-_NO_ROOM: Final = "There is no room for {name} there: it would stand in {other}. It is back where it was."
+_POSE_DELAY_S: Final = 0.2
+"""Time after which the new pose of a moved body has been received."""
+_NO_ROOM: Final = "{name}: no free space, the position overlaps {other}; {name} was moved back"
 _RENDER_S: Final = (0.3, 1.0, 3.0, 8.0)
 _MEASURES: Final = 8
-"""Of so many relations, the nearest things first, it is written what they are."""
+"""Maximum number of relation labels, for the nearest entities."""
 _HANDLES: Final = "handles"
-"""About as wide as what a thing is held by, which no measure is to cover."""
-_MARKED: Final = "otherwise "
-"""Before the name of a thing, in the key of what is written at it because it is otherwise."""
+"""A text about as wide as the gizmo, which labels must not cover."""
+_MARKED: Final = "changed "
+"""Prefix of the keys of labels for differences."""
 _NAMED: Final = 50
-"""Of so many selected things the names are written, whether or not there is room."""
+"""Number of selected entities whose names are always shown."""
 
 
 class TabScene:
-    """It belongs to the event loop of the page; viser's thread only hands over."""
+    """The scene of one tab.
+
+    It is used on the event loop of the page, to which the thread of viser posts calls.
+    """
 
     def __init__(self, page: Page, assets: Assets, is_open: Callable[[int], bool]) -> None:
-        """`is_open(client_id)`: a client of viser's is still there; it may be called on any thread."""
+        """`is_open(client_id)` returns whether a viser client is connected, on any thread."""
         self.page = page
         self.on: set[Switch] = set(_ON)
         self._assets = assets
         self._is_open = is_open
         self._loop = asyncio.get_running_loop()
         self._client: ClientHandle | None = None
-        self._things: dict[str, Shown] = {}
-        self._known: dict[str, tuple[tuple[object, ...], Shown | None]] = {}
+        self._things: dict[str, Drawable] = {}
+        self._known: dict[str, tuple[tuple[object, ...], Drawable | None]] = {}
         self._bodies_of: tuple[object, dict[str, Body]] = (None, {})
         self._relations: tuple[Relation, ...] = ()
-        self._marked: dict[str, Written] = {}
-        """What is written at things that are otherwise than in the moment compared with, by their names."""
-        self._measures: dict[str, Written] = {}
-        """What is written at the lines of relations."""
-        self._asked = 0
+        self._marked: dict[str, LabelText] = {}
+        """Labels of entities that differ from the moment compared with, by name."""
+        self._measures: dict[str, LabelText] = {}
+        """Labels of the relation lines."""
+        self._request = 0
         self._dragging = ""
         self._picking: asyncio.Future[Place | None] | None = None
         self._labelling: asyncio.TimerHandle | None = None
         self._drawing: asyncio.TimerHandle | None = None
         self._rendering: list[asyncio.TimerHandle] = []
         self._is_stale = False
-        """Something has changed while it was out of view."""
+        """Whether something has changed while the scene was hidden."""
         self.is_in_view: Callable[[], bool] = lambda: True
-        """Is the view that its frame is in the one that the tab shows? Set by who makes the frame."""
+        """Returns whether the scene is visible; set by the code that creates its frame."""
         self._camera: tuple[Any, ...] | None = None
-        """The last camera of this tab, for a frame that has to connect again."""
+        """The last camera of this tab, for a frame that reconnects."""
         page.on_change(self._draw_soon)
-        page.on_turn(self._on_turn)
+        page.on_tab_change(self._on_tab_change)
         page.on_poses(self._on_poses)
         page.on_select(self._on_select)
-        page.on_look(self._on_look)
-        page.pick, page.look, page.break_off = self.pick_place, self.viewpoint, self.break_off
+        page.on_appearance_change(self._on_appearance_change)
+        page.pick, page.get_viewpoint, page.cancel_interaction = (
+            self.pick_place,
+            self.viewpoint,
+            self.cancel_interaction,
+        )
 
-    # A frame comes and goes
+    # Connection of the frame
 
     def attach(self, client: ClientHandle) -> None:
         """Draw everything in a frame that has connected."""
@@ -130,35 +147,35 @@ class TabScene:
         self._difference_labels = Labels(scene, "/differences/names")
         self._dragged = Bodies(scene, self._glb_of, "/dragged")
         self._nudge = scene.add_frame("/nudge", show_axes=False)
-        self._gizmo = Gizmo(scene, self._hop(self._on_drag), lambda: self._is_open(client.client_id))
-        self._seen = Seen(scene, self.page.live)
+        self._gizmo = Gizmo(scene, self._on_loop(self._on_drag), lambda: self._is_open(client.client_id))
+        self._sensors = SensorOverlay(scene, self.page.live)
         self._listen(client)
-        self._on_look()
+        self._on_appearance_change()
         self._known.clear()
-        self._look_over(client)
+        self._reset_camera(client)
         self._rooms.walls(self._assets.walls if "walls" in self.on else None)
         for switch in ("observations", "cloud", "cameras"):
-            self._seen.switch(switch, on=switch in self.on)
+            self._sensors.switch(switch, on=switch in self.on)
         self._draw()
         self._on_select()
 
     def detach(self, client_id: int) -> None:
-        """The frame of this client has gone; what was half done is not done."""
+        """Detach a frame that has disconnected, and cancel picking and dragging."""
         if self._client is not None and self._client.client_id == client_id:
             self._client = None
             _cancel(self._drawing, self._labelling, *self._rendering)
             self._drawing = self._labelling = None
             self._dragging = ""
-            self._seen.close()
+            self._sensors.close()
             self._end_picking(None)
 
     def close(self) -> None:
-        """The tab has gone."""
+        """Detach the frame of a closed tab."""
         if self._client is not None:
             self.detach(self._client.client_id)
 
-    def _hop(self, function: Callable[..., None]) -> Callable[..., None]:
-        """The same function, called on the page's event loop."""
+    def _on_loop(self, function: Callable[..., None]) -> Callable[..., None]:
+        """Return a function that calls `function` on the event loop of the page."""
 
         def call(*arguments: Any) -> None:
             with contextlib.suppress(RuntimeError):  # the loop has ended
@@ -172,7 +189,7 @@ class TabScene:
                 function(*arguments)
 
     def _listen(self, client: ClientHandle) -> None:
-        on_ray, on_camera = self._hop(self._on_ray), self._hop(self._on_camera)
+        on_ray, on_camera = self._on_loop(self._on_ray), self._on_loop(self._on_camera)
 
         async def clicked(event: Any) -> None:
             on_ray(event.ray_origin, event.ray_direction, event.modifier is not None)
@@ -184,17 +201,17 @@ class TabScene:
         async def _(_: Any) -> None:
             on_camera()
 
-    def _look_over(self, client: ClientHandle) -> None:
-        """Let everything be in view, unless the tab was looking somewhere before it had to connect again."""
+    def _reset_camera(self, client: ClientHandle) -> None:
+        """Restore the camera after a reconnect; otherwise show everything."""
         camera = client.camera
         camera.fov = FOV_RAD
         if self._camera is not None:
             camera.position, camera.look_at = self._camera
         else:
-            self.look_over()
+            self.show_all()
 
-    def look_over(self) -> None:
-        """Look at all that there is, from above."""
+    def show_all(self) -> None:
+        """Show the whole map from above."""
         if self._client is None:
             return
         camera = self._client.camera
@@ -202,7 +219,7 @@ class TabScene:
         eye, target = first_view(extent(self.page.state.entities.values()), aspect)
         camera.position, camera.look_at = eye, target
 
-    def _on_look(self) -> None:
+    def _on_appearance_change(self) -> None:
         if self._client is not None:
             self._client.gui.configure_theme(dark_mode=self.page.dark)
             self._rooms.darken(self.page.dark)
@@ -218,44 +235,52 @@ class TabScene:
             self._bodies_of = (scene, {body.name: body for body in scene.bodies} if scene else {})
         return self._bodies_of[1]
 
-    def _wanted(self) -> dict[str, Shown]:
+    def _wanted(self) -> dict[str, Drawable]:
         state, now = self.page.state, self.page.moment.is_now
         bodies, known = self._bodies_by_name(), self._known
         simulated = self.page.live.scene is not None
-        wanted: dict[str, Shown] = {}
-        after: dict[str, tuple[tuple[object, ...], Shown | None]] = {}
+        wanted: dict[str, Drawable] = {}
+        after: dict[str, tuple[tuple[object, ...], Drawable | None]] = {}
         for name in [*state.entities, *(name for name in bodies if name not in state.entities)]:
             entity, body, pose = state.entities.get(name), bodies.get(name), state.poses.get(name)
-            bends = self.page.live.bends.get(name) if now else None
+            joint_positions = self.page.live.joint_positions.get(name) if now else None
             before = known.get(name)
-            told = (entity, body, pose, bends)
-            if before is not None and all(a is b for a, b in zip(before[0], told, strict=True)):
+            inputs = (entity, body, pose, joint_positions)
+            if before is not None and all(a is b for a, b in zip(before[0], inputs, strict=True)):
                 thing = before[1]
             else:
                 surface_of = self._assets.surface_of
-                thing = shown(entity, body, pose, surface_of, simulated=simulated, past=not now, bends=bends)
-            after[name] = (told, thing)
+                thing = drawable_of(
+                    entity,
+                    body,
+                    pose,
+                    surface_of,
+                    simulated=simulated,
+                    past=not now,
+                    joint_positions=joint_positions,
+                )
+            after[name] = (inputs, thing)
             if thing is not None:
                 wanted[name] = thing
         self._known = after
         if self._dragging in wanted:
             thing = wanted[self._dragging]
-            wanted[self._dragging] = structs.replace(thing, look="ghost")
+            wanted[self._dragging] = structs.replace(thing, appearance="ghost")
         return wanted
 
     def _draw_soon(self) -> None:
-        """After a change: when the panels have been told, and in view; changes until then go in one."""
-        if self._client is None or self._is_put_off():
+        """Draw after the panels; several changes until then are drawn together."""
+        if self._client is None or self._is_deferred():
             return
         if self._drawing is None:
-            self._drawing = self._loop.call_later(_AFTER_S, self._draw)
+            self._drawing = self._loop.call_later(_DRAW_DELAY_S, self._draw)
 
-    def _is_put_off(self) -> bool:
-        """Is it out of view? Then it is drawn when it comes into view."""
+    def _is_deferred(self) -> bool:
+        """Return whether the scene is hidden; it is then drawn when it becomes visible."""
         self._is_stale = self._is_stale or not self.is_in_view()
         return self._is_stale
 
-    def _on_turn(self) -> None:
+    def _on_tab_change(self) -> None:
         if self._is_stale and self.is_in_view():
             self._is_stale = False
             self._draw()
@@ -270,19 +295,19 @@ class TabScene:
             self._bodies.show(self._things)
             self._rooms.show(self.page.state.entities)
             self._mark()
-        self._ask_relations()
+        self._request_relations()
 
     def refresh(self) -> None:
-        """Draw what is known by now of models and walls."""
+        """Draw with newly received models and walls."""
         self._known.clear()
         if self._client is not None:
             self._rooms.walls(self._assets.walls if "walls" in self.on else None)
         self._draw_soon()
 
     def _on_poses(self, names: tuple[str, ...]) -> None:
-        if self._client is None or self._drawing is not None or self._is_put_off():
+        if self._client is None or self._drawing is not None or self._is_deferred():
             return
-        if any(self._is_bent_otherwise(name) for name in names):
+        if any(self._has_moved_joints(name) for name in names):
             self._draw()
             return
         poses = self.page.state.poses
@@ -294,17 +319,24 @@ class TabScene:
             self._mark()
         self._label_soon()
 
-    def _is_bent_otherwise(self, name: str) -> bool:
-        """Has it been opened or shut since it was drawn?"""
-        thing, bends = self._things.get(name), self.page.live.bends.get(name)
-        return bends is not None and thing is not None and thing.model != BOX and thing.bends != bends
+    def _has_moved_joints(self, name: str) -> bool:
+        """Return whether joints of a body have moved since it was drawn."""
+        thing, joint_positions = self._things.get(name), self.page.live.joint_positions.get(name)
+        return (
+            joint_positions is not None
+            and thing is not None
+            and thing.model != BOX
+            and thing.joint_positions != joint_positions
+        )
 
     def _mark(self) -> None:
-        """Outlines, the gizmo and labels, as things stand."""
+        """Draw outlines, the gizmo and labels."""
         selected = {name: self._things[name] for name in self.page.selected if name in self._things}
-        self._outlines.show([(joined(edges_of(t.pose, t.size_m) for t in selected.values()), _SELECTED)])
+        self._outlines.show(
+            [(join_segments(edges_of(t.pose, t.size_m) for t in selected.values()), _SELECTED)]
+        )
         boxes = self._things.values() if "boxes" in self.on else ()
-        self._boxes.show([(joined(edges_of(t.pose, t.size_m) for t in boxes), _BOX)])
+        self._boxes.show([(join_segments(edges_of(t.pose, t.size_m) for t in boxes), _BOX)])
         self._put_gizmo(selected)
         self._draw_relations()
         self._draw_differences()
@@ -312,15 +344,15 @@ class TabScene:
 
     def _draw_differences(self) -> None:
         pieces, labels = [], {}
-        for found in drawn(self.page.differences):
+        for found in difference_boxes(self.page.differences):
             rgb, size_m = _CHANGED[found.mark], self._known_size_of(found.name) or found.size_m
-            at = found.then or found.now
+            at = found.before or found.now
             if at is None:
-                raise errors.InternalError(f"{found.name} has a pose neither now nor then")
+                raise errors.InternalError(f"{found.name} has no pose in either state")
             pieces.append((edges_of(at, size_m), rgb))
-            if found.then is not None and found.now is not None:
+            if found.before is not None and found.now is not None:
                 pieces.append((edges_of(found.now, size_m), rgb))
-                pieces.append((dashed(_middle(found.then, size_m), _middle(found.now, size_m)), rgb))
+                pieces.append((dashed_line(_middle(found.before, size_m), _middle(found.now, size_m)), rgb))
             labels[found.name] = (found.text, _top(found.now or at, size_m))
         self._differences.show(pieces)
         self._marked = labels
@@ -356,7 +388,7 @@ class TabScene:
             rooms = self._rooms.names
             others = {name: things[name] for name in things if name not in self._marked}
         every = {**first, **rooms, **others}
-        chosen = uncrowded(self._view(self._client), every, (*first, *rooms))
+        chosen = select_labels(self._view(self._client), every, (*first, *rooms))
         self._difference_labels.show({key: marked[key] for key in chosen if key in marked})
         self._labels.show({key: others[key] for key in chosen if key in others and key not in selected})
         self._strong_labels.show({**{key: rooms[key] for key in chosen if key in rooms}, **selected})
@@ -364,13 +396,13 @@ class TabScene:
         self._rendering = [self._loop.call_later(delay_s, self._render) for delay_s in _RENDER_S]
 
     def _render(self) -> None:
-        """Let the browser draw once more: it does so when something has changed, and letters come later."""
+        """Have the browser draw again. It draws after changes only, and fonts may be loaded later."""
         if self._client is not None:
             self._nudge.visible = not self._nudge.visible
 
-    def _named(self, name: str) -> Written:
+    def _named(self, name: str) -> LabelText:
         thing = self._things[name]
-        return (f"{name}?" if thing.look == "believed" else name, _top(thing.pose, thing.size_m))
+        return (f"{name}?" if thing.appearance == "believed" else name, _top(thing.pose, thing.size_m))
 
     @staticmethod
     def _view(client: ClientHandle) -> View:
@@ -380,13 +412,16 @@ class TabScene:
         return View((x, y, z), (qw, qx, qy, qz), camera.fov, camera.image_width, camera.image_height)
 
     def viewpoint(self) -> ViewPoint | None:
-        """Whence this tab looks; None while its frame is not there."""
+        """Return the viewpoint of this tab; None while its frame is not connected."""
         return None if self._client is None else self._view(self._client).viewpoint
 
-    # Selecting
+    # Selection
 
-    def _on_ray(self, origin: Vector, direction: Vector, beside: bool) -> None:
-        """A click. What it meets is worked out here: batches of viser 1.1 also have something at 0, 0, 0."""
+    def _on_ray(self, origin: Vector, direction: Vector, extend: bool) -> None:
+        """Handle a click.
+
+        The hit is computed here, because batches of viser 1.1 report false hits at (0, 0, 0).
+        """
         if self._dragging:
             return
         hit = first_hit(origin, direction, self._solids())
@@ -394,7 +429,7 @@ class TabScene:
             self._end_picking(None if hit is None else (*hit.at, 0.0))
             return
         name = "" if hit is None else hit.name
-        if not beside:
+        if not extend:
             self.page.select((name,) if name else (), by="scene")
         elif name in self.page.selected:
             self.page.select((other for other in self.page.selected if other != name), by="scene")
@@ -402,20 +437,23 @@ class TabScene:
             self.page.select((*self.page.selected, name), by="scene")
 
     def _on_select(self) -> None:
-        if self._client is not None and not self._is_put_off():
+        if self._client is not None and not self._is_deferred():
             self._relations = ()
             self._gizmo.remove()
             self._mark()
-            self._ask_relations()
+            self._request_relations()
 
     async def pick_place(self) -> Place | None:
-        """Where a person clicks next: x, y, z [m] and yaw [rad]; None if that is nowhere, or not to be."""
+        """Return the position of the next click: x, y, z [m] and yaw [rad].
+
+        Return None without a hit, or if picking is cancelled.
+        """
         self._end_picking(None)
         if self._client is None:
             return None
         picking: asyncio.Future[Place | None] = self._loop.create_future()
         self._picking = picking
-        self.page.tell("Click in the scene where it is to stand; Esc leaves it.")
+        self.page.notify("click a position in the scene; press Esc to cancel")
         return await picking
 
     def _end_picking(self, place: Place | None) -> None:
@@ -423,8 +461,8 @@ class TabScene:
         if picking is not None and not picking.done():
             picking.set_result(place)
 
-    def break_off(self) -> bool:
-        """End pointing or dragging, with nothing done; whether there was any."""
+    def cancel_interaction(self) -> bool:
+        """Cancel picking or dragging; return whether there was any."""
         was_busy = self._picking is not None or bool(self._dragging)
         self._end_picking(None)
         if self._dragging and self._client is not None:
@@ -440,8 +478,8 @@ class TabScene:
             Solid(
                 name,
                 thing.pose,
-                _room_of(thing),
-                surface_of(thing.model, thing.size_m, thing.bends),
+                _reach_of(thing),
+                surface_of(thing.model, thing.size_m, thing.joint_positions),
             )
             for name, thing in self._things.items()
             if name != without
@@ -449,11 +487,11 @@ class TabScene:
 
     # Dragging
 
-    def _put_gizmo(self, selected: Mapping[str, Shown]) -> None:
+    def _put_gizmo(self, selected: Mapping[str, Drawable]) -> None:
         if self._dragging:
             return
-        may = self.page.moment.is_now and self.page.may("move") and self._picking is None
-        name = next(iter(selected)) if may and len(selected) == 1 else ""
+        is_movable = self.page.moment.is_now and self.page.is_allowed("move") and self._picking is None
+        name = next(iter(selected)) if is_movable and len(selected) == 1 else ""
         if name in self._bodies_by_name():
             self._gizmo.put(selected[name].pose, selected[name].size_m)
         else:
@@ -465,7 +503,7 @@ class TabScene:
         if not self._dragging or self._client is None:
             return
         if phase == "end":
-            self.page.later(self._move(self._dragging, pose))
+            self.page.start_task(self._move(self._dragging, pose))
         else:
             self._copy(pose)
 
@@ -476,38 +514,40 @@ class TabScene:
             self._draw()
 
     def _copy(self, pose: Pose) -> None:
-        """The thing as it is dragged; where it stands there is a ghost."""
+        """Draw the object where it is dragged; a ghost is drawn at its original pose."""
         thing = self._things.get(self._dragging)
         if thing is not None:
-            solid = structs.replace(thing, look="solid", pose=pose)
+            solid = structs.replace(thing, appearance="solid", pose=pose)
             self._dragged.show({self._dragging: solid})
 
     async def _move(self, name: str, pose: Pose) -> None:
-        """Ask for the body to be put where it was let go; what is refused goes back."""
+        """Move the body to the pose where it was released; after a rejection it returns."""
         thing = self._things[name]
         before = self.page.state.poses.get(name, thing.pose)
         body = self._bodies_by_name().get(name)
         was_ghost = body is not None and body.ghost
-        if still(before, pose):  # a click at the arrows
-            self.break_off()
+        if still(before, pose):  # a click on the arrows
+            self.cancel_interaction()
             return
-        target = put_down(pose, thing.size_m, self._solids(without=name))
+        target = place_on_support(pose, thing.size_m, self._solids(without=name))
         self._copy(target)
-        done = await self.page.change(Move(name=name, at=target.position_m, yaw=target.yaw_rad, carry=True))
-        ghost = None if done is None or was_ghost else await self._ghost(name)
+        reply = await self.page.change(Move(name=name, at=target.position_m, yaw=target.yaw_rad, carry=True))
+        ghost = None if reply is None or was_ghost else await self._find_ghost(name)
         if ghost is not None:
             back = Move(name=name, at=before.position_m, yaw=before.yaw_rad, carry=True)
             if await self.page.change(back) is not None:
-                self.page.tell(_NO_ROOM.format(name=name, other=ghost.in_the_way or "something"), "warning")
-        if done is not None:
-            await asyncio.sleep(_TOLD_S)
+                self.page.notify(
+                    _NO_ROOM.format(name=name, other=ghost.in_the_way or "another body"), "warning"
+                )
+        if reply is not None:
+            await asyncio.sleep(_POSE_DELAY_S)
         self._dragging = ""
         if self._client is not None:
             self._dragged.show({})
             self._draw()
 
-    async def _ghost(self, name: str) -> Body | None:
-        """Its body, if that does not collide, because it was put where something else is."""
+    async def _find_ghost(self, name: str) -> Body | None:
+        """Return the body if it is non-colliding, because another body occupies its position."""
         try:
             scene = await self.page.live.query(keys.SIM, SceneQuery())
         except errors.SemmapError:
@@ -516,24 +556,24 @@ class TabScene:
 
     # Relations
 
-    def _ask_relations(self) -> None:
-        self._asked += 1
+    def _request_relations(self) -> None:
+        self._request += 1
         one = self.page.selected[0] if len(self.page.selected) == 1 else ""
         entity = self.page.state.entities.get(one)
-        if self.on & {"relations", "from here"} and entity is not None and not entity.place:
-            self.page.later(self._fetch_relations(one, self._asked))
+        if self.on & {"relations", "viewer-relative relations"} and entity is not None and not entity.place:
+            self.page.start_task(self._fetch_relations(one, self._request))
         elif self._relations:
             self._relations = ()
             self._draw_relations()
 
-    async def _fetch_relations(self, name: str, asked: int) -> None:
-        viewpoint = self.viewpoint() if "from here" in self.on else None
+    async def _fetch_relations(self, name: str, request: int) -> None:
+        viewpoint = self.viewpoint() if "viewer-relative relations" in self.on else None
         command = Relations(name=name, viewpoint=viewpoint, as_of=self.page.moment.commit)
         try:
             found = await self.page.live.ask(command)
         except errors.SemmapError:
-            found = ()  # it has just been removed, say
-        if asked == self._asked and self._client is not None:
+            found = ()  # for example, it was just removed
+        if request == self._request and self._client is not None:
             self._relations = found
             self._draw_relations()
 
@@ -553,7 +593,7 @@ class TabScene:
             handles = {f"{name}'s handles": (_HANDLES, self._middle_of(name)) for name in names}
             taken = {**handles, **names}
             every = {**taken, **written}
-            chosen = uncrowded(self._view(self._client), every, every, _MEASURES + len(taken))
+            chosen = select_labels(self._view(self._client), every, every, _MEASURES + len(taken))
         self._measures = {key: written[key] for key in chosen if key in written}
         self._line_labels.show(self._measures)
         self._label_soon()
@@ -564,17 +604,17 @@ class TabScene:
     # Switches
 
     def switch(self, name: Switch, *, on: bool) -> None:
-        """Show or hide something in this tab."""
+        """Show or hide a kind of content in this tab."""
         (self.on.add if on else self.on.discard)(name)
         if self._client is None:
             return
         if name in ("observations", "cloud", "cameras"):
-            self._seen.switch(name, on=on)
+            self._sensors.switch(name, on=on)
         elif name == "walls":
             self._rooms.walls(self._assets.walls if on else None)
         else:
             self._mark()
-            self._ask_relations()
+            self._request_relations()
 
 
 def _cancel(*handles: asyncio.TimerHandle | None) -> None:
@@ -583,10 +623,10 @@ def _cancel(*handles: asyncio.TimerHandle | None) -> None:
             handle.cancel()
 
 
-def _room_of(thing: Shown) -> Size:
-    """The box that a ray has to meet: what stands open reaches out of its own."""
+def _reach_of(thing: Drawable) -> Size:
+    """Return the size of a box around an object, including its open doors and drawers."""
     x, y, z = thing.size_m
-    return (3.0 * x + y, 3.0 * y + x, 1.5 * z) if thing.bends else thing.size_m
+    return (3.0 * x + y, 3.0 * y + x, 1.5 * z) if thing.joint_positions else thing.size_m
 
 
 def _middle(pose: Pose, size_m: Size) -> Vector:

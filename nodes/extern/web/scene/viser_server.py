@@ -1,7 +1,8 @@
-"""viser, where nobody but this process reaches it.
+"""A viser server that only this process can reach.
 
-viser serves a port of its own, and whoever reaches that may look at the scene and drag what is in it. Here it
-listens at a socket in a folder that only this user may open, and the page passes on what browsers say to it.
+viser normally listens on a TCP port, and every program that can connect to it can view and edit the scene.
+Here it listens on a Unix socket in a folder that only this user can open, and the page forwards the messages
+of browsers.
 """
 
 from __future__ import annotations
@@ -26,36 +27,36 @@ _patching = threading.Lock()
 
 
 class _Private(viser.ViserServer):
-    """A viser that opens no tunnel to anywhere, whoever asks it to."""
+    """A viser server that never opens a public tunnel."""
 
     def request_share_url(self, verbose: bool = True) -> str | None:
-        """There is none."""
+        """Return None, because there is no public URL."""
         return None
 
 
 class SceneServer:
-    """A viser server at a socket in the file system; `close` ends it."""
+    """A viser server on a Unix socket."""
 
     def __init__(self) -> None:
         self._folder = Path(tempfile.mkdtemp(prefix="semmap-scene-"))
         self.at = self._folder / "viser.sock"
-        """Where it listens; the folder is this user's alone."""
-        with _listening_at(self.at), contextlib.redirect_stdout(io.StringIO()):
+        """The path of the socket, in a folder that only this user can open."""
+        with _unix_socket(self.at), contextlib.redirect_stdout(io.StringIO()):
             self.viser = _Private(host="127.0.0.1", port=0, verbose=False)
         self._pages: dict[int, str] = {}
         self.viser._websock_server.on_client_connect(self._on_connect)
         self.viser._websock_server.on_client_disconnect(self._on_disconnect)
 
     def page_of(self, client_id: int) -> str:
-        """The open tab (`Page.id`) whose frame a client of viser's is; nothing for one that is gone."""
+        """Return the id of the tab (`Page.id`) of a viser client; empty if the client has disconnected."""
         return self._pages.get(client_id, "")
 
     def is_open(self, client_id: int) -> bool:
-        """Is this client of viser's still there?"""
+        """Return whether a viser client is connected."""
         return client_id in self.viser.get_clients()
 
     def close(self) -> None:
-        """End it."""
+        """Stop the server and remove the socket."""
         with contextlib.redirect_stdout(io.StringIO()):
             self.viser.stop()
         shutil.rmtree(self._folder, ignore_errors=True)
@@ -68,9 +69,12 @@ class SceneServer:
 
 
 @contextlib.contextmanager
-def _listening_at(path: Path) -> Iterator[None]:
-    """Have viser listen at `path` while it is made, for it offers a host and a port only (viser 1.1)."""
-    own = websockets.asyncio.server.serve
+def _unix_socket(path: Path) -> Iterator[None]:
+    """Have a viser server that is created in this context listen on `path`.
+
+    Viser 1.1 has no option for it.
+    """
+    original = websockets.asyncio.server.serve
 
     def serve(
         handler: Callable[[ServerConnection], Awaitable[None]], host: str, port: int, **rest: Any
@@ -80,11 +84,11 @@ def _listening_at(path: Path) -> Iterator[None]:
             _page.set(request.path.strip("/") if request is not None else "")
             await handler(connection)
 
-        return own(of_a_page, unix=True, path=str(path), **rest)
+        return original(of_a_page, unix=True, path=str(path), **rest)
 
     with _patching:
         websockets.asyncio.server.serve = serve  # type: ignore[assignment, misc]
         try:
             yield
         finally:
-            websockets.asyncio.server.serve = own  # type: ignore[misc]
+            websockets.asyncio.server.serve = original  # type: ignore[misc]

@@ -1,1 +1,1 @@
-"""What the panels of the page show, as plain data: rows, texts, trees and positions."""
+"""The contents of panels as plain data: rows, texts, trees and positions."""

@@ -1,4 +1,4 @@
-"""Where the nodes of a drawn graph go: calm, for whatever was there before stays about where it was."""
+"""Layout of a graph. Nodes that were drawn before stay near their positions."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ _STEPS: Final = 220
 _STEPS_AGAIN: Final = 120
 _SPRING: Final = 0.06
 _LENGTH: Final = 95.0
-"""How long a link would like to be [pixel]."""
+"""Rest length of a link [pixel]."""
 _PUSH: Final = 5200.0
 _FLAT: Final = 0.55
-"""Names are wider than they are high, so nodes keep further apart sideways than up and down."""
+"""Weight of horizontal distances: labels are wider than high."""
 _LETTER, _LINE, _GAP = 7.5, 34.0, 14.0
 
 
-def arranged(graph: Neighbourhood, before: Mapping[str, tuple[float, float]]) -> Positions:
-    """A position [pixel] for each node, y down. The same graph and the same past give the same positions.
+def arrange(graph: Neighbourhood, before: Mapping[str, tuple[float, float]]) -> Positions:
+    """Return a position [pixel] for each node, y down. The result is deterministic.
 
-    Nodes that were there `before` move only as far as new ones push them.
+    Nodes with a position in `before` move only as far as new nodes push them.
     """
     ids = [knot.id for knot in graph.knots]
     if not ids:
@@ -48,7 +48,7 @@ def arranged(graph: Neighbourhood, before: Mapping[str, tuple[float, float]]) ->
         length = np.maximum(np.linalg.norm(shift, axis=1, keepdims=True), 1e-9)
         points += shift / length * np.minimum(length, heat) * stiffness
     half_width = np.array([_LETTER * min(len(knot.label), 28) / 2.0 + _GAP / 2.0 for knot in graph.knots])
-    _part(points, half_width)
+    _separate_labels(points, half_width)
     return {name: (round(x, 1), round(y, 1)) for name, (x, y) in zip(ids, points.tolist(), strict=True)}
 
 
@@ -58,7 +58,7 @@ def _start(
     links: list[tuple[int, int]],
     centres: list[int],
 ) -> Floats:
-    """Where it was, or beside what it hangs on, at an angle of its own."""
+    """Return start positions: the earlier one, or one near a neighbour, at an angle derived from the id."""
     near: dict[int, int] = {}
     for a, b in links:
         near.setdefault(a, b)
@@ -71,14 +71,14 @@ def _start(
     for i in sorted(fresh, key=lambda i: i not in centres):
         angle = 2.0 * math.pi * (zlib.crc32(graph.knots[i].id.encode()) / (1 << 32))
         anchor = near.get(i)
-        beside = points[anchor] if anchor in placed or anchor in centres else np.zeros(2)
+        near_to = points[anchor] if anchor in placed or anchor in centres else np.zeros(2)
         reach = _LENGTH if i not in centres else 0.5 * _LENGTH * (len(centres) > 1)
-        points[i] = beside + reach * np.array([math.cos(angle), _FLAT * math.sin(angle)])
+        points[i] = near_to + reach * np.array([math.cos(angle), _FLAT * math.sin(angle)])
     return points
 
 
 def _forces(points: Floats, ends: NDArray[np.intp]) -> Floats:
-    """All nodes push each other away, and linked ones pull; sideways distances count for less."""
+    """Return the forces: all nodes repel each other, and links attract."""
     scale = np.array([_FLAT, 1.0])
     apart = (points[:, None, :] - points[None, :, :]) * scale
     squared = (apart * apart).sum(axis=2) + 1.0
@@ -93,8 +93,8 @@ def _forces(points: Floats, ends: NDArray[np.intp]) -> Floats:
     return force
 
 
-def _part(points: Floats, half_width: Floats) -> None:
-    """Move names that still overlap apart, up and down or sideways, whichever is less."""
+def _separate_labels(points: Floats, half_width: Floats) -> None:
+    """Move overlapping labels apart, along the axis with the smaller overlap."""
     for _ in range(60):
         apart = points[:, None, :] - points[None, :, :]
         lack_x = half_width[:, None] + half_width[None, :] - np.abs(apart[:, :, 0])

@@ -1,4 +1,4 @@
-"""The tree of the classes and that of the places, each with how many things there are of it, or in it."""
+"""The trees of classes and of places, with the number of entities of each."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from semmap.nodes.extern.phrasing import english
-from semmap.nodes.extern.web.views.whereabouts import Whereabouts, footprint_m2
+from semmap.nodes.extern.web.views.entities.locations import Locations, footprint_m2
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import ClassInfo, Entity
 
 Node = dict[str, Any]
-"""As a tree takes it: `id`, `label` and `children`. An id is unique in the tree; `name` is what it is of."""
+"""A node for `ui.tree`: a unique `id`, a `label`, `children`, and the `name` of its class or place."""
 
 _SUB_LOCATION = "hasSubLocation"
 _IS_SUB_LOCATION = "isSubLocationOf"
@@ -21,10 +21,10 @@ _IS_SUB_LOCATION = "isSubLocationOf"
 def class_tree(
     classes: Iterable[ClassInfo], entities: Iterable[Entity], *, with_empty: bool = False
 ) -> list[Node]:
-    """The classes below their parents; without those of which nothing is there, unless `with_empty`.
+    """Return the classes below their parents. Classes without entities are left out, unless `with_empty`.
 
-    A class with several parents is below each of them. Counts are by inference, with those that are said to
-    be of the class itself in brackets where they are fewer.
+    A class with several parents is below each of them. Counts include inferred instances. The number of
+    asserted ones is in brackets, if it is smaller.
     """
     by_name = {c.name: c for c in classes}
     asserted: Counter[str] = Counter()
@@ -56,21 +56,21 @@ def class_tree(
 def _class_label(c: ClassInfo, inferred: int, asserted: int) -> str:
     label = english(c.labels)
     same = label.casefold().replace(" ", "_") == c.name.casefold()
-    called = c.name if same or not label else f"{c.name} ({label})"
+    title = c.name if same or not label else f"{c.name} ({label})"
     if not inferred:
-        return called
-    itself = f" ({asserted} said so)" if 0 < asserted < inferred else ""
-    return f"{called} · {inferred}{itself}"
+        return title
+    directly = f" ({asserted} asserted)" if 0 < asserted < inferred else ""
+    return f"{title} · {inferred}{directly}"
 
 
-def place_tree(entities: Mapping[str, Entity], whereabouts: Whereabouts) -> list[Node]:
-    """The places below those that they are a part of, each with how many things are in it."""
+def place_tree(entities: Mapping[str, Entity], locations: Locations) -> list[Node]:
+    """Return the places below the places that contain them, with the number of entities in each."""
     places = {name: entity for name, entity in entities.items() if entity.place}
-    held: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     for name, entity in entities.items():
         if name not in places:
-            held.update(whereabouts.places_of(entity, places))
-    above = {name: _whole(place, places, whereabouts) for name, place in places.items()}
+            counts.update(locations.find_places(entity, places))
+    above = {name: _find_parent(place, places, locations) for name, place in places.items()}
     children: dict[str, list[str]] = {}
     for name in places:
         children.setdefault("" if _is_circular(name, above) else above[name], []).append(name)
@@ -80,7 +80,7 @@ def place_tree(entities: Mapping[str, Entity], whereabouts: Whereabouts) -> list
             {
                 "id": name,
                 "name": name,
-                "label": _place_label(places[name], held[name]),
+                "label": _place_label(places[name], counts[name]),
                 "children": grown(name),
             }
             for name in sorted(children.get(parent, []), key=str.casefold)
@@ -89,23 +89,23 @@ def place_tree(entities: Mapping[str, Entity], whereabouts: Whereabouts) -> list
     return grown("")
 
 
-def _whole(place: Entity, places: Mapping[str, Entity], whereabouts: Whereabouts) -> str:
-    """The smallest place that this one is said to be a part of, or is in."""
-    said = {name for name, other in places.items() if place.name in _stated(other, _SUB_LOCATION)}
-    said |= {name for name in _stated(place, _IS_SUB_LOCATION) if name in places}
-    wholes = (said or whereabouts.places_of(place, places)) - {place.name}
+def _find_parent(place: Entity, places: Mapping[str, Entity], locations: Locations) -> str:
+    """Return the smallest place of which this one is an asserted sublocation, or else that contains it."""
+    asserted = {name for name, other in places.items() if place.name in _stated(other, _SUB_LOCATION)}
+    asserted |= {name for name in _stated(place, _IS_SUB_LOCATION) if name in places}
+    wholes = (asserted or locations.find_places(place, places)) - {place.name}
     return min(wholes, key=lambda name: (footprint_m2(places[name]), name), default="")
 
 
 def _stated(entity: Entity, property_: str) -> tuple[str, ...]:
-    """The individuals that a property relates it to, by name."""
+    """Return the names of the individuals that are asserted values of a property."""
     stated = entity.properties.get(property_, ())
     values = stated if isinstance(stated, tuple) else (stated,)
     return tuple(v.entity_name(str(value)) for value in values)
 
 
 def _is_circular(name: str, above: Mapping[str, str]) -> bool:
-    """Whether it is, by way of others, a part of itself."""
+    """Return whether a place is, directly or indirectly, below itself."""
     seen, at = {name}, above[name]
     while at:
         if at in seen:
@@ -116,6 +116,6 @@ def _is_circular(name: str, above: Mapping[str, str]) -> bool:
 
 
 def _place_label(place: Entity, things: int) -> str:
-    called = place.preferred_reference
-    named = f"{place.name} ({called})" if called and called != place.name else place.name
-    return f"{named} · {things}" if things else named
+    label = place.preferred_reference
+    title = f"{place.name} ({label})" if label and label != place.name else place.name
+    return f"{title} · {things}" if things else title

@@ -1,4 +1,4 @@
-"""What may be uploaded, decided before any of it is sent on: by its size and by how it begins."""
+"""Checks of uploaded files by size and first bytes, before they are sent to the system."""
 
 from __future__ import annotations
 
@@ -7,61 +7,59 @@ from typing import Final
 from semmap.schemas.packing import PACKED_FROM
 
 LARGEST: Final = 200 << 20
-"""Bytes; what is larger is loaded with the command line, from a file."""
+"""Maximum size [bytes]; larger files are loaded with the command line."""
 BEGINNING: Final = 4096
-"""Bytes that are looked at."""
+"""Number of bytes that are checked."""
 
 _KINDS: Final = (
     (b"%PDF-", "a PDF document"),
     (b"PK\x03\x04", "a ZIP archive (or an office document)"),
     (b"\x7fELF", "a program"),
     (b"MZ", "a program"),
-    (b"\x89PNG", "a picture"),
-    (b"\xff\xd8\xff", "a picture"),
-    (b"GIF8", "a picture"),
+    (b"\x89PNG", "an image"),
+    (b"\xff\xd8\xff", "an image"),
+    (b"GIF8", "an image"),
     (b"SQLite format 3", "a database"),
-    (b"RRF2", "a recording; open it with: semmap replay"),
+    (b"RRF2", "a recording; open it with `semmap replay`"),
     (b"glTF", "a 3-D model"),
 )
 _GZIP: Final = b"\x1f\x8b"
-READS: Final = (
+FORMATS: Final = (
     "RDF in any syntax, OWL (functional, Manchester or XML), a scene in JSON or a HuRIC map, "
-    "also packed with gzip"
+    "optionally compressed with gzip"
 )
 
 
-def refusal(filename: str, size: int, beginning: bytes) -> str:
-    """Why a file cannot be loaded, in one sentence; empty for one that may be what `READS` says."""
+def check_upload(filename: str, size: int, beginning: bytes) -> str:
+    """Return the error text for a file that cannot be loaded; empty if it can be one of the `FORMATS`."""
     if size == 0:
-        return f"{filename} is empty"
+        return f"{filename}: the file is empty"
     if size > LARGEST:
-        return too_large(filename, size)
+        return size_error(filename, size)
     for magic, kind in _KINDS:
         if beginning.startswith(magic):
-            return f"{filename} is {kind}; what can be loaded is {READS}"
+            return f"{filename}: unsupported format, the file is {kind}; supported formats: {FORMATS}"
     if b"\0" in beginning and not beginning.startswith((_GZIP, b"\xff\xfe", b"\xfe\xff")):
-        return f"{filename} is not text; what can be loaded is {READS}"
+        return f"{filename}: unsupported binary format; supported formats: {FORMATS}"
     return ""
 
 
-def too_large(filename: str, size: int) -> str:
-    """That a file is larger than the page takes."""
-    return (
-        f"{filename} has {megabytes(size)}, and the page takes up to {megabytes(LARGEST)}; "
-        "load larger files with: semmap load FILE"
-    )
+def size_error(filename: str, size: int | None = None) -> str:
+    """Return the error text for an upload above the size limit."""
+    actual = "" if size is None else f"{megabytes(size)} is "
+    return f"{filename}: {actual}larger than {megabytes(LARGEST)}; load larger files with `semmap load FILE`"
 
 
 def megabytes(size: int) -> str:
-    """A number of bytes as people say it."""
+    """Return a number of bytes in KB or MB."""
     return f"{size / 1024:.0f} KB" if size < 1 << 20 else f"{size / (1 << 20):.1f} MB".replace(".0 ", " ")
 
 
 def takes_long(size: int) -> bool:
-    """Is the file so large that it may take more than moments?"""
+    """Return whether loading a file of this size may take several seconds."""
     return size > PACKED_FROM // 8
 
 
 def spatial_roots(words: str | None) -> tuple[str, ...]:
-    """The classes that are written with commas or spaces between them, by name or IRI, each once."""
+    """Return the classes in a list with commas or spaces, by name or IRI, each once."""
     return tuple(dict.fromkeys((words or "").replace(",", " ").split()))

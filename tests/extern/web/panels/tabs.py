@@ -1,4 +1,4 @@
-"""A tab without a browser: panels are drawn into it, and events are told as a browser tells them."""
+"""A tab without a browser, in which panels are drawn, and events as a browser sends them."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ def in_a_tab(test: Callable[[Client], Coroutine[Any, Any, None]]) -> None:
     asyncio.run(run())
 
 
-async def tell(element: ui.element, event: str, *arguments: Any) -> None:
-    """What a browser tells of an element, and what follows from it."""
+async def send_event(element: ui.element, event: str, *arguments: Any) -> None:
+    """Send an event of an element, and let its handlers run."""
     listeners = [one.id for one in element._event_listeners.values() if one.type == event]
     assert listeners
     for listener in listeners:
-        told = {"id": element.id, "listener_id": listener, "args": [json.dumps(one) for one in arguments]}
-        element.client.handle_event(told)
+        message = {"id": element.id, "listener_id": listener, "args": [json.dumps(one) for one in arguments]}
+        element.client.handle_event(message)
     for _ in range(5):
         await asyncio.sleep(0)

@@ -1,4 +1,4 @@
-"""Surfaces are asked for once, and again when there are new kinds."""
+"""Surfaces are requested once, and again for new models."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import pytest
 from semmap.nodes.extern.web.scene.assets import Assets
 from semmap.schemas import errors
 from semmap.schemas.scenes import SurfaceQuery, Surfaces
-from tests.extern.web.scene.things import body, scene, surface
+from tests.extern.web.scene.sample_scenes import body, scene, surface
 
 
 class Live:
-    """Stands in for the page's: a simulator that answers, refuses, or changes meanwhile."""
+    """A stub of `Live` with a simulator that replies, fails, or changes during a request."""
 
     def __init__(self, now):
         self.scene, self.asked, self.refuses, self.meanwhile = now, [], False, None
@@ -35,7 +35,7 @@ def made():
     return Assets(live, lambda: changed.append(True)), live, changed
 
 
-def test_each_kind_is_asked_for_once_and_the_walls_with_them(made):
+def test_each_model_and_the_walls_are_requested_once(made):
     assets, live, changed = made
     asyncio.run(assets.fetch())
     asyncio.run(assets.fetch())
@@ -45,14 +45,14 @@ def test_each_kind_is_asked_for_once_and_the_walls_with_them(made):
     assert changed == [True]
 
 
-def test_what_comes_while_it_asks_is_asked_for_as_well(made):
+def test_models_that_arrive_during_a_request_are_requested_too(made):
     assets, live, _ = made
     live.meanwhile = scene(body("chair1"), body("table1", model="table"))
     asyncio.run(assets.fetch())
     assert assets.surface_of("table", (0.5, 0.5, 1.0)) is not None
 
 
-def test_what_could_not_be_had_is_asked_for_again_and_another_simulator_has_other_walls(made):
+def test_failed_requests_are_repeated_and_a_new_simulator_has_new_walls(made):
     assets, live, _ = made
     live.refuses = True
     asyncio.run(assets.fetch())
@@ -64,7 +64,7 @@ def test_what_could_not_be_had_is_asked_for_again_and_another_simulator_has_othe
     assert assets.walls is not None
 
 
-def test_a_file_is_made_once_for_each_look(made):
+def test_files_are_cached_by_appearance(made):
     assets, _, _ = made
     asyncio.run(assets.fetch())
     key = ("solid", "chair", (0.5, 0.5, 1.0), ())

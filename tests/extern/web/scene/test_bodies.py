@@ -1,14 +1,14 @@
-"""What of the bodies is sent: no more than has changed."""
+"""Bodies: only changes are sent."""
 
 import pytest
 
 from semmap.nodes.extern.web.scene.bodies import Bodies
-from semmap.nodes.extern.web.scene.shown import Shown
-from tests.extern.web.scene.things import pose
+from semmap.nodes.extern.web.scene.drawables import Drawable
+from tests.extern.web.scene.sample_scenes import pose
 
 
 class Handle:
-    """One mesh of a scene that keeps account of what it is sent."""
+    """A mesh that records what is sent to it."""
 
     def __init__(self, sent: list[str]) -> None:
         object.__setattr__(self, "_sent", sent)
@@ -36,8 +36,8 @@ class Scene:
 MOVED = ["batched_positions", "batched_wxyzs"]
 
 
-def thing(model: str, x: float) -> Shown:
-    return Shown("solid", model, (0.5, 0.5, 1.0), (10, 20, 30), pose(x))
+def thing(model: str, x: float) -> Drawable:
+    return Drawable("solid", model, (0.5, 0.5, 1.0), (10, 20, 30), pose(x))
 
 
 @pytest.fixture
@@ -53,20 +53,20 @@ def bodies(scene):
     return bodies
 
 
-def test_what_is_shown_again_is_not_sent_again(scene, bodies):
+def test_unchanged_bodies_are_not_sent_again(scene, bodies):
     things = {"chair1": thing("chair", 0.0), "chair2": thing("chair", 1.0), "cup1": thing("cup", 2.0)}
     bodies.show(things)
     bodies.show(things)
     assert scene.take() == []
 
 
-def test_of_what_has_moved_its_batch_is_sent(scene, bodies):
+def test_the_batch_of_a_moved_body_is_sent(scene, bodies):
     things = {"chair1": thing("chair", 0.0), "chair2": thing("chair", 1.5), "cup1": thing("cup", 2.0)}
     bodies.show(things)
     assert scene.take() == MOVED
 
 
-def test_what_was_moved_in_between_goes_back(scene, bodies):
+def test_moved_bodies_return_when_shown_at_the_old_pose(scene, bodies):
     things = {"chair1": thing("chair", 0.0), "chair2": thing("chair", 1.0), "cup1": thing("cup", 2.0)}
     bodies.show(things)
     bodies.move({"cup1": pose(5.0)})
@@ -75,7 +75,7 @@ def test_what_was_moved_in_between_goes_back(scene, bodies):
     assert scene.take() == MOVED
 
 
-def test_what_goes_is_removed_and_may_come_back(scene, bodies):
+def test_bodies_can_be_removed_and_added_again(scene, bodies):
     chairs = {"chair1": thing("chair", 0.0), "chair2": thing("chair", 1.0)}
     bodies.show(chairs)
     assert scene.take() == ["removed"]
@@ -83,7 +83,7 @@ def test_what_goes_is_removed_and_may_come_back(scene, bodies):
     assert scene.take() == ["added"]
 
 
-def test_another_order_is_another_batch(scene, bodies):
+def test_a_new_order_is_sent(scene, bodies):
     one, other, cup = thing("chair", 0.0), thing("chair", 1.0), thing("cup", 2.0)
     bodies.show({"chair1": one, "chair2": other, "cup1": cup})
     bodies.show({"chair2": other, "chair1": one, "cup1": cup})

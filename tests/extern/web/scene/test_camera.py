@@ -1,4 +1,4 @@
-"""Views: all of it at first, what is left and ahead, and labels side by side."""
+"""The initial view, viewpoints, and the selection of labels."""
 
 import math
 import random
@@ -6,9 +6,9 @@ import random
 import numpy as np
 import pytest
 
-from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, uncrowded
-from semmap.nodes.extern.web.scene.seen import wxyz_of
-from tests.extern.web.scene.things import entity, pose
+from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, select_labels
+from semmap.nodes.extern.web.scene.sensor_overlay import wxyz_of
+from tests.extern.web.scene.sample_scenes import entity, pose
 
 
 def looking(eye, target, width=800, height=600):
@@ -19,7 +19,7 @@ def looking(eye, target, width=800, height=600):
     return View(tuple(eye), wxyz_of(rotation), FOV_RAD, width, height)
 
 
-def test_what_is_looked_at_is_in_the_middle_and_the_right_is_right():
+def test_the_target_is_projected_to_the_image_centre():
     view = looking((0.0, -5.0, 2.0), (0.0, 0.0, 0.0))
     at = view.project(np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)]))
     assert at[0] == pytest.approx((400.0, 300.0, math.hypot(5.0, 2.0)))
@@ -29,7 +29,7 @@ def test_what_is_looked_at_is_in_the_middle_and_the_right_is_right():
 
 @pytest.mark.parametrize("aspect", [0.4, 1.0, 2.5])
 @pytest.mark.parametrize("far", [(10.0, 8.0, 2.5), (3.0, 40.0, 1.0), (0.2, 0.2, 0.2)])
-def test_everything_is_in_the_first_view(aspect, far):
+def test_the_initial_view_shows_everything(aspect, far):
     points = np.array([(x, y, z) for x in (0.0, far[0]) for y in (0.0, far[1]) for z in (0.0, far[2])])
     eye, target = first_view(points, aspect)
     at = looking(eye, target, 600 * aspect, 600).project(points)
@@ -38,48 +38,48 @@ def test_everything_is_in_the_first_view(aspect, far):
     assert (at[:, :2] <= (600 * aspect, 600)).all()
 
 
-def test_an_empty_map_is_looked_at_as_well():
+def test_an_empty_map_has_an_initial_view():
     eye, target = first_view(extent(()), 1.5)
     assert eye[2] > target[2]
 
 
-def test_what_is_far_off_does_not_count():
+def test_distant_outliers_are_ignored():
     near = [entity(f"chair{i}", at=pose(i, 0.0)) for i in range(5)]
     points = extent([*near, entity("lost", at=pose(5000.0, 0.0))])
     assert points[:, 0].max() < 10.0
 
 
 @pytest.mark.parametrize(("target", "yaw_rad"), [((1, 0, 0), 0.0), ((0, 1, 0), 1.5708), ((-1, 0, 0), 3.1416)])
-def test_the_viewpoint_looks_where_the_view_does(target, yaw_rad):
+def test_the_viewpoint_has_the_heading_of_the_view(target, yaw_rad):
     x, y, z, yaw = looking((0.0, 0.0, 1.5), (*target[:2], 1.0)).viewpoint
     assert (x, y, z) == (0.0, 0.0, 1.5)
     assert math.remainder(yaw - yaw_rad, math.tau) == pytest.approx(0.0, abs=1e-3)
 
 
-def test_looking_straight_down_ahead_is_what_is_up_in_the_picture():
+def test_the_heading_of_a_top_view_is_the_image_top():
     rotation = np.column_stack([(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)])
     yaw = View((0.0, 0.0, 5.0), wxyz_of(rotation), FOV_RAD, 800, 600).viewpoint[3]
     assert yaw == pytest.approx(math.pi / 2.0)
 
 
-def test_labels_do_not_cover_one_another_and_the_nearest_is_written():
+def test_labels_do_not_overlap_and_the_nearest_is_shown():
     view = looking((0.0, -5.0, 2.0), (0.0, 0.0, 0.0))
     places = {"far": (0.0, 0.1, 0.0), "near": (0.0, 0.0, 0.0), "aside": (1.5, 0.0, 0.0)}
     labels = {name: (name, at) for name, at in places.items()}
-    assert uncrowded(view, labels) == ["near", "aside"]
-    assert uncrowded(view, labels, ["far"])[0] == "far"
-    assert "near" not in uncrowded(view, labels, ["far"])
+    assert select_labels(view, labels) == ["near", "aside"]
+    assert select_labels(view, labels, ["far"])[0] == "far"
+    assert "near" not in select_labels(view, labels, ["far"])
 
 
-def test_what_is_behind_or_beside_the_picture_is_not_labelled_nor_more_than_there_may_be():
+def test_labels_outside_the_image_or_above_the_limit_are_not_shown():
     view = looking((0.0, -5.0, 2.0), (0.0, 0.0, 0.0))
-    assert uncrowded(view, {"behind": ("b", (0.0, -9.0, 0.0)), "beside": ("c", (90.0, 0.0, 0.0))}) == []
+    assert select_labels(view, {"behind": ("b", (0.0, -9.0, 0.0)), "beside": ("c", (90.0, 0.0, 0.0))}) == []
     many = {str(i): (str(i), (0.5 * (i % 5) - 1.0, 0.6 * (i // 5) - 1.0, 0.0)) for i in range(20)}
-    assert len(uncrowded(view, many, most=3)) == 3
-    assert uncrowded(view, {}) == []
+    assert len(select_labels(view, many, most=3)) == 3
+    assert select_labels(view, {}) == []
 
 
-def test_of_many_labels_those_are_written_that_one_by_one_find_room():
+def test_label_selection_equals_the_greedy_algorithm():
     view, dice = looking((0.0, -8.0, 4.0), (0.0, 0.0, 0.0)), random.Random(7)
     for _ in range(20):
         places = [tuple(dice.uniform(-4.0, 4.0) for _ in range(3)) for _ in range(120)]
@@ -97,4 +97,4 @@ def test_of_many_labels_those_are_written_that_one_by_one_find_room():
             if is_seen and has_room and len(expected) < 40:
                 taken.append((x, y, half))
                 expected.append(key)
-        assert uncrowded(view, labels, first) == expected
+        assert select_labels(view, labels, first) == expected

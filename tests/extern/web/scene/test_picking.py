@@ -1,4 +1,4 @@
-"""Rays: what they meet first, and what is under a point."""
+"""Ray casting and supports."""
 
 import math
 
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semmap.nodes.extern.web.scene.dragging import put_down
+from semmap.nodes.extern.web.scene.gizmo import place_on_support
 from semmap.nodes.extern.web.scene.picking import (
     Solid,
     corners_of,
@@ -17,7 +17,7 @@ from semmap.nodes.extern.web.scene.picking import (
     rotation_of,
     support_m,
 )
-from tests.extern.web.scene.things import pose, surface
+from tests.extern.web.scene.sample_scenes import pose, surface
 
 DOWN = (0.0, 0.0, -1.0)
 
@@ -26,37 +26,37 @@ def table(at=None):
     return Solid("table1", at or pose(2.0, 3.0), (1.0, 0.6, 0.75))
 
 
-def test_the_floor_is_met_where_nothing_stands():
+def test_the_floor_is_hit_where_no_object_is():
     hit = first_hit((1.0, 1.0, 2.0), (1.0, 0.0, -1.0), [table()])
     assert (hit.name, hit.at) == ("", pytest.approx((3.0, 1.0, 0.0)))
     assert is_level(hit)
 
 
-def test_a_ray_into_the_open_meets_nothing():
+def test_an_upward_ray_has_no_hit():
     assert first_hit((0.0, 0.0, 1.0), (0.0, 1.0, 0.5), [table()]) is None
 
 
-def test_the_nearest_thing_is_met_first():
+def test_the_nearest_object_is_hit():
     cup = Solid("cup1", pose(2.0, 3.0, 0.75), (0.1, 0.1, 0.1))
     assert first_hit((2.0, 3.0, 3.0), DOWN, [table(), cup]).name == "cup1"
     hit = first_hit((2.3, 3.0, 3.0), DOWN, [table(), cup])
     assert (hit.name, hit.at[2]) == ("table1", pytest.approx(0.75))
 
 
-def test_the_side_of_a_thing_is_no_place_to_put_things_on():
+def test_a_vertical_side_is_not_level():
     hit = first_hit((0.0, 3.0, 0.5), (1.0, 0.0, 0.0), [table()])
     assert hit.at == pytest.approx((1.5, 3.0, 0.5))
     assert hit.normal == pytest.approx((-1.0, 0.0, 0.0))
     assert not is_level(hit)
 
 
-def test_a_thing_is_met_as_it_is_turned():
+def test_rotations_of_objects_are_respected():
     turned = table(pose(2.0, 3.0, 0.0, math.pi / 2.0))
     assert first_hit((2.0, 3.45, 3.0), DOWN, [turned]).name == "table1"
     assert first_hit((2.45, 3.0, 3.0), DOWN, [turned]).name == ""
 
 
-def test_where_the_surface_is_known_it_counts_and_not_the_box():
+def test_a_known_surface_replaces_the_box():
     low = Solid("chair1", pose(), (1.0, 1.0, 1.0), surface((1.0, 1.0, 0.4)))
     assert first_hit((0.2, 0.1, 3.0), DOWN, [low]).at[2] == pytest.approx(0.4)
 
@@ -64,7 +64,7 @@ def test_where_the_surface_is_known_it_counts_and_not_the_box():
 @given(
     st.floats(-3, 3), st.floats(-3, 3), st.floats(0, 2), st.floats(-3, 3), st.floats(-1, 1), st.floats(-1, 1)
 )
-def test_box_and_surface_of_the_same_shape_are_met_at_the_same_place(x, y, z, yaw, east, north):
+def test_box_and_surface_of_the_same_shape_have_the_same_hit(x, y, z, yaw, east, north):
     at = pose(x, y, z, yaw)
     size_m = (1.0, 0.6, 0.75)
     ray = ((0.1, 0.2, 6.0), (east, north, -1.0))
@@ -74,7 +74,7 @@ def test_box_and_surface_of_the_same_shape_are_met_at_the_same_place(x, y, z, ya
         assert by_box.at == pytest.approx(by_surface.at, abs=1e-4)
 
 
-def test_the_corners_and_edges_of_a_box():
+def test_corners_and_edges_of_a_box():
     corners = corners_of(pose(1.0, 2.0, 3.0, math.pi / 2.0), (2.0, 1.0, 0.5))
     assert corners.min(axis=0) == pytest.approx((0.5, 1.0, 3.0))
     assert corners.max(axis=0) == pytest.approx((1.5, 3.0, 3.5))
@@ -84,36 +84,36 @@ def test_the_corners_and_edges_of_a_box():
 
 
 @given(st.floats(-math.pi, math.pi))
-def test_a_rotation_is_one(yaw_rad):
+def test_rotation_matrices_are_orthonormal(yaw_rad):
     rotation = rotation_of(pose(yaw_rad=yaw_rad))
     assert rotation @ rotation.T == pytest.approx(np.eye(3), abs=1e-9)
 
 
-def test_below_a_point_is_the_table_or_the_floor():
+def test_the_support_below_a_point_is_an_object_or_the_floor():
     assert support_m((2.0, 3.0, 2.0), [table()]) == pytest.approx(0.75)
     assert support_m((2.0, 3.0, 0.5), [Solid("rug", pose(2.0, 3.0), (1.0, 1.0, 0.01))]) == pytest.approx(0.01)
     assert support_m((0.0, 0.0, 2.0), [table()]) == 0.0
 
 
-def test_a_cup_that_is_dragged_into_a_counter_is_put_on_top():
+def test_a_small_object_dragged_into_a_counter_is_placed_on_top():
     counter = Solid("counter1", pose(2.0, 3.0), (1.0, 0.6, 0.9))
-    dragged = put_down(pose(2.0, 3.0, 0.74), (0.1, 0.1, 0.1), [counter])
+    dragged = place_on_support(pose(2.0, 3.0, 0.74), (0.1, 0.1, 0.1), [counter])
     assert dragged.position_m == pytest.approx((2.0, 3.0, 0.9), abs=0.01)
 
 
-def test_a_chair_that_is_dragged_under_a_table_stays_on_the_floor():
+def test_a_chair_dragged_under_a_table_stays_on_the_floor():
     top = surface((1.0, 0.6, 0.05))
     board = Solid("table1", pose(2.0, 3.0, 0.7), (1.0, 0.6, 0.05), top)
     at = pose(2.0, 3.0, 0.0)
-    assert put_down(at, (0.4, 0.4, 0.6), [board]) == at
+    assert place_on_support(at, (0.4, 0.4, 0.6), [board]) == at
 
 
-def test_what_is_lifted_stays_lifted_and_what_is_large_goes_where_it_was_let_go():
-    assert put_down(pose(2.0, 3.0, 1.4), (0.1, 0.1, 0.1), [table()]) == pose(2.0, 3.0, 1.4)
-    assert put_down(pose(2.0, 3.0, 0.0), (2.0, 1.0, 0.4), [table()]) == pose(2.0, 3.0, 0.0)
+def test_lifted_and_large_objects_stay_where_they_are_released():
+    assert place_on_support(pose(2.0, 3.0, 1.4), (0.1, 0.1, 0.1), [table()]) == pose(2.0, 3.0, 1.4)
+    assert place_on_support(pose(2.0, 3.0, 0.0), (2.0, 1.0, 0.4), [table()]) == pose(2.0, 3.0, 0.0)
 
 
-def test_of_many_things_off_the_ray_none_is_met():
+def test_objects_off_the_ray_are_not_hit():
     grid = [Solid(f"s{i}", pose(2.0 * (i % 30), 2.0 * (i // 30)), (0.5, 0.5, 1.0)) for i in range(900)]
     hit = first_hit((10.0, 10.0, 5.0), (0.0, 0.0, -1.0), grid)
     assert (hit.name, hit.at) == ("s155", pytest.approx((10.0, 10.0, 1.0)))

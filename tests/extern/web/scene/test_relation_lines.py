@@ -19,7 +19,7 @@ def texts(of, *relations):
     return {(line.a, line.b): line.text for line in relation_lines(of, relations, MIDDLES)}
 
 
-def test_there_is_one_line_for_each_other_thing_with_what_holds_and_its_measure():
+def test_each_related_entity_has_one_line_with_relations_and_distances():
     found = texts(
         "cup1",
         relation("isNear", "cup1", "milk1", 0.155),
@@ -32,11 +32,11 @@ def test_there_is_one_line_for_each_other_thing_with_what_holds_and_its_measure(
     }
 
 
-def test_of_what_it_bears_the_other_is_named():
+def test_supported_entities_are_named():
     assert list(texts("table1", relation("isOn", "cup1", "table1")).values()) == ["cup1 on"]
 
 
-def test_what_follows_is_not_said_and_neither_is_what_does_not_hold():
+def test_implied_relations_and_those_that_do_not_hold_are_not_shown():
     found = texts(
         "cup1",
         relation("isNextTo", "cup1", "milk1", 0.1),
@@ -46,12 +46,12 @@ def test_what_follows_is_not_said_and_neither_is_what_does_not_hold():
     assert list(found.values()) == ["next to 10 cm"]
 
 
-def test_between_two_there_are_two_lines():
+def test_between_has_two_lines():
     found = texts("cup1", relation("isBetween", "cup1", "milk1", and_object="jug1"))
     assert set(found.values()) == {"between"}
     assert len(found) == 2
 
 
-def test_places_are_left_out():
+def test_places_have_no_lines():
     assert texts("cup1", relation("isLocatedIn", "cup1", "kitchen1")) == {}
     assert texts("ghost", relation("isOn", "ghost", "table1")) == {}

@@ -1,4 +1,4 @@
-"""Places as they are drawn on the floor of the page's scene."""
+"""Places on the floor of the scene."""
 
 from types import SimpleNamespace
 
@@ -8,13 +8,13 @@ from msgspec import structs
 
 from semmap.nodes.extern.web.scene.rooms import Rooms
 from semmap.schemas.polygons import EXTENT, box_around, read_wkt
-from tests.extern.web.scene.things import entity, pose
+from tests.extern.web.scene.sample_scenes import entity, pose
 
 L = "POLYGON ((2 1, 6 1, 6 3, 4 3, 4 5, 2 5, 2 1))"
 
 
 class Drawn:
-    """What viser was told, by name."""
+    """A stub of viser that records nodes by name."""
 
     def __init__(self):
         self.there = {}
@@ -40,7 +40,7 @@ def there():
     return {"kitchen1": box, "hall1": polygon}
 
 
-def test_a_polygon_is_drawn_in_its_shape_and_not_as_a_box(there):
+def test_polygons_are_drawn_in_their_shape(there):
     drawn = Drawn()
     Rooms(drawn).show(there)
     assert [tuple(size[:2]) for size in drawn.there["/rooms/floors"]["batched_scales"]] == [(2.0, 3.0)]
@@ -51,7 +51,7 @@ def test_a_polygon_is_drawn_in_its_shape_and_not_as_a_box(there):
     assert tuple(how["position"][:2]) == (4.0, 3.0)
 
 
-def test_an_extent_that_changes_is_drawn_anew_and_one_that_goes_is_gone(there):
+def test_changed_extents_are_redrawn_and_removed_ones_deleted(there):
     drawn = Drawn()
     rooms = Rooms(drawn)
     rooms.show(there)

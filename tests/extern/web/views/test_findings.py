@@ -1,6 +1,6 @@
 from msgspec import structs
 
-from semmap.nodes.extern.web.views.findings import findings, names_in, verdict
+from semmap.nodes.extern.web.views.findings import collect_findings, format_verdict, names_in
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import BodyState
 from semmap.schemas.explanations import Explanation, Step
@@ -14,12 +14,12 @@ SOUND = Checked(
 CUP, TABLE = entity("cup1", "Cup"), entity("table1", "Table")
 
 
-def test_a_sound_map_has_nothing_to_look_at():
-    assert findings(SOUND, [CUP]) == ()
-    assert verdict(SOUND) == "the map is consistent (4,846 triples, 31 ms, semmap)"
+def test_a_consistent_map_has_no_findings():
+    assert collect_findings(SOUND, [CUP]) == ()
+    assert format_verdict(SOUND) == "the map is consistent (4,846 triples, 31 ms, semmap)"
 
 
-def test_a_contradiction_comes_first_with_its_steps():
+def test_contradictions_are_first_with_their_proof():
     fact = (v.entity_iri("cup1"), v.RDF_TYPE, v.dm("Cup"))
     explanation = Explanation(
         conclusion=None, support=(fact,), steps=(Step(rule="cax-dw", premises=(fact,), conclusion=None),),
@@ -28,34 +28,37 @@ def test_a_contradiction_comes_first_with_its_steps():
     bad = structs.replace(
         SOUND, consistent=False, text="inconsistent", explanation=explanation, withheld=("x",)
     )
-    first, second = findings(bad, [CUP])
-    assert (first.gravity, first.names) == ("contradiction", ("cup1",))
-    assert first.why[0] == "these cannot all be (cannot be)"
-    assert first.why[1].strip() == "cup1 is a Cup (asserted)"
-    assert second.gravity == "withheld"
+    first, second = collect_findings(bad, [CUP])
+    assert (first.kind, first.names) == ("contradiction", ("cup1",))
+    assert first.proof[0] == "these facts contradict one another (contradiction)"
+    assert first.proof[1].strip() == "cup1 is a Cup (asserted)"
+    assert second.kind == "suppressed"
 
 
-def test_what_is_withheld_and_denied_names_its_entities():
+def test_suppressed_and_denied_facts_name_their_entities():
     denied = Relation(
         relation="isOn", subject="cup1", object="table1", holds=False, text="cup1 is not on table1"
     )
     checked = structs.replace(SOUND, withheld=("table1 would be inside cup1.",), denied=(denied,))
-    assert [f.names for f in findings(checked, [CUP, TABLE])] == [("table1", "cup1"), ("cup1", "table1")]
-
-
-def test_doubts_and_bodies_that_are_not_as_they_should_be():
-    doubted = entity("cup2", "Cup", conflict="a bowl")
-    unsure = structs.replace(CUP, provenance=structs.replace(SINCE, source="perception", confidence=0.3))
-    ghost = structs.replace(TABLE, body=BodyState(status="ghost"))
-    texts = [f.text for f in findings(SOUND, [doubted, unsure, ghost])]
-    assert texts == [
-        "cup1: perception is only 30% sure of it",
-        "cup2: perception sees a bowl",
-        "table1 is a ghost, because something else fills its place",
+    assert [f.names for f in collect_findings(checked, [CUP, TABLE])] == [
+        ("table1", "cup1"),
+        ("cup1", "table1"),
     ]
 
 
-def test_names_are_found_as_whole_words():
+def test_doubts_and_body_problems_are_listed():
+    doubted = entity("cup2", "Cup", conflict="a bowl")
+    unsure = structs.replace(CUP, provenance=structs.replace(SINCE, source="perception", confidence=0.3))
+    ghost = structs.replace(TABLE, body=BodyState(status="ghost"))
+    texts = [f.text for f in collect_findings(SOUND, [doubted, unsure, ghost])]
+    assert texts == [
+        "cup1: low confidence (30%, source perception)",
+        "cup2: perception detects a bowl",
+        "table1 has a non-colliding body, because another body occupies its place",
+    ]
+
+
+def test_names_match_whole_words_only():
     known = {"cup1", "cup10", "café.2"}
     assert names_in("cup10 is on café.2. cup1!", known) == ("cup10", "café.2", "cup1")
     assert names_in("cup100 and cup", known) == ()

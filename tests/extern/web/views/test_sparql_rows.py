@@ -1,11 +1,11 @@
-from semmap.nodes.extern.web.views.sparql_rows import Standing, rows_of, summary
+from semmap.nodes.extern.web.views.sparql_rows import StandingRows, format_summary, rows_of
 from semmap.ontology import vocabulary as v
 from semmap.schemas.sparql import RowsChanged, SparqlResult
 
 CUP, TABLE = v.entity_iri("cup1"), v.entity_iri("table1")
 
 
-def test_a_row_knows_the_entities_it_is_about():
+def test_rows_have_the_names_of_their_entities():
     result = SparqlResult(
         kind="select",
         variables=("thing", "height", "class", "none"),
@@ -17,46 +17,46 @@ def test_a_row_knows_the_entities_it_is_about():
     assert found.rows == [{"id": 0, "c0": ":cup1", "c1": "0.74", "c2": "dm:Cup", "c3": "", "names": ["cup1"]}]
 
 
-def test_what_is_no_entity_now_is_not_selected():
+def test_removed_entities_are_not_in_the_names():
     result = SparqlResult(kind="select", variables=("thing",), rows=((CUP,),), seq=3)
     assert rows_of(result, ()).rows[0]["names"] == []
 
 
-def test_a_verdict_and_a_graph_are_tables_too():
+def test_ask_and_construct_results_are_tables():
     assert rows_of(SparqlResult(kind="ask", verdict=True, seq=1), ()).rows[0]["c0"] == "yes"
     graph = rows_of(SparqlResult(kind="graph", rows=((CUP, v.dm("isOn"), TABLE),), seq=1), {"cup1", "table1"})
     assert graph.columns == ("subject", "predicate", "object")
     assert graph.rows[0]["names"] == ["cup1", "table1"]
 
 
-def test_markup_stays_the_text_it_is():
+def test_markup_in_results_stays_text():
     result = SparqlResult(kind="select", variables=("text",), rows=(('"<b>x</b>"',),), seq=1)
     assert rows_of(result, ()).rows[0]["c0"] == '"<b>x</b>"'
 
 
-def test_the_summary_says_how_many_when_and_how_long():
+def test_the_summary_has_rows_commit_and_time():
     result = SparqlResult(kind="select", variables=("t",), rows=((CUP,),), seq=12)
-    assert summary(result, 0.0123) == "1 row, commit 12, 12 ms"
-    assert summary(SparqlResult(kind="ask", seq=2), 2.0) == "commit 2, 2.0 s"
+    assert format_summary(result, 0.0123) == "1 row, commit 12, 12 ms"
+    assert format_summary(SparqlResult(kind="ask", seq=2), 2.0) == "commit 2, 2.0 s"
 
 
 def states(standing):
     return {row["c0"]: row["state"] for row in standing.table({"cup1"})}
 
 
-def test_rows_that_come_and_go_are_marked_until_the_next_news():
-    standing = Standing([(CUP,)])
-    standing.take(RowsChanged(watch="q", seq=2, since=1, appeared=((TABLE,),), disappeared=((CUP,),)))
-    assert states(standing) == {":table1": "came", ":cup1": "gone"}
+def test_added_and_removed_rows_are_marked_until_the_next_change():
+    standing = StandingRows([(CUP,)])
+    standing.apply(RowsChanged(watch="q", seq=2, since=1, appeared=((TABLE,),), disappeared=((CUP,),)))
+    assert states(standing) == {":table1": "added", ":cup1": "removed"}
     assert len(standing) == 1
-    standing.settle()
+    standing.clear_marks()
     assert states(standing) == {":table1": ""}
 
 
-def test_a_row_keeps_its_number_and_one_of_two_alike_may_go():
-    standing = Standing([(CUP,), (CUP,), (TABLE,)])
-    standing.take(RowsChanged(watch="q", seq=2, since=1, disappeared=((CUP,),)))
-    standing.settle()
+def test_rows_keep_their_numbers_and_duplicates_are_removed_singly():
+    standing = StandingRows([(CUP,), (CUP,), (TABLE,)])
+    standing.apply(RowsChanged(watch="q", seq=2, since=1, disappeared=((CUP,),)))
+    standing.clear_marks()
     assert [(row["id"], row["c0"]) for row in standing.table(())] == [(1, ":cup1"), (2, ":table1")]
-    standing.take(RowsChanged(watch="q", seq=3, since=2, appeared=((CUP,),)))
+    standing.apply(RowsChanged(watch="q", seq=3, since=2, appeared=((CUP,),)))
     assert [row["id"] for row in standing.table(())] == [1, 2, 3]

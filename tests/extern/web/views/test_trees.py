@@ -1,6 +1,6 @@
+from semmap.nodes.extern.web.views.entities.locations import Locations
 from semmap.nodes.extern.web.views.trees import class_tree, place_tree
-from semmap.nodes.extern.web.views.whereabouts import Whereabouts
-from tests.extern.web.views.worlds import by_name, class_, fact, place, thing
+from tests.extern.web.views.sample_maps import by_name, class_, fact, place, thing
 
 CLASSES = (
     class_("Thing"),
@@ -17,12 +17,12 @@ def labels(nodes):
 
 
 def known(*facts):
-    whereabouts = Whereabouts()
-    whereabouts.begin(facts)
-    return whereabouts
+    locations = Locations()
+    locations.reset(facts)
+    return locations
 
 
-def test_counts_are_by_inference_and_those_said_so_beside_them():
+def test_counts_include_inferred_instances_and_show_asserted_ones():
     tree = class_tree(
         CLASSES,
         [
@@ -31,11 +31,11 @@ def test_counts_are_by_inference_and_those_said_so_beside_them():
         ],
     )
     assert labels(tree) == {
-        "Thing · 2": {"Dishware · 2": {"Cup · 2 (1 said so)": {"Mug (large cup) · 1": {}}}}
+        "Thing · 2": {"Dishware · 2": {"Cup · 2 (1 asserted)": {"Mug (large cup) · 1": {}}}}
     }
 
 
-def test_a_class_with_two_parents_is_below_each_with_an_id_of_its_own():
+def test_a_class_with_two_parents_is_below_both_with_different_ids():
     tree = class_tree(CLASSES, [], with_empty=True)
     (root,) = tree
     ids = [grandchild["id"] for child in root["children"] for grandchild in child["children"]]
@@ -43,16 +43,16 @@ def test_a_class_with_two_parents_is_below_each_with_an_id_of_its_own():
     assert len(labels(tree)["Thing"]) == 3
 
 
-def test_classes_that_are_each_others_parents_end():
+def test_cycles_of_classes_end():
     circle = (class_("Root"), class_("A", "B", "Root"), class_("B", "A"))
     assert labels(class_tree(circle, [], with_empty=True)) == {"Root": {"A": {"B": {}}}}
 
 
-def test_a_class_whose_parent_is_not_known_is_at_the_top():
+def test_classes_with_unknown_parents_are_roots():
     assert labels(class_tree([class_("A", "Nowhere")], [], with_empty=True)) == {"A": {}}
 
 
-def test_places_are_below_those_they_are_said_to_be_a_part_of():
+def test_places_are_below_their_parent_places():
     entities = by_name(
         place("flat1", (10.0, 8.0, 2.5), properties={"hasSubLocation": ("kitchen1",)}),
         place("kitchen1", preferred_reference="the kitchen"),
@@ -70,7 +70,7 @@ def test_places_are_below_those_they_are_said_to_be_a_part_of():
     }
 
 
-def test_places_that_are_parts_of_each_other_are_shown_nevertheless():
+def test_cycles_of_places_are_shown():
     entities = by_name(
         place("a", properties={"hasSubLocation": ("b",)}), place("b", properties={"hasSubLocation": ("a",)})
     )

@@ -1,0 +1,30 @@
+"""A select field whose options may change while it is open."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nicegui import ui
+from nicegui.events import GenericEventArguments
+
+
+class SelectField(ui.select):
+    """Like `ui.select`, but the chosen option is identified by its label.
+
+    The browser reports the index of an option. If options were added or removed since it drew them, that
+    index would select another option.
+    """
+
+    def _event_args_to_value(self, e: GenericEventArguments) -> Any:
+        if isinstance(e.args, list):
+            e.args = [arg for given in e.args if (arg := self._with_current_index(given)) is not None]
+        else:
+            e.args = self._with_current_index(e.args)
+        return super()._event_args_to_value(e)
+
+    def _with_current_index(self, given: Any) -> Any:
+        """Return the option with its current index; None if it no longer exists."""
+        if not isinstance(given, dict) or "label" not in given:
+            return given
+        label = given["label"]
+        return {**given, "value": self._labels.index(label)} if label in self._labels else None

@@ -1,0 +1,1 @@
+"""Entities as rows, facts, forms and states, without a browser."""
