@@ -201,7 +201,7 @@ def contains(datatype: Term, term: Term) -> bool:
     return kind == name
 
 
-def tells_texts_apart(datatype: Term) -> bool:
+def distinguishes_strings(datatype: Term) -> bool:
     """Whether a datatype holds some plain texts and others not, as `xsd:token` does."""
     name = datatype[1:-1].removeprefix(_XSD)
     return name in _STRINGS and name != "string"

@@ -162,11 +162,11 @@ def test_what_is_set_aside_is_asserted_and_does_not_hold_until_it_is_back(odd):
     reasoner = Reasoner(facts)
     assert reasoner.is_compiled is (not odd)
     on_tray, on_shelf, a_b = triple(":cup :on :tray"), triple(":cup :on :shelf"), triple(":cup a :B")
-    reasoner.believe(aside=[on_tray])
-    assert reasoner.sets_aside
-    assert list(reasoner.set_aside()) == [on_tray]
-    assert reasoner.set_aside_about([on_tray[2]]) == {on_tray}
-    assert reasoner.set_aside_about([on_shelf[2]]) == set()
+    reasoner.update_computed(suppress=[on_tray])
+    assert reasoner.has_suppressed
+    assert list(reasoner.suppressed()) == [on_tray]
+    assert reasoner.suppressed_about([on_tray[2]]) == {on_tray}
+    assert reasoner.suppressed_about([on_shelf[2]]) == set()
     assert len(reasoner) == len(facts)
     assert set(reasoner.asserted()) == set(facts)
     assert set(reasoner.asserted(None, on_tray[1])) == {on_tray, on_shelf}
@@ -176,10 +176,10 @@ def test_what_is_set_aside_is_asserted_and_does_not_hold_until_it_is_back(odd):
     assert set(reasoner.about(on_tray[0])) == {TYPE, on_tray[1]}
     assert reasoner.mentioned({on_tray[2], "<http://example.org/none>"}) == {on_tray[2]}
     assert (reasoner.holds(on_tray), reasoner.holds(on_shelf), reasoner.holds(a_b)) == (False, True, True)
-    again = Reasoner.of(reasoner.held())
+    again = Reasoner.of(reasoner.given_facts())
     assert set(again.given(None, on_tray[1])) == {on_shelf}
-    reasoner.believe(back=[on_tray, on_shelf])
-    assert not reasoner.sets_aside
+    reasoner.update_computed(restore=[on_tray, on_shelf])
+    assert not reasoner.has_suppressed
     assert reasoner.holds(on_tray)
     assert set(reasoner.about(on_tray[0])[on_tray[1]]) == {on_tray[2], on_shelf[2]}
     assert set(reasoner.asserted()) == set(facts)

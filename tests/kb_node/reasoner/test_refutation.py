@@ -62,7 +62,7 @@ def check(why, asserted):
 
 
 def _fail_supposing(reasoner, *supposed):
-    with reasoner.supposing(supposed):
+    with reasoner.assuming(supposed):
         assert reasoner.holds(triple(":i1 a :F"))
         raise ZeroDivisionError
 
@@ -70,12 +70,12 @@ def _fail_supposing(reasoner, *supposed):
 def test_suppositions_nest_and_end_with_an_error():
     reasoner = Reasoner(BASE)
     before = _picture(reasoner)
-    with reasoner.supposing([triple(":i0 a :B")]):
+    with reasoner.assuming([triple(":i0 a :B")]):
         with pytest.raises(ZeroDivisionError):
             _fail_supposing(reasoner, triple(":i0 :p :i1"), triple(":i0 a :B"))
         assert reasoner.holds(triple(":i0 a :A"))
         assert not reasoner.holds(triple(":i1 a :F"))
-        with pytest.raises(Inconsistent), reasoner.supposing([triple(":i0 a :X"), triple(":i0 a :Y")]):
+        with pytest.raises(Inconsistent), reasoner.assuming([triple(":i0 a :X"), triple(":i0 a :Y")]):
             pass
     assert _picture(reasoner) == before
 
@@ -83,9 +83,12 @@ def test_suppositions_nest_and_end_with_an_error():
 def test_axioms_are_supposed_of_a_new_engine_and_the_old_one_comes_back():
     reasoner = Reasoner(BASE)
     engine = reasoner._engine
-    with pytest.raises(NotCompilable), reasoner.supposing([triple(":B rdfs:subClassOf :G")], anew=False):
+    with (
+        pytest.raises(NotCompilable),
+        reasoner.assuming([triple(":B rdfs:subClassOf :G")], allow_recompute=False),
+    ):
         pass
-    with reasoner.supposing([triple(":B rdfs:subClassOf :G"), triple(":i0 a :B")]):
+    with reasoner.assuming([triple(":B rdfs:subClassOf :G"), triple(":i0 a :B")]):
         assert reasoner.holds(triple(":i0 a :G"))
     assert reasoner._engine is engine
     assert not reasoner.holds(triple(":i0 a :B"))

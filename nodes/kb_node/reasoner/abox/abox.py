@@ -46,13 +46,13 @@ class ABox:
         self.store = Store(self.kinds)
         self.equals: dict[int, Equals] = {}
         self.reasons: dict[int, Reason] = {}
-        self.moved: dict[int, Kind] = {}
+        self.changed_kinds: dict[int, Kind] = {}
         """The nodes whose kind changed since `settle`, with the kind they had."""
-        self.rest_on_edge: dict[int, list[Reason]] = {}
-        self.rest_on_node: dict[int, list[Reason]] = {}
+        self.reasons_by_edge: dict[int, list[Reason]] = {}
+        self.reasons_by_node: dict[int, list[Reason]] = {}
         self._order = count()
         self.spellings: dict[datatypes.Value, list[int]] = {}
-        self.is_mixed = False
+        self.has_unknown_equals = False
         """Whether a literal without a known value was ever the same as another: all spellings matter then."""
         self.overlaid: list[Triple] = []
         """What was computed, and was asserted since `settle`."""
@@ -173,8 +173,10 @@ class ABox:
         step = self.steps.step(p, store.kind[s], store.kind[o])
         rules = step.rules
         if step.special or rules is not None:
-            of_values = (step.of_values or not step.special) and (rules is None or rules.of_values)
-            return of_values and store.out.is_alone(edge)
+            only_uniqueness = (step.only_uniqueness or not step.special) and (
+                rules is None or rules.only_uniqueness
+            )
+            return only_uniqueness and store.out.is_alone(edge)
         return True
 
     def bridges(self, edges: Iterable[int], *nodes: int) -> list[Claim]:
@@ -186,7 +188,7 @@ class ABox:
 
     def set(self, node: int, kind: Kind) -> None:
         """Change the kind of a node."""
-        self.moved.setdefault(node, self.store.kind[node])
+        self.changed_kinds.setdefault(node, self.store.kind[node])
         self.store.kind[node] = kind
 
     def widen(self, node: int, mask: int) -> None:
@@ -205,10 +207,10 @@ class ABox:
         reason = Reason(next(self._order), claims, edge=edge, link=link)
         for claim in reason.claims:
             if isinstance(claim, Edge):
-                rest = self.rest_on_edge.setdefault(claim.edge, [])
+                rest = self.reasons_by_edge.setdefault(claim.edge, [])
             else:
                 node = claim.node if isinstance(claim, Member) else claim.one
-                rest = self.rest_on_node.setdefault(node, [])
+                rest = self.reasons_by_node.setdefault(node, [])
             if len(rest) >= MANY and len(rest) & (len(rest) - 1) == 0:
                 rest[:] = [other for other in rest if other.alive]
             rest.append(reason)
@@ -216,10 +218,10 @@ class ABox:
 
     def settle(self) -> None:
         """File the individuals whose kind changed; to be called at the end of a transaction."""
-        for node, before in self.moved.items():
+        for node, before in self.changed_kinds.items():
             if before.excluded is None:
-                self.store.file(node, before, self.store.kind[node])
-        self.moved.clear()
+                self.store.list_under_kind(node, before, self.store.kind[node])
+        self.changed_kinds.clear()
         self.overlaid.clear()
 
     def forget_spelling(self, literal: int) -> None:

@@ -27,7 +27,7 @@ class View:
         self._store = abox.store
         self._schema = abox.schema
         self._further: dict[int, tuple[Further, Further]] = {}
-        self._unsaid: dict[Kind, list[Term]] = {}
+        self._inferred_names: dict[Kind, list[Term]] = {}
 
     # Asserted
 
@@ -35,16 +35,16 @@ class View:
         """The asserted triples of a pattern."""
         if p is None and (s is None or o is None):
             if s is not None:
-                return self._said_of(s)
-            return self._everything() if o is None else self._said_with(o)
+                return self._asserted_about(s)
+            return self._everything() if o is None else self._asserted_with_object(o)
         return self._matching(s, p, o)
 
     def _everything(self) -> Iterator[Triple]:
         for node, term in enumerate(self._store.terms):
             if term and not self._abox.is_literal(node):
-                yield from self._said_of(term)
+                yield from self._asserted_about(term)
 
-    def _said_of(self, s: Term) -> Iterator[Triple]:
+    def _asserted_about(self, s: Term) -> Iterator[Triple]:
         """The asserted triples of a subject."""
         store, axioms, node = self._store, self._schema.axioms, self._store.numbers.get(s)
         if node is None:
@@ -55,7 +55,7 @@ class View:
             if store.source[edge] == ASSERTED:
                 yield (s, axioms[store.predicate[edge]].term, store.terms[store.object[edge]])
 
-    def _said_with(self, o: Term) -> Iterator[Triple]:
+    def _asserted_with_object(self, o: Term) -> Iterator[Triple]:
         """The asserted triples of an object."""
         if self._schema.find_class(o) is not None:
             yield from self._asserted_types(None, o)
@@ -198,7 +198,7 @@ class View:
             node = self._store.find(s)
             nodes = iter(()) if node is None else iter((node,))
         elif o is not None and p != TYPE and not is_literal(o):
-            nodes = self._linked_to(o)
+            nodes = self._neighbours(o)
         elif p == TYPE and o is not None:
             nodes = (node for node in self._instances(o))
         else:
@@ -224,10 +224,10 @@ class View:
         """`_inferred_of` where nothing is the same as anything else; `virtual` are `_of_virtual_roles`."""
         store = self._store
         term, kind = store.terms[node], store.kind[node]
-        unsaid = self._unsaid.get(kind)
+        unsaid = self._inferred_names.get(kind)
         if unsaid is None:
             given = {self._schema.classes[cls] for cls in self._given(node)}
-            unsaid = self._unsaid[kind] = list(kind.names - given)
+            unsaid = self._inferred_names[kind] = list(kind.names - given)
         types = [(term, TYPE, name) for name in unsaid]
         object_of, predicate, source, further = store.object, store.predicate, store.source, self._further
         implied: dict[tuple[int, int], Term] = {}
@@ -270,7 +270,7 @@ class View:
         found = self._further[predicate] = (tuple(ends[0]), tuple(ends[1]) if predicate > DIFFERENT else ())
         return found
 
-    def _linked_to(self, term: Term) -> Iterator[int]:
+    def _neighbours(self, term: Term) -> Iterator[int]:
         """The individuals that may be related to a term."""
         found: dict[int, None] = {}
         found.update(dict.fromkeys(self._instances(term)))

@@ -18,7 +18,7 @@ class Equality:
         self._store = abox.store
         self._steps = abox.steps
 
-    def meet(self, literal: int) -> None:
+    def merge_spellings(self, literal: int) -> None:
         """Spellings of one value are the same node where that matters (dt-eq)."""
         value = self._abox.value(literal)
         if value is None:
@@ -27,9 +27,9 @@ class Equality:
         if literal not in known:
             known.append(literal)
         if known[0] != literal:
-            self.join(known[0], literal)
+            self.merge(known[0], literal)
 
-    def join(self, one: int, other: int, *claims: Claim) -> None:
+    def merge(self, one: int, other: int, *claims: Claim) -> None:
         """Two nodes are the same (eq-*): one set of members, one mask, and all edges looked at anew."""
         mine, theirs = self._abox.equals.get(one), self._abox.equals.get(other)
         if one == other or (mine is not None and mine is theirs):
@@ -45,19 +45,19 @@ class Equality:
         for node in mine.members:
             self._abox.equals[node] = mine
         if self._abox.is_literal(one) and None in (self._abox.value(one), self._abox.value(other)):
-            self._mix(one, other)
+            self._merge_spellings_of(one, other)
         self._abox.widen(one, self._store.kind[one].mask | self._store.kind[other].mask)
         for node in newcomers:
             self._abox.fresh += self._store.out.all(node)
             self._abox.fresh += self._store.into.all(node)
 
-    def _mix(self, *literals: int) -> None:
+    def _merge_spellings_of(self, *literals: int) -> None:
         """A literal without a known value is the same as another: so it is as all spellings of that one."""
-        self._abox.is_mixed = True
+        self._abox.has_unknown_equals = True
         values = {self._abox.value(literal) for literal in literals} - {None}
         for term, node in list(self._store.numbers.items()) if values else ():
             if is_literal(term) and not self._store.is_bare(node) and self._abox.value(node) in values:
-                self.meet(node)
+                self.merge_spellings(node)
 
     def _check_joinable(self, one: int, other: int, claims: tuple[Claim, ...]) -> None:
         terms = self._store.terms
@@ -68,7 +68,7 @@ class Equality:
                 raise Clash(*claims, *self._different(one, other))
         elif self._abox.is_literal(one) or self._abox.is_literal(other):
             raise NotCompilable(f"an individual is the same as a value: {terms[one]} and {terms[other]}")
-        elif self._abox.schema.speaks_of(terms[one]) or self._abox.schema.speaks_of(terms[other]):
+        elif self._abox.schema.is_used(terms[one]) or self._abox.schema.is_used(terms[other]):
             raise NotCompilable(
                 f"a class or property is the same as another: {terms[one]} and {terms[other]}"
             )
@@ -78,7 +78,7 @@ class Equality:
         for node in (one, other):
             yield from (Same(node, member) for member in self._abox.members(node) if member != node)
 
-    def limit(self, edge: int, owner: int, value: int, limit: Limit) -> None:
+    def apply_limit(self, edge: int, owner: int, value: int, limit: Limit) -> None:
         """At most one value: this one and any other are the same (prp-fp, prp-ifp, cls-maxc2, cls-maxqc*)."""
         group = self._steps.group(limit.role)
         if (
@@ -101,10 +101,10 @@ class Equality:
             claims += [*member(value, limit.filler), *member(found, limit.filler)]
             if end != owner:
                 claims.append(Same(owner, end))
-            self.join(value, found, *claims)
+            self.merge(value, found, *claims)
             return
 
-    def identify(self, node: int, key: Key) -> None:
+    def apply_key(self, node: int, key: Key) -> None:
         """Somebody else of the class who has a value in common for every property of the key (prp-key)."""
         onward = self._steps.group((key.properties[0], False))
         back = self._steps.group((key.properties[0], True))
@@ -121,7 +121,7 @@ class Equality:
                         break
                     claims += agreed
                 else:
-                    self.join(node, other, *claims, Member(node, key.owner), Member(other, key.owner))
+                    self.merge(node, other, *claims, Member(node, key.owner), Member(other, key.owner))
 
     def _agreement(self, one: int, other: int, role: Role) -> list[Claim] | None:
         """Two edges that lead from two nodes to the same value, or None."""

@@ -64,7 +64,7 @@ class Kinds:
 
         self._numbers = [] if schema.literals else [self._literal(f'"1"^^{name}') for name in _FLOATING]
         """The kinds of all numbers, unless the schema speaks of single ones."""
-        is_text_one = not schema.literals and not any(map(datatypes.tells_texts_apart, schema.datatypes))
+        is_text_one = not schema.literals and not any(map(datatypes.distinguishes_strings, schema.datatypes))
         self._text = self._literal('""') if is_text_one else None
         """The kind of all plain texts, unless the schema tells some from others."""
 
@@ -104,7 +104,7 @@ class Kinds:
             return kind
         return self._kind(kind.given, self.close(kind.mask | mask), kind.excluded)
 
-    def give(self, kind: Kind, cls: int) -> Kind:
+    def add_given(self, kind: Kind, cls: int) -> Kind:
         """The kind with one given class more, and all that follows."""
         found = self._given_more.get((kind, cls))
         if found is None:
@@ -113,7 +113,7 @@ class Kinds:
             found = self._given_more[kind, cls] = self._kind(given, mask, kind.excluded)
         return found
 
-    def like(self, given: frozenset[int], mask: int, excluded: int | None) -> Kind:
+    def find_or_create(self, given: frozenset[int], mask: int, excluded: int | None) -> Kind:
         """The kind that has these."""
         return self._kind(given, mask, excluded)
 
@@ -146,10 +146,10 @@ class Kinds:
             kind = self._kinds[given, mask, excluded] = Kind(given, mask, excluded)
             base = self.close(mask_of(given))
             kind.base = kind if base == mask else self._kind(given, base, excluded)
-            self._work_out(kind)
+            self._compute(kind)
         return kind
 
-    def _work_out(self, kind: Kind) -> None:
+    def _compute(self, kind: Kind) -> None:
         schema = self._schema
         numbers = list(bits(kind.mask))
         for number in numbers:

@@ -29,7 +29,7 @@ class Retraction:
         self._store = abox.store
         self._suspects: dict[int, None] = {}
         self._reset: set[int] = set()
-        self._loosened: set[int] = set()
+        self._separated: set[int] = set()
         self._dropped: list[tuple[int, int, int]] = []
         self.touched: set[int] = set()
         """Nodes that lost something: an asserted class, an edge."""
@@ -38,21 +38,21 @@ class Retraction:
         self, triples: Sequence[Triple], computed: Sequence[Triple] = ()
     ) -> tuple[list[Triple], list[Triple]]:
         """Take triples back, and what rests on them; those that were there, asserted and computed."""
-        types = [triple for triple in triples if triple[1] == TYPE and self._take_type(*triple)]
-        edges = [triple for triple in triples if triple[1] != TYPE and self._take_edge(*triple, ASSERTED)]
-        others = [triple for triple in computed if self._take_edge(*triple, COMPUTED)]
+        types = [triple for triple in triples if triple[1] == TYPE and self._remove_type(*triple)]
+        edges = [triple for triple in triples if triple[1] != TYPE and self._remove_edge(*triple, ASSERTED)]
+        others = [triple for triple in computed if self._remove_edge(*triple, COMPUTED)]
         while self._suspects:
             node, _ = self._suspects.popitem()
             kind = self._store.kind[node]
-            if kind.base is not kind and node not in self._reset and not self._is_borne_out(node):
+            if kind.base is not kind and node not in self._reset and not self._is_supported(node):
                 self._reset_all(node)
         if self._abox.spellings:
             self._forget_spellings()
-        for node in self._loosened:
+        for node in self._separated:
             self._abox.fresh += self._store.out.all(node)
             self._abox.fresh += self._store.into.all(node)
         for edge in self._dropped:
-            self._derive_anew(*edge)
+            self._rederive(*edge)
         return types + edges, others
 
     def release(self) -> None:
@@ -69,7 +69,7 @@ class Retraction:
 
     # What goes
 
-    def _take_type(self, s: Term, _: Term, o: Term) -> bool:
+    def _remove_type(self, s: Term, _: Term, o: Term) -> bool:
         store = self._store
         subject, cls = store.find(s), self._abox.schema.find_class(o)
         if subject is None or cls is None or cls not in store.kind[subject].given:
@@ -79,7 +79,7 @@ class Retraction:
         self._suspects[subject] = None
         return True
 
-    def _take_edge(self, s: Term, p: Term, o: Term, source: int) -> bool:
+    def _remove_edge(self, s: Term, p: Term, o: Term, source: int) -> bool:
         store, numbers = self._store, self._store.numbers
         subject, object_, predicate = numbers.get(s), numbers.get(o), self._abox.schema.find_property(p)
         if subject is None or object_ is None or predicate is None:
@@ -98,13 +98,13 @@ class Retraction:
         self._dropped.append(edge_was)
         store.remove(edge)
         self.touched.update(ends)
-        self._suspects.update(dict.fromkeys(self._whose_classes(edge_was)))
+        self._suspects.update(dict.fromkeys(self._affected_ends(edge_was)))
         if reason := self._abox.reasons.pop(edge, None):
             reason.alive = False
-        for reason in self._abox.rest_on_edge.pop(edge, ()):
+        for reason in self._abox.reasons_by_edge.pop(edge, ()):
             self._cancel(reason)
 
-    def _whose_classes(self, edge: tuple[int, int, int]) -> Iterator[int]:
+    def _affected_ends(self, edge: tuple[int, int, int]) -> Iterator[int]:
         """The ends of an edge that may have classes because of it, beyond those that they were given.
 
         So a room that loses a cup need not be asked about all else that is in it. Of ends that were reset
@@ -151,12 +151,12 @@ class Retraction:
         for member in equals.members:
             del self._abox.equals[member]
         for member in equals.members:
-            self._loosened.add(member)
+            self._separated.add(member)
             self._reset_one(member)
 
     # What stays
 
-    def _is_borne_out(self, node: int) -> bool:
+    def _is_supported(self, node: int) -> bool:
         """Whether assertions about a node and its neighbours make all of its kind.
 
         Nodes that are the same do not count: what made them the same may rest on this node's kind.
@@ -168,23 +168,23 @@ class Retraction:
             return True
         for side in (store.out, store.into):
             for edge in side.all(node):
-                found |= self._share(edge, node)
+                found |= self._classes_from(edge, node)
                 if found == wanted:
                     return True
         return close(found) == wanted
 
-    def _share(self, edge: int, node: int) -> int:
+    def _classes_from(self, edge: int, node: int) -> int:
         """What an edge alone says of a node, if the edge is given or comes with an asserted class."""
         store = self._store
         s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
         subject, object_ = store.kind[s].base, store.kind[o].base
         source = store.source[edge]
-        if source not in GIVEN and not (source == VALUE and self._comes_with(edge)):
+        if source not in GIVEN and not (source == VALUE and self._is_value_of_class(edge)):
             return 0
         step = self._abox.steps.step(p, subject, object_)
         return step.subject.mask if node == s else step.object.mask
 
-    def _comes_with(self, edge: int) -> bool:
+    def _is_value_of_class(self, edge: int) -> bool:
         store = self._store
         value = (store.predicate[edge], store.terms[store.object[edge]])
         return value in store.kind[store.subject[edge]].base.values
@@ -204,7 +204,7 @@ class Retraction:
         abox, store = self._abox, self._store
         abox.set(node, store.kind[node].base)
         abox.dirty[node] = None
-        for reason in abox.rest_on_node.pop(node, ()):
+        for reason in abox.reasons_by_node.pop(node, ()):
             self._cancel(reason)
         for edge in list(store.out.all(node)):
             if store.source[edge] == VALUE:
@@ -216,20 +216,20 @@ class Retraction:
 
     # What comes back
 
-    def _derive_anew(self, subject: int, predicate: int, object_: int) -> None:
+    def _rederive(self, subject: int, predicate: int, object_: int) -> None:
         """What a dropped edge implied may follow from others: by a chain, or with a class."""
         abox = self._abox
         for node, other in ((subject, object_), (object_, subject)):
             if self._may_have_been_a_value(node, other):
                 self._saturation.add_values(node)
         steps = abox.steps
-        if not (made_by := steps.made_by(predicate)):
+        if not (producing_chains := steps.producing_chains(predicate)):
             return
         begins = [
             abox.has_any(node, group)
-            for node, group in zip((subject, object_), steps.beginnings(predicate), strict=True)
+            for node, group in zip((subject, object_), steps.chain_starts(predicate), strict=True)
         ]
-        for backwards, chain in made_by:
+        for backwards, chain in producing_chains:
             if begins[backwards]:
                 self._look_for_middle(*((object_, subject) if backwards else (subject, object_)), chain)
 
@@ -240,7 +240,7 @@ class Retraction:
             return False
         is_one = self._store.terms[other] in values
         # or it stood for one that is the same
-        return is_one or bool(self._abox.equals or self._loosened) or self._abox.is_literal(other)
+        return is_one or bool(self._abox.equals or self._separated) or self._abox.is_literal(other)
 
     def _look_for_middle(self, x: int, z: int, chain: Chain) -> None:
         """An individual between two that a chain goes through, sought from the end with fewer edges."""

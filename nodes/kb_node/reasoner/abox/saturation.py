@@ -69,10 +69,10 @@ class Saturation:
                 node = edge = NONE
                 if dirty:
                     node, _ = dirty.popitem()
-                    self._spread(node)
+                    self._propagate(node)
                 else:
                     edge = fresh.pop()
-                    self._look_at(edge)
+                    self._process_edge(edge)
         except (Clash, NotCompilable):
             if node == NONE:
                 fresh.append(edge)
@@ -91,7 +91,7 @@ class Saturation:
         kind = self._store.kind[node]
         if cls in kind.given:
             return False
-        wider = self._abox.kinds.give(kind, cls)
+        wider = self._abox.kinds.add_given(kind, cls)
         self._abox.set(node, wider)
         if wider.mask != kind.mask:
             self._abox.widen(node, wider.mask)
@@ -99,7 +99,7 @@ class Saturation:
                 self._abox.dirty[node] = None
         return True
 
-    def _spread(self, node: int) -> None:
+    def _propagate(self, node: int) -> None:
         """A node's kind grew: what that says of the node itself and of its neighbours."""
         kind = self._store.kind[node]
         if kind.clash and not (self._abox.is_literal(node) and self._store.is_bare(node)):
@@ -119,23 +119,25 @@ class Saturation:
             if is_new or self._abox.find(node, (predicate, False), value) == NONE:
                 self._abox.fresh.append(self._store.add(node, predicate, value, VALUE))
 
-    def _look_at(self, edge: int) -> None:
+    def _process_edge(self, edge: int) -> None:
         """A new edge: all rules that it may take part in."""
         store = self._store
         s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
         if p == NONE:
             return
         if p == SAME:
-            self._equality.join(s, o, Edge(edge))
+            self._equality.merge(s, o, Edge(edge))
             return
         if p == DIFFERENT:
             if self._abox.is_same(s, o):
                 raise Clash(Edge(edge), Same(s, o))
             return
-        if self._abox.is_mixed and self._abox.is_literal(o):
-            self._equality.meet(o)
+        if self._abox.has_unknown_equals and self._abox.is_literal(o):
+            self._equality.merge_spellings(o)
         rules = self._step(edge).rules
-        if rules is None or (rules.of_values and s not in self._abox.equals and store.out.is_alone(edge)):
+        if rules is None or (
+            rules.only_uniqueness and s not in self._abox.equals and store.out.is_alone(edge)
+        ):
             return
         self._apply(rules, edge, s, o)
 
@@ -148,7 +150,9 @@ class Saturation:
             self._abox.widen(s, step.subject.mask)
         if step.object is not object_:
             self._abox.widen(o, step.object.mask)
-        if step.special and not (step.of_values and s not in self._abox.equals and store.out.is_alone(edge)):
+        if step.special and not (
+            step.only_uniqueness and s not in self._abox.equals and store.out.is_alone(edge)
+        ):
             self._check(step, edge, s, o)
         return step
 
@@ -161,9 +165,9 @@ class Saturation:
             x, y = (o, s) if role[1] else (s, o)
             raise Clash(Edge(edge, role), *member(x, owner), *member(y, filler))
         for at_subject, limit in step.limits:
-            self._equality.limit(edge, *((s, o) if at_subject else (o, s)), limit)
+            self._equality.apply_limit(edge, *((s, o) if at_subject else (o, s)), limit)
         for at_subject, key in step.keys:
-            self._equality.identify(s if at_subject else o, key)
+            self._equality.apply_key(s if at_subject else o, key)
 
     def _clash_of_literal(self, edge: int, node: int) -> None:
         one, other = self._store.kind[node].clash or (0, 0)
@@ -173,13 +177,13 @@ class Saturation:
 
     def _apply(self, rules: EdgeRules, edge: int, s: int, o: int) -> None:
         if rules.by_value and self._abox.is_literal(o):
-            self._equality.meet(o)
+            self._equality.merge_spellings(o)
         if rules.irreflexive and self._abox.is_same(s, o):
             raise Clash(Edge(edge, rules.irreflexive), Same(s, o))
         for at_subject, limit in rules.limits:
-            self._equality.limit(edge, *((s, o) if at_subject else (o, s)), limit)
+            self._equality.apply_limit(edge, *((s, o) if at_subject else (o, s)), limit)
         has_any = self._abox.has_any
-        if rules.exclusive and has_any(s, rules.beside):
+        if rules.exclusive and has_any(s, rules.exclusive_group):
             for role, other in rules.exclusive:
                 found = self._abox.find(s, other, o)
                 if found != NONE:

@@ -61,8 +61,8 @@ def fill(abox: ABox, columns: Columns) -> bool:
         del kind.nodes[:]
     store.fill(columns, [*map(kinds.__getitem__, columns.kind)], properties)
     abox.reasons.clear()
-    abox.rest_on_edge.clear()
-    abox.rest_on_node.clear()
+    abox.reasons_by_edge.clear()
+    abox.reasons_by_node.clear()
     for edge, claims in columns.reasons:
         said = tuple(_claim(claimed, classes, properties) for claimed in claims)
         abox.reasons[edge] = abox.conclude(said, edge=edge)
@@ -70,8 +70,8 @@ def fill(abox: ABox, columns: Columns) -> bool:
 
 
 def _is_plain(abox: ABox) -> bool:
-    is_pending = abox.moved or abox.fresh or abox.dirty
-    return not (abox.equals or abox.spellings or abox.is_mixed or is_pending)
+    is_pending = abox.changed_kinds or abox.fresh or abox.dirty
+    return not (abox.equals or abox.spellings or abox.has_unknown_equals or is_pending)
 
 
 def _links(side: Adjacency) -> tuple[array[int], ...]:
@@ -93,7 +93,7 @@ def _kind(abox: ABox, said: KindSaid, classes: Sequence[int]) -> Kind:
         return abox.kinds.ill_typed
     given, mask = (map(classes.__getitem__, numbers) for numbers in (said.given, said.classes))
     excluded = None if said.excluded is None else mask_of(map(classes.__getitem__, said.excluded))
-    return abox.kinds.like(frozenset(given), mask_of(mask), excluded)
+    return abox.kinds.find_or_create(frozenset(given), mask_of(mask), excluded)
 
 
 def _claimed(claim: Claim) -> Claimed:

@@ -19,7 +19,7 @@ class EdgeRules:
     """Limits that everybody has (prp-fp, prp-ifp), and whether the owner is the subject."""
     exclusive: tuple[tuple[Role, Role], ...]
     """(implied role, role that must not hold beside it)."""
-    beside: Group
+    exclusive_group: Group
     """Along which edges of the subject any of those roles leads."""
     heads: tuple[tuple[bool, Chain], ...]
     """Chains that the edge may begin, and whether it is read forwards."""
@@ -29,7 +29,7 @@ class EdgeRules:
     """Along which edges of the subject, and of the object, these chains go on."""
     by_value: bool
     """Whether it matters that two literals are spellings of one value."""
-    of_values: bool
+    only_uniqueness: bool
     """Whether all there is to check is that the subject has no other edge with the predicate."""
 
 
@@ -47,7 +47,7 @@ class Step:
     """Keys that now identify the subject (or else the object)."""
     special: bool
     """Whether there is anything beyond the kinds."""
-    of_values: bool
+    only_uniqueness: bool
     """Whether there is not after all, when the subject has no other edge with the predicate."""
     rules: EdgeRules | None
     """What a new edge of the property is checked for besides; None for nothing."""
@@ -64,8 +64,8 @@ class Steps:
         self._kinds = kinds
         self.known: dict[tuple[int, Kind, Kind], Step] = {}
         self._concerned: dict[int, tuple[int, int]] = {}
-        self._made_by: dict[int, tuple[tuple[bool, Chain], ...]] = {}
-        self._beginnings: dict[int, tuple[Group, Group]] = {}
+        self._producing_chains: dict[int, tuple[tuple[bool, Chain], ...]] = {}
+        self._chain_starts: dict[int, tuple[Group, Group]] = {}
         self._rules: dict[int, EdgeRules | None] = {}
 
     def step(self, prop: int, subject: Kind, object_: Kind) -> Step:
@@ -74,7 +74,7 @@ class Steps:
         if found is None:
             if len(self.known) >= self.LIMIT:
                 self.known.clear()
-            found = self.known[prop, subject, object_] = self._work_out(prop, subject, object_)
+            found = self.known[prop, subject, object_] = self._compute(prop, subject, object_)
         return found
 
     def rules(self, prop: int) -> EdgeRules | None:
@@ -83,7 +83,7 @@ class Steps:
             self._rules[prop] = self._edge_rules(prop)
         return self._rules[prop]
 
-    def concerned(self, prop: int) -> tuple[int, int]:
+    def relevant_classes(self, prop: int) -> tuple[int, int]:
         """The classes of the subject, and those of the object, that a step of a property depends on."""
         found = self._concerned.get(prop)
         if found is None:
@@ -99,11 +99,11 @@ class Steps:
             found = self._concerned[prop] = masks[0], masks[1]
         return found
 
-    def made_by(self, prop: int) -> tuple[tuple[bool, Chain], ...]:
+    def producing_chains(self, prop: int) -> tuple[tuple[bool, Chain], ...]:
         """The chains that may make what an edge of a property implies, and whether that is backwards."""
-        found = self._made_by.get(prop)
+        found = self._producing_chains.get(prop)
         if found is None:
-            found = self._made_by[prop] = tuple(
+            found = self._producing_chains[prop] = tuple(
                 (backwards, chain)
                 for q, backwards in self._schema.roles(prop)
                 for chain in self._schema.chains
@@ -111,21 +111,21 @@ class Steps:
             )
         return found
 
-    def beginnings(self, prop: int) -> tuple[Group, Group]:
-        """Along which edges the chains of `made_by` begin: at a subject, and at an object if backwards."""
-        found = self._beginnings.get(prop)
+    def chain_starts(self, prop: int) -> tuple[Group, Group]:
+        """Return the groups along which `producing_chains` start: at a subject, and backwards at an object."""
+        found = self._chain_starts.get(prop)
         if found is None:
             groups: tuple[list[Group], list[Group]] = [], []
-            for backwards, chain in self.made_by(prop):
+            for backwards, chain in self.producing_chains(prop):
                 groups[backwards].append(self.group((chain.first, False)))
-            found = self._beginnings[prop] = _together(groups[False]), _together(groups[True])
+            found = self._chain_starts[prop] = _union(groups[False]), _union(groups[True])
         return found
 
     def group(self, role: Role) -> Group:
         """Along which edges a role leads."""
         return self._schema.group(role)
 
-    def _work_out(self, prop: int, subject: Kind, object_: Kind) -> Step:
+    def _compute(self, prop: int, subject: Kind, object_: Kind) -> Step:
         wider_subject, wider_object = self._added(prop, subject, object_)
         if wider_subject is not subject or wider_object is not object_:
             return self.step(prop, wider_subject, wider_object)
@@ -148,13 +148,20 @@ class Steps:
             ]
             keys += [(not backwards, key) for key in axioms.keys if _in(key.owner, owner)]
         others = bool(clash or keys or object_.clash)
-        of_values = not others and self._are_of_values(prop, limits)
+        only_uniqueness = not others and self._only_check_uniqueness(prop, limits)
         rules = self.rules(prop)
         return Step(
-            subject, object_, clash, tuple(limits), tuple(keys), others or bool(limits), of_values, rules
+            subject,
+            object_,
+            clash,
+            tuple(limits),
+            tuple(keys),
+            others or bool(limits),
+            only_uniqueness,
+            rules,
         )
 
-    def _are_of_values(self, prop: int, limits: list[tuple[bool, Limit]]) -> bool:
+    def _only_check_uniqueness(self, prop: int, limits: list[tuple[bool, Limit]]) -> bool:
         """Whether limits are kept if the subject has no other edge with the predicate."""
         alone = Group((prop,), ())
         return all(at_subject and self.group(limit.role) == alone for at_subject, limit in limits)
@@ -211,16 +218,16 @@ class Steps:
             irreflexive=irreflexive,
             limits=tuple(limits),
             exclusive=tuple(exclusive),
-            beside=_together(self.group(other) for _, other in exclusive),
+            exclusive_group=_union(self.group(other) for _, other in exclusive),
             heads=tuple(heads),
             tails=tuple(tails),
-            beyond=(_together(beyond[False]), _together(beyond[True])),
+            beyond=(_union(beyond[False]), _union(beyond[True])),
             by_value=by_value,
-            of_values=not others and self._are_of_values(prop, limits),
+            only_uniqueness=not others and self._only_check_uniqueness(prop, limits),
         )
 
 
-def _together(groups: Iterable[Group]) -> Group:
+def _union(groups: Iterable[Group]) -> Group:
     """What any of some leads along."""
     out, into = dict[int, None](), dict[int, None]()
     for group in groups:

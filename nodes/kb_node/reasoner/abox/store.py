@@ -69,7 +69,7 @@ class Store:
         node = self._free_nodes_for(1).pop()
         self.terms[node], self.kind[node], self.numbers[term] = term, kind, node
         if kind.mask and kind.excluded is None:
-            self.file(node, kind, kind)
+            self.list_under_kind(node, kind, kind)
         return node
 
     def _free_nodes_for(self, count: int) -> list[int]:
@@ -103,12 +103,12 @@ class Store:
 
     def _forget(self, node: int) -> None:
         if self.places[node] != NONE:
-            self.file(node, self.kind[node], None)
+            self.list_under_kind(node, self.kind[node], None)
         del self.numbers[self.terms[node]]
         self.terms[node] = ""
         self._free_nodes.append(node)
 
-    def file(self, node: int, old: Kind, new: Kind | None) -> None:
+    def list_under_kind(self, node: int, old: Kind, new: Kind | None) -> None:
         """List an individual under its new kind instead of its old one; with None no more."""
         place = self.places[node]
         if place != NONE:
@@ -125,7 +125,7 @@ class Store:
     # Edges
 
     @property
-    def holes(self) -> int:
+    def free_rows(self) -> int:
         """For how many nodes or edges, whichever is more, there is room between others."""
         return max(len(self._free_nodes), len(self._free_edges))
 
@@ -296,7 +296,7 @@ class Store:
             self.source[edge] = ASSERTED
         self._free_edges.append(edge)
 
-    def turn(self, edge: int, term: Term) -> None:
+    def replace_literal(self, edge: int, term: Term) -> None:
         """Let an edge lead to another literal, and forget the old one if nobody has it any more."""
         old = self.object[edge]
         self.into.unlink(old, edge)

@@ -12,7 +12,7 @@ from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, TYPE, iri
 
 
-class Axioms:
+class AxiomProver:
     """Proves axioms; `reader` reads the graph that states them.
 
     An axiom follows if its instance for fresh individuals does: nothing is said of those, so
@@ -29,7 +29,7 @@ class Axioms:
             iri("owl:disjointUnionOf"): self._disjoint_union,
             iri("rdfs:subPropertyOf"): lambda p, q: self.sub_property(self._role(p), self._role(q)),
             iri("owl:equivalentProperty"): lambda p, q: self.same_property(self._role(p), self._role(q)),
-            iri("owl:inverseOf"): lambda p, q: self.same_property(self._role(p), _turned(self._role(q))),
+            iri("owl:inverseOf"): lambda p, q: self.same_property(self._role(p), _inverse(self._role(q))),
             iri("owl:propertyDisjointWith"): lambda p, q: self.disjoint_properties(
                 [self._role(p), self._role(q)]
             ),
@@ -37,7 +37,7 @@ class Axioms:
                 list(map(self._role, self._reader.members(head))), self._role(p)
             ),
             iri("rdfs:domain"): lambda p, c: self.domain(self._role(p), self._class(c)),
-            iri("rdfs:range"): lambda p, c: self.domain(_turned(self._role(p)), self._class(c)),
+            iri("rdfs:range"): lambda p, c: self.domain(_inverse(self._role(p)), self._class(c)),
             iri("owl:hasKey"): lambda c, head: self.key(
                 self._class(c), list(map(self._role, self._reader.members(head)))
             ),
@@ -45,11 +45,11 @@ class Axioms:
         """What a predicate says of its subject and object. They raise Unreadable."""
         self.characteristics: Final[dict[Term, Callable[[Role], bool]]] = {
             iri("owl:FunctionalProperty"): self.functional,
-            iri("owl:InverseFunctionalProperty"): lambda p: self.functional(_turned(p)),
+            iri("owl:InverseFunctionalProperty"): lambda p: self.functional(_inverse(p)),
             iri("owl:ReflexiveProperty"): self.reflexive,
             iri("owl:IrreflexiveProperty"): self.irreflexive,
-            iri("owl:SymmetricProperty"): lambda p: self.sub_property(p, _turned(p)),
-            iri("owl:AsymmetricProperty"): lambda p: self.disjoint_properties([p, _turned(p)]),
+            iri("owl:SymmetricProperty"): lambda p: self.sub_property(p, _inverse(p)),
+            iri("owl:AsymmetricProperty"): lambda p: self.disjoint_properties([p, _inverse(p)]),
             iri("owl:TransitiveProperty"): lambda p: self.chain([p, p], p),
         }
 
@@ -65,7 +65,7 @@ class Axioms:
         """Whatever is in one is in the other: a fresh member of the one is in the other."""
         x = self._prover.fresh()
         return self._prover.follows_from_each(
-            self._prover.given(x, narrow), lambda: self._prover.member(x, wide)
+            self._prover.membership_alternatives(x, narrow), lambda: self._prover.member(x, wide)
         )
 
     def same_class(self, one: Expression, other: Expression) -> bool:
@@ -79,8 +79,8 @@ class Axioms:
     def _never_both(self, one: Expression, other: Expression) -> bool:
         x, prover = self._prover.fresh(), self._prover
         return prover.follows_from_each(
-            prover.given(x, one),
-            lambda: prover.follows_from_each(prover.given(x, other), lambda: False),
+            prover.membership_alternatives(x, one),
+            lambda: prover.follows_from_each(prover.membership_alternatives(x, other), lambda: False),
         )
 
     def _disjoint_union(self, whole: Term, head: Term) -> bool:
@@ -92,7 +92,9 @@ class Axioms:
         x, y, prover = self._prover.fresh(), self._prover.fresh(), self._prover
         edges = [role.edge(who, value) for role in roles for value in [prover.fresh()] for who in (x, y)]
         alternatives = [
-            [*edges, *one, *other] for one in prover.given(x, cls) for other in prover.given(y, cls)
+            [*edges, *one, *other]
+            for one in prover.membership_alternatives(x, cls)
+            for other in prover.membership_alternatives(y, cls)
         ]
         return prover.follows_from_each(alternatives, lambda: prover.refutes((x, DIFFERENT_FROM, y)))
 
@@ -163,7 +165,7 @@ class Axioms:
         )
 
 
-def _turned(role: Role) -> Role:
+def _inverse(role: Role) -> Role:
     return Role(role.property, not role.backwards)
 
 

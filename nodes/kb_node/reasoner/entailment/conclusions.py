@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 
-from semmap.nodes.kb_node.reasoner.entailment.axiom_tests import Axioms
+from semmap.nodes.kb_node.reasoner.entailment.axiom_tests import AxiomProver
 from semmap.nodes.kb_node.reasoner.entailment.effort import Effort
 from semmap.nodes.kb_node.reasoner.entailment.expressions import Reader, Unreadable
 from semmap.nodes.kb_node.reasoner.entailment.prover import Prover
@@ -54,22 +54,24 @@ def entails(reasoner: Reasoner, graph: Iterable[Triple], effort: Effort | None =
     one; the same with names for what must exist. The reasoner is the same before and after. An `effort`
     bounds the search, and may trace it: then the first way, which leaves no trace, is left out.
     """
-    graph = [(_apart(s), p, _apart(o)) for s, p, o in dict.fromkeys(graph)]
+    graph = [(_rename_blank_node(s), p, _rename_blank_node(o)) for s, p, o in dict.fromkeys(graph)]
     is_traced = effort is not None and effort.is_traced
     if not is_traced and _Search(reasoner, graph).matches(graph):
         return True
-    stated = _Stated(reasoner, graph, effort)
+    stated = _GoalGraph(reasoner, graph, effort)
     try:
         if stated.follows():
             return True
-        if effort is not None and not effort.anew:  # names for all that must exist are too many to try
+        if (
+            effort is not None and not effort.allow_recompute
+        ):  # names for all that must exist are too many to try
             return False
         return stated.prover.with_witnesses(stated.individuals(), stated.follows)
     except Unreadable:
         return False
 
 
-def _apart(term: Term) -> Term:
+def _rename_blank_node(term: Term) -> Term:
     """A blank node's label is its graph's own: the same one in the reasoner is another node's."""
     return f"_:wanted.{term[2:]}" if term.startswith("_:") else term
 
@@ -79,14 +81,14 @@ def contradictory(reasoner: Reasoner) -> bool:
     return Prover(reasoner).with_witnesses((), lambda: False)
 
 
-class _Stated:
+class _GoalGraph:
     """A graph read as axioms and facts."""
 
     def __init__(self, reasoner: Reasoner, graph: Sequence[Triple], effort: Effort | None) -> None:
         self.prover = Prover(reasoner, effort)
         self._facts = Facts(dict.fromkeys(graph))
         self._reader = Reader(self._facts.match)
-        self._axioms = Axioms(self.prover, self._reader)
+        self._axioms = AxiomProver(self.prover, self._reader)
         self._search = _Search(reasoner, graph, self.prover, self._reader)
         self._reasoner = reasoner
 

@@ -19,14 +19,16 @@ class Effort:
     Its seconds are of this thread's clock, so that what is found does not depend on who else is at work.
     """
 
-    def __init__(self, patience_s: float = inf, *, traced: bool = False, anew: bool = True) -> None:
+    def __init__(
+        self, patience_s: float = inf, *, traced: bool = False, allow_recompute: bool = True
+    ) -> None:
         """Unless `anew`, nothing is supposed for which everything would have to be worked out anew."""
-        self.anew = anew
+        self.allow_recompute = allow_recompute
         self._until_s = time.thread_time() + patience_s
         self._left = _MOST
         self._seen: dict[Triple, None] | None = {} if traced else None
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """Another proof is looked for, with as many suppositions again."""
         self._left = _MOST
 
@@ -40,7 +42,7 @@ class Effort:
         """Whether the time is up."""
         return time.thread_time() >= self._until_s
 
-    def may_suppose(self) -> bool:
+    def may_assume(self) -> bool:
         """Whether one more supposition is allowed."""
         self._left -= 1
         return self._left >= 0 and not self.is_over

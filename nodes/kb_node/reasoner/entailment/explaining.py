@@ -9,7 +9,7 @@ from functools import partial
 from semmap.nodes.kb_node.reasoner.entailment.conclusions import entails
 from semmap.nodes.kb_node.reasoner.entailment.effort import Effort
 from semmap.nodes.kb_node.reasoner.entailment.prover import Prover
-from semmap.nodes.kb_node.reasoner.explain.sentences import denial, following
+from semmap.nodes.kb_node.reasoner.explain.sentences import entailment_sentence, refutation_sentence
 from semmap.nodes.kb_node.reasoner.explain.words import Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from semmap.nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
@@ -63,7 +63,7 @@ def why_entailed(
     support = _support(reasoner, [triple], patience_s)
     if support is None:
         return None
-    text = following(triple, support, words or reasoner.words)
+    text = entailment_sentence(triple, support, words or reasoner.words)
     return Explanation(conclusion=triple, support=support, steps=(), text=text)
 
 
@@ -82,7 +82,7 @@ def why_excluded(
         conclusion=(s, DIFFERENT_FROM, o) if p == SAME_AS else None,
         support=support,
         steps=(),
-        text=denial(supposed, (*support, supposed), words or reasoner.words),
+        text=refutation_sentence(supposed, (*support, supposed), words or reasoner.words),
         supposed=supposed,
     )
 
@@ -104,11 +104,11 @@ def _contrary(triple: Triple) -> list[Triple]:
 
 def _support(reasoner: Reasoner, goal: Sequence[Triple], patience_s: float) -> tuple[Triple, ...] | None:
     """The asserted triples from which a graph follows, as few as are found in time; None without a proof."""
-    anew = len(reasoner) <= _SMALL
-    if not entails(reasoner, goal, Effort(patience_s, anew=anew)):
+    allow_recompute = len(reasoner) <= _SMALL
+    if not entails(reasoner, goal, Effort(patience_s, allow_recompute=allow_recompute)):
         return None
     known = set(reasoner.asserted())
-    effort = Effort(patience_s, traced=True, anew=anew)
+    effort = Effort(patience_s, traced=True, allow_recompute=allow_recompute)
     entails(reasoner, goal, effort)
     support = [one for one in effort.seen if one in known]
     if not _suffice(support, goal):
@@ -123,24 +123,24 @@ def empty_classes(reasoner: Reasoner, classes: Iterable[Term], patience_s: float
     """
     until_s = time.process_time() + patience_s
     known = set(reasoner.asserted())
-    prover = Prover(reasoner, Effort(anew=False))
+    prover = Prover(reasoner, Effort(allow_recompute=False))
     for cls in classes:
         if time.process_time() > until_s:
             return
-        if not prover.nothing_can_be(cls):
+        if not prover.is_unsatisfiable(cls):
             continue
-        traced = Effort(traced=True, anew=False)
-        Prover(reasoner, traced).nothing_can_be(cls)
+        traced = Effort(traced=True, allow_recompute=False)
+        Prover(reasoner, traced).is_unsatisfiable(cls)
         support = [one for one in traced.seen if one in known]
         support = _shrunk(support, partial(_suffices_for_empty, cls), time.thread_time() + PATIENCE_S)
         goal = (cls, _SUB_CLASS_OF, NOTHING)
-        text = following(goal, support, reasoner.words)
+        text = entailment_sentence(goal, support, reasoner.words)
         yield Explanation(conclusion=goal, support=tuple(support), steps=(), text=text)
 
 
 def _suffices_for_empty(cls: Term, triples: Sequence[Triple]) -> bool:
     try:
-        return Prover(Reasoner(triples), Effort(anew=False)).nothing_can_be(cls)
+        return Prover(Reasoner(triples), Effort(allow_recompute=False)).is_unsatisfiable(cls)
     except Inconsistent:
         return False
 

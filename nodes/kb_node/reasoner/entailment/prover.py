@@ -14,6 +14,7 @@ from functools import cached_property
 from itertools import combinations, islice
 
 from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.entailment.assumptions import WIDEST, Alternatives, membership_alternatives
 from semmap.nodes.kb_node.reasoner.entailment.effort import Effort
 from semmap.nodes.kb_node.reasoner.entailment.expressions import (
     And,
@@ -33,7 +34,6 @@ from semmap.nodes.kb_node.reasoner.entailment.expressions import (
     Writer,
     negated,
 )
-from semmap.nodes.kb_node.reasoner.entailment.suppositions import WIDEST, Alternatives, given
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -111,10 +111,10 @@ class Prover:
         supposed += [(x, p, x) for p in self._reflexive() for x in things]
         if any(p in _BOTTOMS for _, p, _ in supposed):
             return True
-        if not self._effort.may_suppose():
+        if not self._effort.may_assume():
             return False
         try:
-            with self._reasoner.supposing(supposed, anew=self._effort.anew):
+            with self._reasoner.assuming(supposed, allow_recompute=self._effort.allow_recompute):
                 return goal()
         except Inconsistent as found:
             self._effort.note(found.explanation.support)
@@ -126,9 +126,9 @@ class Prover:
         """Whether a goal is reached whichever of the alternatives holds."""
         return all(self.follows(supposed, goal) for supposed in alternatives)
 
-    def given(self, x: Term, expression: Expression) -> Alternatives:
+    def membership_alternatives(self, x: Term, expression: Expression) -> Alternatives:
         """What it says of x to be a member of a class."""
-        return given(x, expression, self._writer)
+        return membership_alternatives(x, expression, self._writer)
 
     # Facts
 
@@ -180,7 +180,9 @@ class Prover:
             case Or(parts):
                 if any(self.member(x, part) for part in parts):
                     return True
-                return self.follows_from_each(self.given(x, negated(expression)), lambda: False)
+                return self.follows_from_each(
+                    self.membership_alternatives(x, negated(expression)), lambda: False
+                )
             case OneOf(terms):
                 return any(self.holds((x, SAME_AS, term)) for term in terms)
             case Has(role, value):
@@ -193,7 +195,9 @@ class Prover:
             case AtLeast(number, role, filler):
                 return self._has_values(x, number, role, filler)
             case Not() | AtMost():
-                return self.follows_from_each(self.given(x, negated(expression)), lambda: False)
+                return self.follows_from_each(
+                    self.membership_alternatives(x, negated(expression)), lambda: False
+                )
 
     def _in_named(self, x: Term, cls: Term) -> bool:
         """By the rules, or by a definition that is a subclass: what is in that is in the class, too."""
@@ -274,7 +278,9 @@ class Prover:
         if self._depth > 2 or is_literal(x):
             return False
         for expression in self._disjunctions(x):
-            if self.follows_from_each(self.given(x, expression), lambda: self.member(x, goal)):
+            if self.follows_from_each(
+                self.membership_alternatives(x, expression), lambda: self.member(x, goal)
+            ):
                 return True
         return False
 
@@ -316,7 +322,9 @@ class Prover:
                     if self._effort.is_over:
                         break
                     new = list(self._must_exist(individuals))
-                    stack.enter_context(self._reasoner.supposing(new, anew=self._effort.anew))
+                    stack.enter_context(
+                        self._reasoner.assuming(new, allow_recompute=self._effort.allow_recompute)
+                    )
                     individuals = [
                         term for term in {s: 0 for t in new for s in (t[0], t[2])} if term[0] != '"'
                     ][:_INDIVIDUALS]
@@ -327,9 +335,9 @@ class Prover:
                 return False
             return goal()
 
-    def nothing_can_be(self, cls: Term) -> bool:
+    def is_unsatisfiable(self, cls: Term) -> bool:
         """Whether a class is empty in all models: a member with what must exist for it is a contradiction."""
-        self._effort.begin()
+        self._effort.reset()
         x = self.fresh()
         return self.follows([(x, TYPE, cls)], lambda: self._has_impossible_witnesses([x], steps=2))
 
@@ -369,7 +377,7 @@ class Prover:
                 return
             for node, expression in wanted:
                 if (node == THING or self.holds((x, TYPE, node))) and not self._is_met(x, expression):
-                    alternatives = self.given(x, expression)
+                    alternatives = self.membership_alternatives(x, expression)
                     if len(alternatives) == 1:
                         yield from alternatives[0]
             yield from ((x, p, x) for p in reflexive)

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from semmap.nodes.kb_node.reasoner import datatypes
-from semmap.nodes.kb_node.reasoner.explain.sentences import sentence
+from semmap.nodes.kb_node.reasoner.explain.sentences import proof_sentence
 from semmap.nodes.kb_node.reasoner.explain.words import Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Step, Term, Triple
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
@@ -33,13 +33,13 @@ class Proof:
         self.terms = terms
         self._words = words
         self._pattern = _Pattern(explanation, terms)
-        self._text = _pieces(explanation.text, self._pattern, terms, words)
+        self._text = _template(explanation.text, self._pattern, terms, words)
 
     def about(self, terms: Sequence[Term]) -> Explanation:
         """The same proof about other terms."""
         goal, support, steps = self._pattern.renamed(dict(zip(self.terms, terms, strict=True)))
         if self._text is None:
-            text = sentence(goal, support, steps, self._words)
+            text = proof_sentence(goal, support, steps, self._words)
         else:
             name = self._words.name
             text = "".join([name(terms[part]) if isinstance(part, int) else part for part in self._text])
@@ -72,7 +72,7 @@ class Prover:
         proof = self._proofs.get(shape)
         if proof is None:
             support, steps = _shrink(triples, goal)
-            text = sentence(goal, support, steps, self.words)
+            text = proof_sentence(goal, support, steps, self.words)
             explanation = Explanation(conclusion=goal, support=support, steps=steps, text=text)
             if len(self._proofs) >= _MOST:
                 self._proofs.clear()
@@ -157,7 +157,7 @@ class _Pattern:
         return None if self._goal is None else facts[self._goal], support, steps
 
 
-def _pieces(text: str, pattern: _Pattern, terms: Sequence[Term], words: Words) -> list[str | int] | None:
+def _template(text: str, pattern: _Pattern, terms: Sequence[Term], words: Words) -> list[str | int] | None:
     """The sentence in pieces: text, and the numbers of the terms that are named in between.
 
     None when a mark is in the text as it is.
@@ -165,7 +165,7 @@ def _pieces(text: str, pattern: _Pattern, terms: Sequence[Term], words: Words) -
     if _MARK.search(text):
         return None
     marks = {term: _mark(term, i) for i, term in enumerate(terms) if _is_free(term)}
-    pieces: list[str | int] = list(_MARK.split(sentence(*pattern.renamed(marks), words)))
+    pieces: list[str | int] = list(_MARK.split(proof_sentence(*pattern.renamed(marks), words)))
     pieces[1::2] = map(int, pieces[1::2])
     return pieces
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
-from semmap.nodes.kb_node.reasoner.explain.axiom_sentences import Axioms
+from semmap.nodes.kb_node.reasoner.explain.axiom_sentences import AxiomVerbalizer
 from semmap.nodes.kb_node.reasoner.explain.words import Words, base_form
 from semmap.nodes.kb_node.reasoner.explanations import Step, Term, Triple
 from semmap.nodes.kb_node.reasoner.terms import (
@@ -34,43 +34,45 @@ _LIMITS: Final = ("prp-fp", "prp-ifp", "cls-maxc2", "cls-maxqc3", "cls-maxqc4")
 _CLASHES: Final = ("cax-dw", "cax-adc", "cls-com")
 
 
-def sentence(goal: Triple | None, support: Sequence[Triple], steps: Sequence[Step], words: Words) -> str:
+def proof_sentence(
+    goal: Triple | None, support: Sequence[Triple], steps: Sequence[Step], words: Words
+) -> str:
     """Tell a proof: what is the case or cannot be, and the asserted facts that make it so."""
-    speaker = _Speaker(support, words)
+    verbalizer = _Verbalizer(support, words)
     if goal is not None:
-        claim = speaker.say(goal)
+        claim = verbalizer.clause(goal)
         if not steps:
             return f"{claim} ({'asserted' if support else 'always'})."
-        return _because(claim, speaker.reasons(support, goal))
-    subject, headline = _headline(steps, speaker)
-    reasons = speaker.reasons(support, (subject, TYPE, "") if subject else None)
+        return _because(claim, verbalizer.reasons(support, goal))
+    subject, headline = _headline(steps, verbalizer)
+    reasons = verbalizer.reasons(support, (subject, TYPE, "") if subject else None)
     return f"{headline}: {_joined(reasons)}." if reasons else f"{headline}."
 
 
-def following(goal: Triple, support: Sequence[Triple], words: Words) -> str:
+def entailment_sentence(goal: Triple, support: Sequence[Triple], words: Words) -> str:
     """Tell a conclusion that no rule draws, and the asserted triples that make it so, the facts first."""
-    speaker = _Speaker((*support, goal), words)
-    facts_first = sorted(support, key=speaker.axioms.is_axiom)
-    claim = speaker.say(goal)
-    return _because(claim, speaker.reasons(facts_first, goal)) if support else f"{claim} (always)."
+    verbalizer = _Verbalizer((*support, goal), words)
+    facts_first = sorted(support, key=verbalizer.axioms.is_axiom)
+    claim = verbalizer.clause(goal)
+    return _because(claim, verbalizer.reasons(facts_first, goal)) if support else f"{claim} (always)."
 
 
-def denial(supposed: Triple, support: Sequence[Triple], words: Words) -> str:
+def refutation_sentence(supposed: Triple, support: Sequence[Triple], words: Words) -> str:
     """Tell a refutation: what is not the case, because of the rest of a contradictory set of triples."""
-    speaker = _Speaker(support, words)
+    verbalizer = _Verbalizer(support, words)
     others = [triple for triple in support if triple != supposed]
-    others.sort(key=speaker.axioms.is_axiom)  # the facts first
-    claim = speaker.deny(supposed)
-    reasons = speaker.reasons(others, supposed)
-    is_said = claim in map(speaker.say, others)
+    others.sort(key=verbalizer.axioms.is_axiom)  # the facts first
+    claim = verbalizer.negated_clause(supposed)
+    reasons = verbalizer.reasons(others, supposed)
+    is_said = claim in map(verbalizer.clause, others)
     if is_said or reasons == [f"{claim} (asserted)"]:
         return f"{claim} (asserted)."
     return _because(claim, reasons)
 
 
-def said(triple: Triple, words: Words) -> str:
+def triple_clause(triple: Triple, words: Words) -> str:
     """A triple as a clause: "milk1 is on counter1"."""
-    return _Speaker((triple,), words).say(triple)
+    return _Verbalizer((triple,), words).clause(triple)
 
 
 class Clause(NamedTuple):
@@ -85,27 +87,27 @@ def clauses(triples: Iterable[Triple], proof: Sequence[Triple], words: Words) ->
 
     `proof` has all triples of it: what anonymous classes and lists are is read there.
     """
-    speaker = _Speaker(proof, words)
+    verbalizer = _Verbalizer(proof, words)
     return {
-        triple: Clause(speaker.say(triple), speaker.axioms.is_axiom(triple))
+        triple: Clause(verbalizer.clause(triple), verbalizer.axioms.is_axiom(triple))
         for triple in triples
-        if not speaker.is_told_elsewhere(triple)
+        if not verbalizer.is_part_of_axiom(triple)
     }
 
 
-def as_measured(text: str, facts: Iterable[Triple], words: Words) -> str:
+def mark_measured(text: str, facts: Iterable[Triple], words: Words) -> str:
     """The sentence of a proof, in which computed facts are not told as asserted."""
     for fact in facts:
-        speaker = _Speaker((fact,), words)
+        verbalizer = _Verbalizer((fact,), words)
         for who in (None, "it"):
-            clause = speaker.say(fact, who)
+            clause = verbalizer.clause(fact, who)
             text = text.replace(f"{clause} (asserted)", f"{clause} (measured)")
     return text
 
 
-def denied(triple: Triple, words: Words) -> str:
+def negated_triple_clause(triple: Triple, words: Words) -> str:
     """What it is that a triple does not hold, as a clause: "milk1 is not on counter1"."""
-    return _Speaker((triple,), words).deny(triple)
+    return _Verbalizer((triple,), words).negated_clause(triple)
 
 
 def _because(claim: str, reasons: Sequence[str]) -> str:
@@ -116,53 +118,53 @@ def _joined(clauses: Sequence[str]) -> str:
     return f"{', '.join(clauses[:-1])}, and {clauses[-1]}" if len(clauses) > 1 else "".join(clauses)
 
 
-class _Speaker:
+class _Verbalizer:
     """Says triples, those of one proof."""
 
     def __init__(self, triples: Sequence[Triple], words: Words) -> None:
-        self.axioms = Axioms(triples, words)
+        self.axioms = AxiomVerbalizer(triples, words)
         self.words = words
 
     def name(self, term: Term) -> str:
         """An individual or a value."""
         return self.words.name(term)
 
-    def a(self, cls: Term) -> str:
+    def member_phrase(self, cls: Term) -> str:
         """A member of a class."""
-        return self.axioms.a(cls)
+        return self.axioms.member_phrase(cls)
 
     def what(self, prop: Term) -> str:
         """A property by its label, in quotation marks unless it is what something has."""
-        verb = self.words.verb(prop)
-        return verb.rest if verb.kind == "has" else f"“{verb.says('').strip()}”"
+        verb = self.words.verb_phrase(prop)
+        return verb.rest if verb.kind == "has" else f"“{verb.with_object('').strip()}”"
 
-    def say(self, triple: Triple, who: str | None = None) -> str:
+    def clause(self, triple: Triple, who: str | None = None) -> str:
         """A triple as a clause; `who` is another word for its subject."""
-        axiom = self.axioms.says(triple)
+        axiom = self.axioms.axiom_clause(triple)
         if axiom is not None:
             return axiom
         s, p, o = triple
         who = who or self.name(s)
         if p == TYPE:
-            return f"{who} {self.axioms.clause(o)}"
+            return f"{who} {self.axioms.membership(o)}"
         if p == SAME_AS:
             return f"{who} is the same as {self.name(o)}"
         if p == DIFFERENT_FROM:
             return f"{who} is different from {'itself' if s == o else self.name(o)}"
-        return f"{who} {self.words.says(p, o, itself=s == o)}"
+        return f"{who} {self.words.predicate_phrase(p, o, reflexive=s == o)}"
 
-    def deny(self, triple: Triple) -> str:
+    def negated_clause(self, triple: Triple) -> str:
         """That a triple does not hold, as a clause."""
         s, p, o = triple
         if self.axioms.is_axiom(triple):
-            return f"it is not true that {self.say(triple)}"
+            return f"it is not true that {self.clause(triple)}"
         if p == SAME_AS:
             return f"{self.name(s)} is different from {self.name(o)}"
         if p == DIFFERENT_FROM:
             return f"{self.name(s)} is the same as {self.name(o)}"
         if p == TYPE:
-            return f"{self.name(s)} is not {self.a(o)}"
-        return f"{self.name(s)} {self.words.says(p, o, denied=True, itself=s == o)}"
+            return f"{self.name(s)} is not {self.member_phrase(o)}"
+        return f"{self.name(s)} {self.words.predicate_phrase(p, o, negated=True, reflexive=s == o)}"
 
     def reasons(self, support: Sequence[Triple], claim: Triple | None) -> list[str]:
         """The triples that have clauses, in order; "it" is who alone was named just before."""
@@ -175,13 +177,13 @@ class _Speaker:
             if triple[1] == iri("owl:onProperty") and is_named(triple[0]):
                 clauses.append(self.axioms.definition(triple[0]))
                 before = None
-            if self.is_told_elsewhere(triple):
+            if self.is_part_of_axiom(triple):
                 continue
             if self.axioms.is_axiom(triple):
-                clauses.append(self.say(triple))
+                clauses.append(self.clause(triple))
                 before = None
                 continue
-            clauses.append(f"{self.say(triple, 'it' if triple[0] == before else None)} (asserted)")
+            clauses.append(f"{self.clause(triple, 'it' if triple[0] == before else None)} (asserted)")
             before = self._only_one_named(triple)
         return clauses
 
@@ -190,7 +192,7 @@ class _Speaker:
         s, p, o = triple
         return s if p == TYPE or is_literal(o) or s == o else None
 
-    def is_told_elsewhere(self, triple: Triple) -> bool:
+    def is_part_of_axiom(self, triple: Triple) -> bool:
         """Whether a triple has no clause of its own, because it is a part of an axiom."""
         return triple[1] in _STRUCTURE or self._is_part(triple)
 
@@ -205,35 +207,41 @@ class _Speaker:
         get = self.axioms.get
         source = self.name(get(node, "owl:sourceIndividual") or node)
         target = get(node, "owl:targetIndividual") or get(node, "owl:targetValue") or node
-        return f"{source} {self.words.says(prop, target, denied=True)} (asserted)"
+        return f"{source} {self.words.predicate_phrase(prop, target, negated=True)} (asserted)"
 
 
-def _headline(steps: Sequence[Step], speaker: _Speaker) -> tuple[Term | None, str]:
+def _headline(steps: Sequence[Step], verbalizer: _Verbalizer) -> tuple[Term | None, str]:
     """Who a contradiction is about, if it is about one thing only, and what cannot be."""
     last = steps[-1]
-    is_axiom = speaker.axioms.is_axiom
+    is_axiom = verbalizer.axioms.is_axiom
     facts = [triple for triple in last.premises if not is_axiom(triple) and triple[1] not in _STRUCTURE]
     s, p, o = facts[0] if facts else last.premises[0]
-    who = speaker.name(s)
+    who = verbalizer.name(s)
     if last.rule in _CLASHES and len({fact[2] for fact in facts}) > 1:
-        return s, f"{who} cannot be both {speaker.a(o)} and {speaker.a(facts[1][2])}"
+        return (
+            s,
+            f"{who} cannot be both {verbalizer.member_phrase(o)} and {verbalizer.member_phrase(facts[1][2])}",
+        )
     if last.rule == "dt-not-type":
-        return None, _ill_typed((s, p, o), speaker)
+        return None, _ill_typed((s, p, o), verbalizer)
     if last.rule.startswith("eq-diff"):
         if s == o:
             return s, f"{who} cannot be different from itself"
-        if told := _one_too_many({(s, o), (o, s)}, steps, speaker):
+        if told := _one_too_many({(s, o), (o, s)}, steps, verbalizer):
             return None, told
-        return None, f"{who} and {speaker.name(o)} cannot be both the same and different"
+        return None, f"{who} and {verbalizer.name(o)} cannot be both the same and different"
     if last.rule in ("cls-nothing2", *_CLASHES):
-        return s, f"{who} cannot be {speaker.a(o)}"
+        return s, f"{who} cannot be {verbalizer.member_phrase(o)}"
     if last.rule == "prp-asyp" and s != o:
-        verb = speaker.words.verb(p)
-        return None, f"{who} and {speaker.name(o)} cannot each {_infinitive(verb.says_of('the other'))}"
+        verb = verbalizer.words.verb_phrase(p)
+        return (
+            None,
+            f"{who} and {verbalizer.name(o)} cannot each {_infinitive(verb.with_pronoun('the other'))}",
+        )
     if last.rule in ("prp-pdw", "prp-adp") and len(facts) > 1:
-        ways = [_infinitive(speaker.words.says(q, y, itself=x == y)) for x, q, y in facts]
+        ways = [_infinitive(verbalizer.words.predicate_phrase(q, y, reflexive=x == y)) for x, q, y in facts]
         return None, f"{who} cannot both {ways[0]} and {ways[-1]}"
-    return None, f"{who} cannot {_infinitive(speaker.words.says(p, o, itself=s == o))}"
+    return None, f"{who} cannot {_infinitive(verbalizer.words.predicate_phrase(p, o, reflexive=s == o))}"
 
 
 def _infinitive(clause: str) -> str:
@@ -243,29 +251,32 @@ def _infinitive(clause: str) -> str:
     return base_form(clause) if base is None else base + blank + rest
 
 
-def _one_too_many(pairs: set[tuple[Term, Term]], steps: Sequence[Step], speaker: _Speaker) -> str | None:
+def _one_too_many(
+    pairs: set[tuple[Term, Term]], steps: Sequence[Step], verbalizer: _Verbalizer
+) -> str | None:
     """The claim when two values that differ had to be the same: who has them, by which property."""
     for step in steps:
         fact = step.conclusion
         if fact is None or (fact[0], fact[2]) not in pairs or step.rule not in _LIMITS:
             continue
         first, second = [triple for triple in step.premises if _is_value(triple, fact, step.rule)][:2]
-        verb = speaker.words.verb(first[1])
+        verb = verbalizer.words.verb_phrase(first[1])
         if step.rule == "prp-ifp":
-            names = " and ".join(map(speaker.name, (first[0], second[0])))
+            names = " and ".join(map(verbalizer.name, (first[0], second[0])))
             if verb.kind == "has":
-                return f"{speaker.name(first[2])} cannot be the {verb.rest} of both {names}"
-            return f"{names} cannot both {_infinitive(verb.says(speaker.name(first[2])))}"
-        names = " and ".join(map(speaker.name, (first[2], second[2])))
-        who = speaker.name(first[0])
+                return f"{verbalizer.name(first[2])} cannot be the {verb.rest} of both {names}"
+            return f"{names} cannot both {_infinitive(verb.with_object(verbalizer.name(first[2])))}"
+        names = " and ".join(map(verbalizer.name, (first[2], second[2])))
+        who = verbalizer.name(first[0])
         if verb.kind == "has":
             return f"{who} cannot have both {names} as {verb.rest}"
-        if speaker.words.is_data(first[1]) and verb.kind == "is":
+        if verbalizer.words.is_data(first[1]) and verb.kind == "is":
             ways = [
-                speaker.words.says(first[1], value).removeprefix("is ") for value in (first[2], second[2])
+                verbalizer.words.predicate_phrase(first[1], value).removeprefix("is ")
+                for value in (first[2], second[2])
             ]
             return f"{who} cannot be both {ways[0]} and {ways[1]}"
-        return f"{who} cannot {_infinitive(verb.says('both ' + names))}"
+        return f"{who} cannot {_infinitive(verb.with_object('both ' + names))}"
     return None
 
 
@@ -274,11 +285,11 @@ def _is_value(triple: Triple, fact: Triple, rule: str) -> bool:
     return triple[1] != TYPE and triple[0 if rule == "prp-ifp" else 2] in (fact[0], fact[2])
 
 
-def _ill_typed(fact: Triple, speaker: _Speaker) -> str:
+def _ill_typed(fact: Triple, verbalizer: _Verbalizer) -> str:
     """The claim is about the literal, so who has it is named in the facts."""
     s, p, o = fact
     text, kind = (s, o) if p == TYPE and is_literal(s) else (o, f"<{literal(o).datatype}>")
     own = f"<{literal(text).datatype}>"
     if own != kind:
-        return f"{speaker.name(text)} ({speaker.words.cls(own)}) is not a value of {speaker.words.cls(kind)}"
-    return f"{speaker.name(text)} is not a value of {speaker.words.cls(kind)}"
+        return f"{verbalizer.name(text)} ({verbalizer.words.cls(own)}) is not a value of {verbalizer.words.cls(kind)}"
+    return f"{verbalizer.name(text)} is not a value of {verbalizer.words.cls(kind)}"

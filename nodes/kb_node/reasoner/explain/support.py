@@ -26,12 +26,12 @@ _DEEPEST = 200
 class Support:
     """Backward search in an ABox as it stands."""
 
-    def __init__(self, abox: ABox, told_by: SchemaSupport, before: float = inf) -> None:
+    def __init__(self, abox: ABox, schema_support: SchemaSupport, before: float = inf) -> None:
         """Search an ABox; `before` leaves out what was concluded later than a reason of that number."""
         self._abox = abox
         self._before = before
         self._schema = abox.schema
-        self._told_by = told_by
+        self._schema_support = schema_support
         self._failed: dict[tuple[int, int], int] = {}
         self._found: dict[tuple[int, int], Found] = {}
 
@@ -46,10 +46,10 @@ class Support:
         store, schema = self._abox.store, self._schema
         subject, object_ = store.find(s), store.find(o)
         if p == TYPE:
-            return self._claim(Member(_known(subject), _known(schema.find_class(o))))
+            return self._claim(Member(_require(subject), _require(schema.find_class(o))))
         if p == SAME_AS:
-            return _known(self._same(_known(subject), _known(object_)))
-        return self.of_edge(_known(subject), _known(schema.find_property(p)), o)
+            return _require(self._same(_require(subject), _require(object_)))
+        return self.of_edge(_require(subject), _require(schema.find_property(p)), o)
 
     def of_edge(self, subject: int, predicate: int, object_: Term) -> Found:
         """Why a node is related to a term, or to another spelling of a literal."""
@@ -72,8 +72,8 @@ class Support:
         last = next((end for _, _, end in reached.values() if abox.named(end, object_) is not None), None)
         if last is None:
             return None
-        found = self._told_by.transitive(role[0]) | (
-            self._same(last, _known(abox.named(last, object_))) or {}
+        found = self._schema_support.transitive(role[0]) | (
+            self._same(last, _require(abox.named(last, object_))) or {}
         )
         here, is_first = last, True
         while is_first or not abox.is_same(here, subject):
@@ -105,9 +105,9 @@ class Support:
             if isinstance(claim, Edge):
                 prop = self._abox.store.predicate[claim.edge]
                 for q, _ in dict.fromkeys(((prop, False), claim.role or (prop, False))):
-                    found |= self._told_by.about(self._schema.axioms[q].term)
+                    found |= self._schema_support.about(self._schema.axioms[q].term)
             elif isinstance(claim, Member) and claim.cls >= 0:
-                found |= self._told_by.about_class(claim.cls)
+                found |= self._schema_support.about_class(claim.cls)
         return found
 
     # Edges and equality
@@ -118,20 +118,22 @@ class Support:
         found: Found = {}
         if role is not None:
             roles, turned = self._schema.roles(p), (role[0], not role[1])
-            found = self._told_by.facts((*roles.get(role, ()), *roles.get(turned, ())))
+            found = self._schema_support.facts((*roles.get(role, ()), *roles.get(turned, ())))
         if store.source[edge] in GIVEN:
             return found | {(store.terms[s], self._schema.axioms[p].term, store.terms[o]): None}
         if store.source[edge] == DERIVED:
             reason = abox.reasons[edge]
             return (
-                found | self._earlier(reason).of(reason.claims) | self._told_by.chains(self._schema.axioms[p])
+                found
+                | self._earlier(reason).of(reason.claims)
+                | self._schema_support.chains(self._schema.axioms[p])
             )
-        found_before = [cls for cls in self._givers(edge) if (s, cls) in self._found]
-        for cls in found_before or self._givers(edge):
-            return found | self._claim(Member(s, cls)) | self._told_by.restriction(cls)
+        found_before = [cls for cls in self._value_classes(edge) if (s, cls) in self._found]
+        for cls in found_before or self._value_classes(edge):
+            return found | self._claim(Member(s, cls)) | self._schema_support.restriction(cls)
         raise AssertionError(f"nothing gives {store.terms[s]} its {self._schema.axioms[p].term}")
 
-    def _givers(self, edge: int) -> Iterator[int]:
+    def _value_classes(self, edge: int) -> Iterator[int]:
         """The classes of a subject that its edge may come with."""
         store = self._abox.store
         mask = store.kind[store.subject[edge]].mask
@@ -140,7 +142,7 @@ class Support:
 
     def _earlier(self, reason: Reason) -> Support:
         """A search among what was there when a conclusion was drawn, so that no proof rests on itself."""
-        return Support(self._abox, self._told_by, reason.order)
+        return Support(self._abox, self._schema_support, reason.order)
 
     def _same(self, one: int, other: int) -> Found | None:
         """The links on the way from one node to the other; None when there is none yet."""
@@ -170,7 +172,7 @@ class Support:
             return None
         found = self._given(node, cls)
         if found is None and depth > 0:
-            found = next(self._ways(node, cls, depth - 1), None)
+            found = next(self._derivations(node, cls, depth - 1), None)
         if found is None:
             self._failed[key] = depth
         else:
@@ -185,24 +187,26 @@ class Support:
                 if schema.supers[given] >> cls & 1:
                     same = self._same(node, member)
                     if same is not None:
-                        return self._told(member, given) | self._told_by.below(given, cls) | same
+                        return self._type_fact(member, given) | self._schema_support.below(given, cls) | same
         return None
 
-    def _told(self, node: int, given: int) -> Found:
+    def _type_fact(self, node: int, given: int) -> Found:
         name = self._schema.classes[given]
         if name.startswith("{") or self._abox.is_literal(node):
             return {}
         return {(self._abox.store.terms[node], TYPE, name): None}
 
-    def _ways(self, node: int, cls: int, depth: int) -> Iterator[Found]:
+    def _derivations(self, node: int, cls: int, depth: int) -> Iterator[Found]:
         """Derivations of a class that are not by subclass alone."""
         schema = self._schema
         for members, whole in schema.intersections:
             if schema.supers[whole] >> cls & 1:
                 parts = [self._member(node, part, depth) for part in bits(members)]
                 if None not in parts:
-                    axiom = self._told_by.axiom(schema.classes[whole], "owl:intersectionOf")
-                    yield union(axiom, self._told_by.below(whole, cls), *(part for part in parts if part))
+                    axiom = self._schema_support.axiom(schema.classes[whole], "owl:intersectionOf")
+                    yield union(
+                        axiom, self._schema_support.below(whole, cls), *(part for part in parts if part)
+                    )
         store = self._abox.store
         for member in self._abox.members(node):
             same = self._same(node, member)
@@ -219,7 +223,9 @@ class Support:
             return True
         if store.source[edge] == DERIVED:
             return self._abox.reasons[edge].order < self._before
-        return any(self._member(store.subject[edge], cls, depth) is not None for cls in self._givers(edge))
+        return any(
+            self._member(store.subject[edge], cls, depth) is not None for cls in self._value_classes(edge)
+        )
 
     def _by_edge(self, edge: int, node: int, cls: int, depth: int) -> Iterator[Found]:
         """What domains, ranges and restrictions say of one end of an edge."""
@@ -228,7 +234,7 @@ class Support:
         for role in schema.roles(p):
             axioms = schema.axioms[role[0]]
             x, y = (o, s) if role[1] else (s, o)
-            chained = self._told_by.transitive(role[0]) if role[0] in schema.virtual else {}
+            chained = self._schema_support.transitive(role[0]) if role[0] in schema.virtual else {}
             ends = ((x, axioms.domain, "rdfs:domain"), (y, axioms.range, "rdfs:range"))
             for end, mask, name in ends:
                 for wider in bits(mask) if end == node else ():
@@ -236,8 +242,8 @@ class Support:
                         fact = (axioms.term, iri(name), schema.classes[wider])
                         yield (
                             self._edge(edge, role)
-                            | self._told_by.facts([fact])
-                            | self._told_by.below(wider, cls)
+                            | self._schema_support.facts([fact])
+                            | self._schema_support.below(wider, cls)
                         )
             if x == node:
                 for restriction, filler in axioms.some:
@@ -261,12 +267,12 @@ class Support:
             yield (
                 there
                 | self._edge(edge, role)
-                | self._told_by.restriction(axiom)
-                | self._told_by.below(narrow, cls)
+                | self._schema_support.restriction(axiom)
+                | self._schema_support.below(narrow, cls)
             )
 
 
-def _known(value: _T | None) -> _T:
+def _require(value: _T | None) -> _T:
     if value is None:
         raise LookupError("what was concluded has no reason")
     return value

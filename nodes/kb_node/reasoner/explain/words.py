@@ -46,31 +46,31 @@ _UNCOUNTABLE: Final = frozenset(
 _BOOLEAN: Final = PREFIXES["xsd"] + "boolean"
 
 
-class Verb(NamedTuple):
+class VerbPhrase(NamedTuple):
     """How a property is said of a subject and an object."""
 
     kind: Literal["is", "has", "does"]
     rest: str
     """What follows "is" or "has"; for another verb all of it, in the third person."""
 
-    def says(self, object_: str) -> str:
+    def with_object(self, object_: str) -> str:
         """What is said of the subject: "is on table1"."""
         return f"{self.rest if self.kind == 'does' else f'{self.kind} {self.rest}'} {object_}"
 
-    def denies(self, object_: str) -> str:
+    def with_negation(self, object_: str) -> str:
         """The contrary: "does not support table1"."""
         start = {"is": "is not", "has": "does not have", "does": "does not"}[self.kind]
         return f"{start} {base_form(self.rest) if self.kind == 'does' else self.rest} {object_}"
 
-    def says_of(self, object_: str) -> str:
+    def with_pronoun(self, object_: str) -> str:
         """The same with the object as a person or thing, not as a name: "has another as part", "is on it"."""
-        return f"has {object_} as {self.rest}" if self.kind == "has" else self.says(object_)
+        return f"has {object_} as {self.rest}" if self.kind == "has" else self.with_object(object_)
 
-    def counted(self, number: str, kind: str = "") -> str:
+    def with_count(self, number: str, kind: str = "") -> str:
         """With so many objects: "is on at most one table", "has at most one color"."""
         if self.kind == "has":
             return f"has {number} {self.rest}" + (f" that is {article(kind)}" if kind else "")
-        return self.says("nothing" if (number, kind) == ("no", "") else f"{number} {kind or 'thing'}")
+        return self.with_object("nothing" if (number, kind) == ("no", "") else f"{number} {kind or 'thing'}")
 
     @property
     def plural(self) -> str:
@@ -84,7 +84,7 @@ class Words:
     def __init__(self, labels: Mapping[Term, str], data_properties: frozenset[Term]) -> None:
         self._labels = dict(labels)
         self._data = data_properties
-        self._verbs: dict[Term, Verb] = {}
+        self._verbs: dict[Term, VerbPhrase] = {}
 
     @classmethod
     def of(cls, triples: Iterable[Triple]) -> Words:
@@ -100,7 +100,7 @@ class Words:
                 data.add(s)
         return cls(labels, frozenset(data))
 
-    def tell_apart(self, names: Mapping[Term, str]) -> None:
+    def disambiguate(self, names: Mapping[Term, str]) -> None:
         """Call those of some classes that would be called alike by these names of theirs instead."""
         alike = Counter(map(self.cls, names))
         self._labels.update([(c, name) for c, name in names.items() if alike[self.cls(c)] > 1])
@@ -117,7 +117,7 @@ class Words:
         """A class."""
         return self._labels.get(term) or local_name(term)
 
-    def verb(self, prop: Term) -> Verb:
+    def verb_phrase(self, prop: Term) -> VerbPhrase:
         """A property."""
         found = self._verbs.get(prop)
         if found is None:
@@ -125,16 +125,18 @@ class Words:
             found = self._verbs[prop] = _verb(label or _taken_apart(local_name(prop)), prop in self._data)
         return found
 
-    def says(self, prop: Term, object_: Term, *, denied: bool = False, itself: bool = False) -> str:
+    def predicate_phrase(
+        self, prop: Term, object_: Term, *, negated: bool = False, reflexive: bool = False
+    ) -> str:
         """What a triple says of its subject: "is on table1"; true and false as yes and no: "is not open"."""
-        verb = self.verb(prop)
+        verb = self.verb_phrase(prop)
         truth = _truth(object_)
         if truth is not None and verb.kind == "is":
-            return f"is {verb.rest}" if truth != denied else f"is not {verb.rest}"
-        if itself and not denied:
-            return verb.says_of("itself")
-        name = "itself" if itself else self.name(object_)
-        return verb.denies(name) if denied else verb.says(name)
+            return f"is {verb.rest}" if truth != negated else f"is not {verb.rest}"
+        if reflexive and not negated:
+            return verb.with_pronoun("itself")
+        name = "itself" if reflexive else self.name(object_)
+        return verb.with_negation(name) if negated else verb.with_object(name)
 
     def is_data(self, prop: Term) -> bool:
         """Whether a property is declared to have values that are literals."""
@@ -174,17 +176,17 @@ def _taken_apart(name: str) -> str:
     return " ".join(word if word.isupper() and len(word) > 1 else word.lower() for word in words) or name
 
 
-def _verb(phrase: str, is_data: bool) -> Verb:
+def _verb(phrase: str, is_data: bool) -> VerbPhrase:
     first, _, rest = phrase.strip().partition(" ")
     if first in ("is", "has") and rest:
-        return Verb("is", rest) if first == "is" else Verb("has", rest)
+        return VerbPhrase("is", rest) if first == "is" else VerbPhrase("has", rest)
     last = phrase.rpartition(" ")[2]
     is_verb = first.endswith("s") and len(first) > 3 and not first.endswith(_NO_VERB)
     if is_verb and not is_data:
-        return Verb("does", phrase)
+        return VerbPhrase("does", phrase)
     if last in _LINKS:
-        return Verb("is", phrase)
-    return Verb("has", phrase)
+        return VerbPhrase("is", phrase)
+    return VerbPhrase("has", phrase)
 
 
 def base_form(phrase: str) -> str:

@@ -11,8 +11,8 @@ from semmap.nodes.kb_node.reasoner.abox.abox import ABox
 from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
 from semmap.nodes.kb_node.reasoner.abox.store import Store
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.fastpaths.column_inference import ColumnInference, relevant_predicates
 from semmap.nodes.kb_node.reasoner.fastpaths.edge_columns import Column, Ends, ends_of
-from semmap.nodes.kb_node.reasoner.fastpaths.following import Following, looked_for
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT
 from semmap.nodes.kb_node.reasoner.terms import TYPE
 
@@ -52,11 +52,11 @@ class ManyEdges:
         """Store edges that are new; those that follow, and are to be put next."""
         abox = self._abox
         edges = [self._store(column, before) for column in columns]
-        following = Following(abox, columns, before)
+        inference = ColumnInference(abox, columns, before)
         for column, stored in zip(columns, edges, strict=True):
-            doubtful = following.take(column, stored)
+            doubtful = inference.apply_rules(column, stored)
             abox.fresh += [stored[place] for place in sorted(doubtful)]
-        return list(following.made())
+        return list(inference.conclusions())
 
     def _store(self, column: Column, before: Ends) -> Sequence[int]:
         abox, predicate, subjects = self._abox, column.predicate, column.subjects
@@ -74,7 +74,7 @@ class ManyEdges:
 
     def _before(self, columns: Iterable[Column]) -> Ends:
         """What the ends of columns have that matters, before the columns are stored."""
-        return Ends.of(self._abox.store, ends_of(columns), looked_for(self._abox, columns))
+        return Ends.of(self._abox.store, ends_of(columns), relevant_predicates(self._abox, columns))
 
     def _known(self, column: Column, before: Ends) -> set[int]:
         """The places in a column of edges that are there already."""

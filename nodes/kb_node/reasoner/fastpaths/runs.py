@@ -16,7 +16,7 @@ from semmap.nodes.kb_node.reasoner.abox.store import Store
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.terms import TYPE, is_literal
 
-Words = tuple[tuple[int, Term, int | Term | None], ...]
+Tokens = tuple[tuple[int, Term, int | Term | None], ...]
 """A run without its names, triple by triple: an individual is its place, None is any other object."""
 Terms = tuple[Term, ...]
 _T = TypeVar("_T")
@@ -34,33 +34,33 @@ class Form:
     """What is the same in the triples of many runs. One object is one form."""
 
     __slots__ = (
+        "_expected",
         "_fixed",
         "_individuals",
         "_others",
         "_predicates",
-        "_saying",
         "beginning",
         "classes",
         "length",
-        "words",
+        "tokens",
     )
 
-    def __init__(self, words: Words) -> None:
-        self.words = words
-        self.length = len(words)
-        self.beginning = _beginning(*words[0][1:])
-        self._predicates = tuple([p for _, p, _ in words])
-        said = [s for s, _, _ in words] + [o for _, _, o in words]
+    def __init__(self, tokens: Tokens) -> None:
+        self.tokens = tokens
+        self.length = len(tokens)
+        self.beginning = _beginning(*tokens[0][1:])
+        self._predicates = tuple([p for _, p, _ in tokens])
+        said = [s for s, _, _ in tokens] + [o for _, _, o in tokens]
         places = sorted({word for word in said if isinstance(word, int)})
         self.classes = tuple(dict.fromkeys(word for word in said if isinstance(word, str)))
         fixed = [at for at, word in enumerate(said) if word is not None]
         known = [*places, *self.classes]
         self._individuals = _picker([said.index(place) for place in places])
         self._fixed = _picker(fixed)
-        self._saying = _picker([known.index(said[at]) for at in fixed])
+        self._expected = _picker([known.index(said[at]) for at in fixed])
         self._others = _picker([at for at, word in enumerate(said) if word is None])
 
-    def said(self, triples: Sequence[Triple]) -> Terms | None:
+    def terms_of(self, triples: Sequence[Triple]) -> Terms | None:
         """The subjects, then the objects; None if the predicates are others."""
         subjects, predicates, objects = zip(*triples)  # noqa: B905, it is quicker
         return subjects + objects if predicates == self._predicates else None
@@ -71,7 +71,7 @@ class Form:
         That is of one run, or of many by columns: then the classes are columns, too.
         """
         individuals = self._individuals(said)
-        if self._saying(individuals + classes) != self._fixed(said):
+        if self._expected(individuals + classes) != self._fixed(said):
             return None
         return individuals, self._others(said)
 
@@ -109,22 +109,22 @@ class Runs:
     def __init__(self, store: Store, kinds: Kinds) -> None:
         self._store = store
         self._kinds = kinds
-        self._known: dict[Words, Form] = {}
+        self._known: dict[Tokens, Form] = {}
         self._beginning: dict[Term, tuple[Form, ...]] = {}
 
     def of(self, triples: Sequence[Triple], start: int, stop: int) -> Iterator[Run]:
         """The runs that begin there; each is read against the store as it is when the run is asked for."""
         while start < stop:
-            run = self._recognised(triples, start) or self._read(triples, start)
+            run = self._read_known_form(triples, start) or self._read(triples, start)
             yield run
             start += len(run.triples)
 
-    def _recognised(self, triples: Sequence[Triple], start: int) -> Run | None:
+    def _read_known_form(self, triples: Sequence[Triple], start: int) -> Run | None:
         """The run that begins there, if it has a known form."""
-        for form in self._begun_by(triples[start]):
+        for form in self._candidate_forms(triples[start]):
             end = start + form.length
             here = triples[start:end]
-            said = form.said(here)
+            said = form.terms_of(here)
             parts = None if said is None else form.parts(said, form.classes)
             if parts is None or (end < len(triples) and triples[end][0] in parts[0]):
                 continue
@@ -137,14 +137,14 @@ class Runs:
 
         Of a form that is the beginning of another's there may be more; then it is the other one's run.
         """
-        for form in self._begun_by(triples[start]):
+        for form in self._candidate_forms(triples[start]):
             end = start + form.length
-            said = form.said(triples[start:end])
+            said = form.terms_of(triples[start:end])
             if said is not None and (end >= len(triples) or triples[end][0] not in said):
                 return form, said
         return None
 
-    def _begun_by(self, triple: Triple) -> tuple[Form, ...]:
+    def _candidate_forms(self, triple: Triple) -> tuple[Form, ...]:
         """The forms of runs that may begin with a triple, the likeliest first."""
         s, p, o = triple
         return () if s in self._store.numbers else self._beginning.get(_beginning(p, o), ())
@@ -160,26 +160,26 @@ class Runs:
         first = triples[start][0]
         places: dict[Term, int] = {first: 0}
         others: list[Term] = []
-        words: list[tuple[int, Term, int | Term | None]] = []
+        tokens: list[tuple[int, Term, int | Term | None]] = []
         for at in range(start, len(triples)):
             s, p, o = triples[at]
             subject = places.get(s)
             if subject is None:
                 break
             if p == TYPE:
-                words.append((subject, p, o))
+                tokens.append((subject, p, o))
             elif o in numbers or is_literal(o):
-                words.append((subject, p, None))
+                tokens.append((subject, p, None))
                 others.append(o)
             else:
-                words.append((subject, p, places.setdefault(o, len(places))))
-        run = triples[start : start + len(words)]
-        if first in numbers or len(words) > _LONGEST:
+                tokens.append((subject, p, places.setdefault(o, len(places))))
+        run = triples[start : start + len(tokens)]
+        if first in numbers or len(tokens) > _LONGEST:
             return Run(None, run, tuple(places), tuple(others), ())
         kinds = self.kinds_of(others)
         if kinds is None:
             raise LookupError("a run mentions what is neither a literal nor known")
-        return Run(self._form(tuple(words)), run, tuple(places), tuple(others), kinds)
+        return Run(self._form(tuple(tokens)), run, tuple(places), tuple(others), kinds)
 
     def kinds_of(self, terms: Iterable[Term]) -> tuple[Kind, ...] | None:
         """The kinds of literals and of what is in the store; None if there is anything else."""
@@ -195,14 +195,14 @@ class Runs:
                 return None
         return tuple(kinds)
 
-    def _form(self, words: Words) -> Form:
+    def _form(self, tokens: Tokens) -> Form:
         """The form of a run; the first to be tried from now on."""
-        form = self._known.get(words)
+        form = self._known.get(tokens)
         if form is None:
             if len(self._known) >= _MOST:
                 self._known.clear()
                 self._beginning.clear()
-            form = self._known[words] = Form(words)
+            form = self._known[tokens] = Form(tokens)
         tried = self._beginning.get(form.beginning, ())
         self._beginning[form.beginning] = (form, *(other for other in tried if other is not form))[:_TRIED]
         return form

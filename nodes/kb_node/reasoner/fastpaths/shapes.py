@@ -29,7 +29,7 @@ _FEW = 64
 
 
 @dataclass(frozen=True, eq=False, slots=True, weakref_slot=True)
-class Written:
+class KnownShape:
     """What a run of a known shape leaves. One object is one shape."""
 
     layout: Layout
@@ -39,18 +39,18 @@ class Written:
     """The places of those that are subjects or have a named class."""
 
 
-class Alike(NamedTuple):
+class UniformRuns(NamedTuple):
     """Runs of one shape: their triples are in one order, and their objects of the same kinds.
 
     A column is what one place holds, run by run: so many runs are few objects.
     """
 
-    shape: Written
+    shape: KnownShape
     form: Form
     individuals: Sequence[Terms]
     others: Sequence[Terms]
 
-    def stars(self) -> Iterator[tuple[Terms, Terms]]:
+    def rows(self) -> Iterator[tuple[Terms, Terms]]:
         """Of each run the individuals, and the other objects."""
         others = zip(*self.others, strict=True) if self.others else repeat(())
         return zip(zip(*self.individuals, strict=True), others, strict=False)
@@ -79,47 +79,48 @@ class Shapes:
     def __init__(self, abox: ABox) -> None:
         self._abox = abox
         self._runs = Runs(abox.store, abox.kinds)
-        self.known: dict[Shape, Written | Contradiction | None] = {}
+        self.known: dict[Shape, KnownShape | Contradiction | None] = {}
 
     def runs(self, triples: Sequence[Triple], start: int = 0, stop: int | None = None) -> Iterator[Run]:
         """The runs that begin there; each is read against the store as it is when the run is asked for."""
         return self._runs.of(triples, start, len(triples) if stop is None else stop)
 
-    def write_all(self, triples: Sequence[Triple], start: int) -> tuple[list[Alike], int]:
-        """Write down the runs of known shapes that begin there and follow one another; and where they end.
+    def write_all(self, triples: Sequence[Triple], start: int) -> tuple[list[UniformRuns], int]:
+        """Store the consecutive runs of known shapes from `start`; return them and the position of their end.
 
-        None, and nothing done, where they are few or not so plain, or holes in the store are to be filled.
+        Returns an empty list and changes nothing if the runs are few, if a rule may be needed, or if the store
+        has free rows to fill first.
         """
         store = self._abox.store
-        if len(triples) - start < _FEW or store.holes > len(triples) - start:
+        if len(triples) - start < _FEW or store.free_rows > len(triples) - start:
             return [], len(triples)
         found, end = batches(self._runs, triples, start)
         end = max(end, start + 1)
         if found is None:
             return [], end
-        shapes: list[Written] = []
+        shapes: list[KnownShape] = []
         for batch in found.of_shape:
             shape = self.known.get((batch.form, batch.kinds))
-            if not isinstance(shape, Written) or not self._has_constants(shape):
+            if not isinstance(shape, KnownShape) or not self._has_constants(shape):
                 return [], end
             shapes.append(shape)
         node_of = store.add_literals(found.kind_of)
-        alike: list[Alike] = []
+        alike: list[UniformRuns] = []
         for shape, batch in zip(shapes, found.of_shape, strict=True):
             others = [list(map(node_of.__getitem__, terms)) for terms in batch.others]
             constants = [[store.numbers[term]] * batch.size for term in shape.constants]
             store.append(shape.layout, batch.individuals, others + constants)
-            alike.append(Alike(shape, batch.form, batch.individuals, batch.others))
+            alike.append(UniformRuns(shape, batch.form, batch.individuals, batch.others))
         return alike, end
 
-    def write(self, written: Written, run: Run) -> bool:
+    def write(self, written: KnownShape, run: Run) -> bool:
         """Write down what a run of a known shape leaves; False, and nothing done, if it cannot be."""
         if not self._has_constants(written):
             return False
         self._abox.store.write(written.layout, run.individuals, run.others + written.constants)
         return True
 
-    def _has_constants(self, written: Written) -> bool:
+    def _has_constants(self, written: KnownShape) -> bool:
         """Whether the values that come with classes are as they were."""
         store, constants = self._abox.store, written.constants
         for term, kind in zip(constants, written.layout.others[-len(constants) :], strict=False):
@@ -133,7 +134,7 @@ class Shapes:
         if run.form is not None:
             self._remember(run, self._written(run))
 
-    def refuse(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
+    def note_rejection(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
         """Remember the shape of triples that were refused, if `proof` about `terms` is of nothing else."""
         first = next(self.runs(triples))
         if first.form is None or len(first.triples) < len(triples):
@@ -144,12 +145,12 @@ class Shapes:
         named = tuple([places.get(term, 0) for term in terms])  # any other term is not in the proof itself
         self._remember(first, Contradiction(proof, named) if is_of_itself else None)
 
-    def _remember(self, run: Run, found: Written | Contradiction | None) -> None:
+    def _remember(self, run: Run, found: KnownShape | Contradiction | None) -> None:
         if len(self.known) >= _MOST:
             self.known.clear()
         self.known[run.shape] = found
 
-    def _written(self, run: Run) -> Written | None:
+    def _written(self, run: Run) -> KnownShape | None:
         """What stands in the store of a run that was just worked out; None if it is more than kinds."""
         abox, store = self._abox, self._abox.store
         places = run.places
@@ -178,7 +179,9 @@ class Shapes:
         come = {(store.subject[e], store.predicate[e]) for e in values}
         if len(set(said)) < len(said) or not come.isdisjoint(said):
             return None  # another run may have one object twice where this one has two of a kind
-        return Written(self._layout(individuals, others, edges), tuple(constants), tuple(self._touched(run)))
+        return KnownShape(
+            self._layout(individuals, others, edges), tuple(constants), tuple(self._touched(run))
+        )
 
     def _edge(self, triple: Triple) -> int:
         store, predicate = self._abox.store, self._abox.schema.property(triple[1])

@@ -18,7 +18,7 @@ _MOST = 256
 """Edges that are looked at besides those asked for: who has more, as values or computed, is no plain case."""
 
 
-def depart(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
+def remove_individuals(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
     """Forget individuals of which these are all assertions.
 
     Who they were; None, with nothing done, where it is not plain.
@@ -28,14 +28,14 @@ def depart(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
     going = {store.numbers.get(subject, NONE) for subject in subjects}
     is_doubtful = NONE in going or len(wanted) < len(triples)
     edges = None if is_doubtful else _edges_of(abox, going, wanted)
-    if edges is None or not _concern_nobody(abox, going, edges):
+    if edges is None or not _are_independent(abox, going, edges):
         return None
     _forget_spellings(abox, going, edges)
     store.erase(going, edges)
     return subjects
 
 
-def depart_among(abox: ABox, triples: Sequence[Triple]) -> list[Triple]:
+def remove_independent(abox: ABox, triples: Sequence[Triple]) -> list[Triple]:
     """Forget those individuals of which it is plain, among very many: the triples that went with them.
 
     Plain is who is described by these triples alone, concerns nobody who stays, and is not joined to
@@ -64,13 +64,13 @@ def _is_plain(
 ) -> bool:
     """Whether nobody who stays is otherwise without a node, all that is asserted of which is `said`, too."""
     store, schema, kinds = abox.store, abox.schema, abox.store.kind
-    if node in abox.equals or node in abox.rest_on_node:
+    if node in abox.equals or node in abox.reasons_by_node:
         return False
     term = store.terms[node]
     mine = said[node] = [(term, TYPE, schema.classes[cls]) for cls in kinds[node].given]
     for edge in store.out.all(node):
         source, other = store.source[edge], store.object[edge]
-        if source == DERIVED or edge in abox.rest_on_edge:
+        if source == DERIVED or edge in abox.reasons_by_edge:
             return False
         if other not in going and (kinds[other].base is not kinds[other] or other in abox.equals):
             return False
@@ -103,12 +103,12 @@ def _edges_of(abox: ABox, nodes: Set[int], wanted: set[Triple]) -> list[int] | N
     return edges if asserted == len(wanted) else None
 
 
-def _concern_nobody(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
+def _are_independent(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
     """Whether nothing is otherwise for anybody else without nodes and the edges that leave from them."""
     store, kinds = abox.store, abox.store.kind
     if not abox.equals.keys().isdisjoint(nodes):
         return False
-    if not (abox.rest_on_node.keys().isdisjoint(nodes) and abox.rest_on_edge.keys().isdisjoint(edges)):
+    if not (abox.reasons_by_node.keys().isdisjoint(nodes) and abox.reasons_by_edge.keys().isdisjoint(edges)):
         return False
     entering = store.into.gather(nodes, len(edges))
     if not nodes >= {store.subject[edge] for edge in entering}:
@@ -131,12 +131,12 @@ def _forget_spellings(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> None
             abox.forget_spelling(literal)
 
 
-def exchange(abox: ABox, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
+def replace_literals(abox: ABox, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
     """Replace values by others of their kind, pair by pair.
 
     Whose values they are; None, with nothing done, where it is not plain.
     """
-    if len(delete) != len(insert) or abox.is_mixed:
+    if len(delete) != len(insert) or abox.has_unknown_equals:
         return None
     store = abox.store
     found: dict[int, Term] = {}
@@ -151,7 +151,7 @@ def exchange(abox: ABox, delete: Sequence[Triple], insert: Sequence[Triple]) -> 
             return None
         found[edge] = new
     for edge, new in found.items():
-        store.turn(edge, new)
+        store.replace_literal(edge, new)
     return {triple[0] for triple in delete}
 
 
@@ -164,10 +164,10 @@ def _only_edge(abox: ABox, s: Term, p: Term, o: Term) -> int:
     edge = store.edge(subject, predicate, literal)
     if edge == NONE or store.source[edge] != ASSERTED or not store.out.is_alone(edge):
         return NONE
-    if subject in abox.equals or literal in abox.equals or edge in abox.rest_on_edge:
+    if subject in abox.equals or literal in abox.equals or edge in abox.reasons_by_edge:
         return NONE
     if abox.spellings and abox.value(literal) in abox.spellings:
         return NONE
     kind = store.kind[literal]
-    comes_back = store.kind[subject].values or abox.steps.made_by(predicate)
+    comes_back = store.kind[subject].values or abox.steps.producing_chains(predicate)
     return NONE if kind.base is not kind or comes_back or not abox.is_plain(edge) else edge

@@ -73,7 +73,7 @@ class Closure(Facts):
         if p == TYPE and is_literal(s) and datatypes.is_datatype(o) and datatypes.excludes(o, s):
             self._conclude("dt-not-type", (fact,), None)
         if p == SAME_AS and is_literal(o) and s != o:
-            self._tell_apart(fact)
+            self._add_differences(fact)
 
     def _meet(self, term: Term) -> None:
         """Table 8, as far as the graph at hand can tell the difference, when a term is first seen."""
@@ -95,7 +95,7 @@ class Closure(Facts):
             if datatypes.contains(datatype, literal):
                 self._add((literal, TYPE, datatype), Reason("dt-type2", ()))
 
-    def _tell_apart(self, fact: Triple) -> None:
+    def _add_differences(self, fact: Triple) -> None:
         """Literals that something is the same as get all their types, and their differences (dt-diff)."""
         literal = fact[2]
         self._type(literal, datatypes.datatypes(literal))

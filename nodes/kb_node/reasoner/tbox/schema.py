@@ -85,7 +85,7 @@ class Schema:
         """The number of a property, or None when it was never met."""
         return self._property_numbers.get(term)
 
-    def speaks_of(self, term: Term) -> bool:
+    def is_used(self, term: Term) -> bool:
         """Whether a term is in use as a class or a property."""
         return term in self._class_numbers or term in self._property_numbers
 
@@ -148,19 +148,19 @@ class Schema:
         for c, _, d in self._facts("rdfs:subClassOf"):
             self.supers[self.cls(c)] |= 1 << self.cls(d)
         for c, _, d in self._facts("owl:disjointWith"):
-            self._separate(self.cls(c), self.cls(d))
+            self._add_disjoint(self.cls(c), self.cls(d))
         for c, _, d in self._facts("owl:complementOf"):
-            self._separate(self.cls(c), self.cls(d))
+            self._add_disjoint(self.cls(c), self.cls(d))
         for members in self._lists_of("owl:AllDisjointClasses", "owl:members"):
             for c, d in combinations(members, 2):
-                self._separate(self.cls(c), self.cls(d))
+                self._add_disjoint(self.cls(c), self.cls(d))
         for c, _, head in self._facts("owl:intersectionOf"):
             if members := self._members(head):
                 self.intersections.append((self._mask(members), self.cls(c)))
         nothing = self.cls(NOTHING)
-        self._separate(nothing, nothing)
+        self._add_disjoint(nothing, nothing)
 
-    def _separate(self, one: int, other: int) -> None:
+    def _add_disjoint(self, one: int, other: int) -> None:
         self.disjoint[one] |= 1 << other
         self.disjoint[other] |= 1 << one
 
@@ -233,7 +233,7 @@ class Schema:
         for name in ("owl:members", "owl:distinctMembers"):
             for members in self._lists_of("owl:AllDifferent", name):
                 for one, other in combinations(members, 2):
-                    self._separate(self.nominal(one), self.nominal(other))
+                    self._add_disjoint(self.nominal(one), self.nominal(other))
         for n, _, s in self._facts("owl:sourceIndividual"):
             for p in self._objects(n, "owl:assertionProperty"):
                 targets = (*self._objects(n, "owl:targetIndividual"), *self._objects(n, "owl:targetValue"))
@@ -241,7 +241,7 @@ class Schema:
                     forbidden = self.cls(f"{{{n} {p} {o}}}")
                     self.negatives[forbidden] = n
                     self._axioms(p).some.append((forbidden, self.nominal(o)))
-                    self._separate(forbidden, self.nominal(s))
+                    self._add_disjoint(forbidden, self.nominal(s))
 
     def nominal(self, term: Term) -> int:
         """The class of one individual or value only."""

@@ -99,7 +99,7 @@ def check_compilable(triple: Triple) -> None:
     if is_literal(s):
         raise NotCompilable(f"a literal has properties: {_told(triple)}")
     spoken_of = () if p == TYPE and o in METACLASSES else (s,) if p == TYPE else (s, o)
-    if any(is_reserved(term) and not _may_be_spoken_of(term) for term in spoken_of):
+    if any(is_reserved(term) and not _may_be_described(term) for term in spoken_of):
         raise NotCompilable(f"the meaning of OWL's own vocabulary is changed: {_told(triple)}")
     if p in (SAME_AS, DIFFERENT_FROM) and is_literal(o):
         raise NotCompilable(f"an individual is compared with a value: {_told(triple)}")
@@ -109,7 +109,7 @@ def _told(triple: Triple) -> str:
     return " ".join(triple)
 
 
-def _may_be_spoken_of(term: Term) -> bool:
+def _may_be_described(term: Term) -> bool:
     return (
         term in ANNOTATIONS
         or term in (THING, NOTHING, NIL, _RESOURCE)

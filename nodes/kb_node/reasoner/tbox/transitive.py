@@ -23,7 +23,7 @@ def compile_transitive(schema: Schema) -> Iterator[int]:
     found = [
         p
         for p in own
-        if p > DIFFERENT and not any(_looks_at_pairs(schema, q, paired) for q in _wider(schema, p))
+        if p > DIFFERENT and not any(_needs_pairs(schema, q, paired) for q in _wider(schema, p))
     ]
     passed = [(p, *_restrictions(schema, p)) for p in found]
     for p, some, only in passed:
@@ -37,7 +37,7 @@ def _wider(schema: Schema, p: int) -> set[int]:
     return {q for q, _ in schema.roles(p)}
 
 
-def _looks_at_pairs(schema: Schema, q: int, paired: set[int]) -> bool:
+def _needs_pairs(schema: Schema, q: int, paired: set[int]) -> bool:
     axioms = schema.axioms[q]
     special = axioms.limits or axioms.exclusive or axioms.none or axioms.keys or axioms.irreflexive
     return bool(special) or q in paired

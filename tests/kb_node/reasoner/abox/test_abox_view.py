@@ -58,7 +58,7 @@ def patterns_of(facts):
 def reasoner(request):
     reasoner = Reasoner(triples(TBOX))
     reasoner.apply(insert=triples(FACTS + request.param))
-    reasoner.believe(come=COMPUTED)
+    reasoner.update_computed(add=COMPUTED)
     assert reasoner.is_compiled
     return reasoner
 
@@ -106,7 +106,7 @@ def test_what_follows_of_things_without_values_is_what_the_rules_make(facts):
         assert set(found) == wanted
     for pattern in patterns_of(wanted):
         assert set(reasoner.inferred(*pattern)) == {fact for fact in wanted if matches(pattern, fact)}
-    reasoner.believe(come=triples(":cup1 :on :lamp1 ."))
+    reasoner.update_computed(add=triples(":cup1 :on :lamp1 ."))
     assert triple(":lamp1 :bears :cup1") in set(reasoner.inferred())
     assert triple(":lamp1 :touches :cup1") in set(reasoner.inferred())
 

@@ -20,7 +20,7 @@ CIRCLE = """
 def test_a_circle_of_conclusions_goes_with_what_began_it(classes):
     reasoner = Reasoner(triples(CIRCLE))
     added = [(X, TYPE, cls) for cls in classes]
-    with reasoner.supposing(added):
+    with reasoner.assuming(added):
         assert len(set(reasoner.inferred())) > len(classes)
     assert set(reasoner.inferred()) == set()
     reasoner.apply(insert=added)
@@ -45,9 +45,9 @@ def test_what_an_edge_said_may_be_said_by_another_one_but_not_in_a_circle():
     types = [(table, TYPE, "<http://example.org/Table>")]
     types += [(one, TYPE, "<http://example.org/Cup>") for one in (cup, other)]
     reasoner.apply(insert=types)
-    reasoner.believe(come=[(table, bears, one) for one in (cup, other, made)])
-    reasoner.believe(gone=[(table, bears, cup)])
+    reasoner.update_computed(add=[(table, bears, one) for one in (cup, other, made)])
+    reasoner.update_computed(remove=[(table, bears, cup)])
     assert laden in reasoner.types(table)
-    reasoner.believe(gone=[(table, bears, other)])
+    reasoner.update_computed(remove=[(table, bears, other)])
     assert laden not in reasoner.types(table)
     assert "<http://example.org/Cup>" not in reasoner.types(made)

@@ -147,8 +147,8 @@ def test_a_value_that_is_there_needs_no_other_name():
     )
     engine = reasoner._engine
     seen = []
-    supposing = reasoner.supposing
-    reasoner.supposing = lambda *given, **how: seen.append(reasoner._engine) or supposing(*given, **how)
+    assuming = reasoner.assuming
+    reasoner.assuming = lambda *given, **how: seen.append(reasoner._engine) or assuming(*given, **how)
     assert not entails(reasoner, [triple(":thing1 a :Elsewhere")])
     assert seen
     assert all(one is engine for one in seen)

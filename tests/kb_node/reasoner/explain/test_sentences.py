@@ -99,13 +99,13 @@ CANNOT_BE = {
 @pytest.mark.parametrize(("goal", "case"), HOLDS.items(), ids=HOLDS)
 def test_why_something_holds(goal, case):
     given, text = case
-    with home().supposing(triples(given + " .")):
+    with home().assuming(triples(given + " .")):
         assert home().explain(triple(goal)).text == text
 
 
 @pytest.mark.parametrize(("given", "text"), CANNOT_BE.items(), ids=CANNOT_BE)
 def test_why_something_cannot_be(given, text):
-    with pytest.raises(Inconsistent) as refusal, home().supposing(triples(given + " .")):
+    with pytest.raises(Inconsistent) as refusal, home().assuming(triples(given + " .")):
         pass
     explanation = refusal.value.explanation
     assert sorted(explanation.text.split(", ")) == sorted(text.split(", "))  # facts come as they were found
@@ -136,8 +136,8 @@ def test_another_proof_of_the_shape_has_its_own_names():
 )
 def test_a_property_without_a_label_is_taken_apart(name, said, denied):
     words, prop = Words.of([]), f"<http://example.org/{name}>"
-    assert words.says(prop, "<http://example.org/x>") == said
-    assert words.says(prop, "<http://example.org/x>", denied=True) == denied
+    assert words.predicate_phrase(prop, "<http://example.org/x>") == said
+    assert words.predicate_phrase(prop, "<http://example.org/x>", negated=True) == denied
 
 
 def test_the_english_label_counts_and_others_do_not():

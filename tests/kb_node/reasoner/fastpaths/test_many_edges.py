@@ -51,19 +51,19 @@ HOME = triples("""
 def comparable(monkeypatch):
     """`together` and `singly` set it. One who departs may take along what is computed, which others keep."""
     monkeypatch.setattr(paths, "MANY", paths.MANY)
-    monkeypatch.setattr(paths, "depart", lambda *_: None)
+    monkeypatch.setattr(paths, "remove_individuals", lambda *_: None)
 
 
 def together(reasoner, **change):
     """Let a reasoner take each change by columns, however small."""
     paths.MANY = 1
-    reasoner.believe(**change)
+    reasoner.update_computed(**change)
 
 
 def singly(reasoner, **change):
     """Let a reasoner take each change edge by edge, however large."""
     paths.MANY = 10**9
-    reasoner.believe(**change)
+    reasoner.update_computed(**change)
 
 
 def state(reasoner):
@@ -101,7 +101,7 @@ def follow(seed, theme):
             ]
             there = sorted(pair[0].computed())
             gone = random_.sample(there, min(len(there), random_.choice((0, 0, 1, 3))))
-            change = {"come": facts, "gone": gone}
+            change = {"add": facts, "remove": gone}
             ways = [partial(way, one, **change) for way, one in zip((together, singly), pair, strict=True)]
         else:
             facts, some = [], world.change()
@@ -152,9 +152,9 @@ def at_home(tables, per_table):
 def test_a_home_is_as_one_whose_things_came_singly():
     said, seen = at_home(6, 7)
     pair = Reasoner(said), Reasoner(said)
-    together(pair[0], come=seen)
+    together(pair[0], add=seen)
     for fact in seen:
-        singly(pair[1], come=[fact])
+        singly(pair[1], add=[fact])
     assert state(pair[0]) == state(pair[1])
     for text in (
         ":c5_6 :isIn :flat",
@@ -166,7 +166,7 @@ def test_a_home_is_as_one_whose_things_came_singly():
         assert pair[0].follows(triple(text)), text
     assert not pair[0].holds(triple(":c5_6 a :Laden"))
     for one in pair:
-        one.believe(gone=seen)
+        one.update_computed(remove=seen)
     assert state(pair[0]) == state(pair[1]) == state(Reasoner(said))
 
 
@@ -187,18 +187,18 @@ def test_many_that_contradict_the_rest_are_refused_with_an_explanation(fault, is
     reasoner = Reasoner([*said, fault] if is_there else said)
     before = state(reasoner)
     with pytest.raises(Inconsistent) as refusal:
-        together(reasoner, come=seen if is_there else [*seen, fault])
+        together(reasoner, add=seen if is_there else [*seen, fault])
     support = refusal.value.explanation.support
     assert fault in support
     assert state(reasoner) == before
-    together(reasoner, come=[fact for fact in seen if fact not in support])
+    together(reasoner, add=[fact for fact in seen if fact not in support])
 
 
 def test_what_is_there_already_is_not_there_twice():
     said, seen = at_home(2, 2)
     reasoner = Reasoner([*said, seen[0]])
-    together(reasoner, come=[*seen, *seen])
-    together(reasoner, come=seen)
+    together(reasoner, add=[*seen, *seen])
+    together(reasoner, add=seen)
     assert sorted(reasoner.computed()) == sorted(set(seen) - {seen[0]})
 
 
@@ -206,10 +206,10 @@ def test_what_followed_and_is_computed_now_outlives_its_reason():
     said, seen = at_home(1, 1)
     cup_in_flat, cup_in_kitchen = triple(":c0_0 :isIn :flat"), triple(":c0_0 :isIn :kitchen")
     reasoner = Reasoner(said)
-    together(reasoner, come=seen)
+    together(reasoner, add=seen)
     assert not reasoner.is_computed(cup_in_flat)
-    together(reasoner, come=[cup_in_flat])
-    reasoner.believe(gone=[cup_in_kitchen, triple(":t0 :isIn :kitchen")])
+    together(reasoner, add=[cup_in_flat])
+    reasoner.update_computed(remove=[cup_in_kitchen, triple(":t0 :isIn :kitchen")])
     assert reasoner.holds(cup_in_flat)
     assert not reasoner.holds(cup_in_kitchen)
 
@@ -218,8 +218,8 @@ def test_nobody_looks_singly_at_a_home_in_which_nothing_is_wrong(monkeypatch):
     said, seen = at_home(6, 7)
     reasoner = Reasoner(said)
     asked = []
-    monkeypatch.setattr(Saturation, "_look_at", lambda _, edge: asked.append(edge))
-    together(reasoner, come=seen)
+    monkeypatch.setattr(Saturation, "_process_edge", lambda _, edge: asked.append(edge))
+    together(reasoner, add=seen)
     assert not asked
     assert reasoner.holds(triple(":c5_6 :isIn :flat"))
 
@@ -227,12 +227,12 @@ def test_nobody_looks_singly_at_a_home_in_which_nothing_is_wrong(monkeypatch):
 def test_what_chains_conclude_together_is_explained_and_goes_with_its_reasons():
     said, seen = at_home(2, 2)
     reasoner = Reasoner([*said, *triples(":flat :isPartOf :house .")])
-    together(reasoner, come=seen)
+    together(reasoner, add=seen)
     in_house = triple(":c1_1 :isIn :house")
     proofs.check(reasoner.explain(in_house), list(reasoner.given()))
-    reasoner.believe(gone=[triple(":c1_1 :isIn :kitchen")])
+    reasoner.update_computed(remove=[triple(":c1_1 :isIn :kitchen")])
     assert reasoner.holds(in_house)  # as what it is on is there
-    reasoner.believe(gone=[triple(":t1 :isIn :kitchen")])
+    reasoner.update_computed(remove=[triple(":t1 :isIn :kitchen")])
     assert not reasoner.holds(in_house)
 
 
@@ -249,7 +249,7 @@ def test_what_chains_conclude_together_is_explained_and_goes_with_its_reasons():
 def test_a_chain_is_made_of_what_came_in_any_order_and_way(first, then):
     reasoner = Reasoner([*HOME, *triples(":has owl:inverseOf :isIn .")])
     for come in (first, then):
-        together(reasoner, come=[triple(text) for text in come])
+        together(reasoner, add=[triple(text) for text in come])
     explanation = reasoner.explain(triple(":cup :isIn :flat"))
     proofs.check(explanation, list(reasoner.given()))
     assert {triple(text) for text in (*first, *then)} < set(explanation.support)
@@ -260,15 +260,15 @@ def test_holes_are_filled_before_there_are_more_edges():
     said, seen = at_home(6, 7)
     reasoner = Reasoner(said)
     store = reasoner._engine._abox.store
-    together(reasoner, come=seen)
+    together(reasoner, add=seen)
     length = len(store.subject)
     for _ in range(3):
-        reasoner.believe(gone=seen)
-        together(reasoner, come=seen)
+        reasoner.update_computed(remove=seen)
+        together(reasoner, add=seen)
     assert len(store.subject) <= length + 256
 
 
 def test_few_are_taken_singly(monkeypatch):
     monkeypatch.setattr(ManyEdges, "insert", None)
     said, seen = at_home(1, 2)
-    Reasoner(said).believe(come=seen)
+    Reasoner(said).update_computed(add=seen)

@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.abox.store import Store
-from semmap.nodes.kb_node.reasoner.explain.sentences import sentence
+from semmap.nodes.kb_node.reasoner.explain.sentences import proof_sentence
 from semmap.nodes.kb_node.reasoner.fastpaths import batches
-from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Contradiction, Shapes, Written
+from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Contradiction, KnownShape, Shapes
 from tests.depth import tries
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.facts import prefixed
@@ -59,7 +59,7 @@ def by_columns(request, monkeypatch):
     """Whether few runs are read and written together, as else many are."""
     if request.param:
         monkeypatch.setattr(batches, "_MANY", 1)
-        monkeypatch.setattr(Store, "holes", 0)
+        monkeypatch.setattr(Store, "free_rows", 0)
 
 
 @pytest.mark.usefixtures("by_columns")
@@ -88,7 +88,9 @@ def test_what_a_run_leaves_does_not_depend_on_whether_its_shape_is_known(run, li
                 reasoner.apply(insert=insert)
             explanation = refusal.value.explanation
             proofs.check(explanation, after)
-            assert explanation.text == sentence(None, explanation.support, explanation.steps, reasoner.words)
+            assert explanation.text == proof_sentence(
+                None, explanation.support, explanation.steps, reasoner.words
+            )
         check_same(reasoner, asserted, BASE, closure)
     for insert in reversed(transactions):
         there = [fact for fact in dict.fromkeys(insert) if fact in asserted]
@@ -130,7 +132,7 @@ def test_a_shape_is_worked_out_once():
     reasoner = Reasoner(triples(HOME))
     for name in ("a", "b", "c"):
         reasoner.apply(insert=triples(f":{name} a :C , :K ; :p :{name}1 ; :n 1 . :{name}1 :n 2.5 ."))
-    assert [type(shape) for shape in known(reasoner)] == [Written]
+    assert [type(shape) for shape in known(reasoner)] == [KnownShape]
     assert reasoner.holds(triple(":c a :B"))
     assert reasoner.holds(triple(":c1 a :D"))
     assert reasoner.holds(triple(":c :q :here"))
@@ -198,7 +200,7 @@ def batched(monkeypatch):
 
     def counted(self, triples, start):
         alike, end = write_all(self, triples, start)
-        sizes.append(sum(len(list(runs.stars())) for runs in alike))
+        sizes.append(sum(len(list(runs.rows())) for runs in alike))
         return alike, end
 
     monkeypatch.setattr(Shapes, "write_all", counted)
@@ -265,7 +267,7 @@ def test_what_is_written_by_columns_is_what_is_written_singly(run, literals):
         singly.apply(insert=insert)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(batches, "_MANY", 1)
-        patch.setattr(Store, "holes", 0)
+        patch.setattr(Store, "free_rows", 0)
         for insert in loads:
             by_columns.apply(insert=insert)
     gone = loads[1][::2]

@@ -4,7 +4,11 @@ import pytest
 
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.fastpaths import paths
-from semmap.nodes.kb_node.reasoner.fastpaths.shortcuts import depart, depart_among, exchange
+from semmap.nodes.kb_node.reasoner.fastpaths.shortcuts import (
+    remove_independent,
+    remove_individuals,
+    replace_literals,
+)
 from semmap.nodes.kb_node.reasoner.terms import TYPE
 from tests.kb_node.reasoner.fastpaths.test_many_edges import THEMES
 from tests.kb_node.reasoner.graphs import EVERYTHING, triple, triples
@@ -25,7 +29,10 @@ def same_as_fresh(reasoner, turtle):
 
 
 def test_a_thing_goes_with_all_that_was_said_of_it(reasoner):
-    assert depart(reasoner._engine._abox, triples(STAR)) == {triple(":a a :C")[0], triple(":a1 a :C")[0]}
+    assert remove_individuals(reasoner._engine._abox, triples(STAR)) == {
+        triple(":a a :C")[0],
+        triple(":a1 a :C")[0],
+    }
     assert not reasoner.mentioned({triple(":a1 a :C")[0]})
     assert not list(reasoner.inferred(triple(":a a :C")[0]))
 
@@ -45,7 +52,7 @@ def test_a_thing_goes_with_all_that_was_said_of_it(reasoner):
 def test_it_is_not_plain_when_somebody_else_is_concerned(reasoner, more, gone):
     """More was deleted than was there, or less, or others point there or rest on it."""
     reasoner.apply(insert=triples(more))
-    assert depart(reasoner._engine._abox, triples(gone)) is None
+    assert remove_individuals(reasoner._engine._abox, triples(gone)) is None
     reasoner.apply(delete=triples(gone))
     left = [fact for fact in triples(STAR + REST + more) if fact not in triples(gone)]
     check_same(reasoner, dict.fromkeys([*asserted_in(BASE), *left]), BASE)
@@ -56,7 +63,7 @@ def values(*texts):
 
 
 def test_a_number_becomes_another(reasoner):
-    assert exchange(reasoner._engine._abox, values("1.5"), values("2.5")) == {triple(":a1 a :C")[0]}
+    assert replace_literals(reasoner._engine._abox, values("1.5"), values("2.5")) == {triple(":a1 a :C")[0]}
     same_as_fresh(reasoner, STAR.replace("1.5", "2.5") + REST)
 
 
@@ -74,7 +81,7 @@ def test_a_number_becomes_another(reasoner):
 def test_it_is_not_plain_when_there_is_more_to_it(reasoner, delete, insert):
     """Not there; another property, subject or kind; one for two; no literals."""
     before = set(reasoner.asserted())
-    assert exchange(reasoner._engine._abox, delete, insert) is None
+    assert replace_literals(reasoner._engine._abox, delete, insert) is None
     try:
         reasoner.apply(delete=delete, insert=insert)
         before = (before - set(delete)) | set(insert)
@@ -109,21 +116,21 @@ def state(reasoner):
 
 
 def follow(monkeypatch, seed, theme):
-    """One world from which many go at once, and one from which they go by the rules; how many departed."""
+    """One world from which many go at once, and one from which they go by the rules; how many removed."""
     world, random_ = World(seed, theme), random.Random(seed)
     try:
         pair = Reasoner(world.asserted), Reasoner(world.asserted)
     except Inconsistent:
         return 0
-    departed = []
+    removed = []
 
     def depart_and_tell(*of):
-        gone = depart_among(*of)
-        departed.extend(gone)
+        gone = remove_independent(*of)
+        removed.extend(gone)
         return gone
 
-    monkeypatch.setattr(paths, "depart", lambda *_: None)
-    monkeypatch.setattr(paths, "depart_among", depart_and_tell)
+    monkeypatch.setattr(paths, "remove_individuals", lambda *_: None)
+    monkeypatch.setattr(paths, "remove_independent", depart_and_tell)
     for _ in range(10):
         insert = [world._fact() for _ in range(random_.randint(1, 12))]
         if is_refused(pair[0], insert) or is_refused(pair[1], insert):
@@ -133,10 +140,10 @@ def follow(monkeypatch, seed, theme):
         going = set(random_.sample(subjects, random_.randint(0, len(subjects))))
         delete = [t for t in said if t[0] in going or random_.random() < 0.1]
         for reasoner, many in zip(pair, (1, 10**9), strict=True):
-            monkeypatch.setattr(paths, "MANY_GO", many)
+            monkeypatch.setattr(paths, "MANY_DELETED", many)
             reasoner.apply(delete=delete)
         assert state(pair[0]) == state(pair[1]), delete
-    return len(departed)
+    return len(removed)
 
 
 def is_refused(reasoner, insert):
@@ -156,7 +163,7 @@ def test_of_many_those_go_who_concern_nobody(reasoner):
     others = triples(":x a :C . :y a :C ; :free :x . :z a :C . :i6 :free :z . :w a :C ; :p :i6 .")
     reasoner.apply(insert=others)
     gone = [t for t in [*triples(STAR), *others] if t[0] != triple(":i6 a :C")[0]]
-    departed = depart_among(reasoner._engine._abox, gone)
-    assert set(departed) == {*triples(STAR), *triples(":x a :C . :y a :C ; :free :x .")}
-    left = [*asserted_in(BASE), *triples(REST), *(t for t in others if t not in departed)]
+    removed = remove_independent(reasoner._engine._abox, gone)
+    assert set(removed) == {*triples(STAR), *triples(":x a :C . :y a :C ; :free :x .")}
+    left = [*asserted_in(BASE), *triples(REST), *(t for t in others if t not in removed)]
     assert state(reasoner)[:3] == state(Reasoner(left))[:3]

@@ -10,7 +10,7 @@ from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.terms import TYPE, is_literal
 
 
-def in_stars(triples: Iterable[Triple]) -> list[Triple]:
+def order_by_entity(triples: Iterable[Triple]) -> list[Triple]:
     """The same triples: an individual with all that is said of it, then those that only it refers to.
 
     Whoever several refer to comes before them, so that it is known by then.
@@ -31,7 +31,7 @@ def in_stars(triples: Iterable[Triple]) -> list[Triple]:
             if wanted(counted[subject]):
                 heads.setdefault(_beginning(said[subject]), []).append(subject)
         for subject in chain.from_iterable(heads.values()):
-            for star in _star(subject, said, counted):
+            for star in _entity_triples(subject, said, counted):
                 found += star
     return found
 
@@ -41,7 +41,9 @@ def _beginning(told: list[Triple]) -> tuple[Term, ...]:
     return (told[0][2], *(p for _, p, _ in told))
 
 
-def _star(subject: Term, said: dict[Term, list[Triple]], counted: Counter[Term]) -> Iterator[list[Triple]]:
+def _entity_triples(
+    subject: Term, said: dict[Term, list[Triple]], counted: Counter[Term]
+) -> Iterator[list[Triple]]:
     """What is said of an individual and of those that only it refers to; it is taken out of `said`."""
     pending = [subject]
     while pending:

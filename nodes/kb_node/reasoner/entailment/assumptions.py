@@ -29,17 +29,19 @@ Alternatives = list[list[Triple]]
 """Sets of triples of which one holds; none at all is a contradiction."""
 
 
-def given(x: Term, expression: Expression, writer: Writer) -> Alternatives:
+def membership_alternatives(x: Term, expression: Expression, writer: Writer) -> Alternatives:
     """What it says of x to be a member of a class, with names for what must exist."""
     match expression:
         case Named(term):
             return [[]] if term == THING else [[(x, TYPE, term)]]
         case And(parts):
-            choices = islice(product(*(given(x, part, writer) for part in parts)), WIDEST + 1)
+            choices = islice(
+                product(*(membership_alternatives(x, part, writer) for part in parts)), WIDEST + 1
+            )
             whole = [[triple for part in choice for triple in part] for choice in choices]
             return whole if len(whole) <= WIDEST else [[]]
         case Or(parts):
-            whole = [one for part in parts for one in given(x, part, writer)]
+            whole = [one for part in parts for one in membership_alternatives(x, part, writer)]
             return whole if len(whole) <= WIDEST else [[]]
         case OneOf(terms):
             return [[(x, SAME_AS, term)] for term in terms] if len(terms) <= WIDEST else [[]]
@@ -71,7 +73,7 @@ def _given_values(x: Term, number: int, role: Role, filler: Expression, writer: 
     triples += [(one, DIFFERENT_FROM, other) for one, other in combinations(values, 2)]
     if filler == ANYTHING:
         return [triples]
-    choices = list(islice(product(*(given(y, filler, writer) for y in values)), WIDEST + 1))
+    choices = list(islice(product(*(membership_alternatives(y, filler, writer) for y in values)), WIDEST + 1))
     if len(choices) > WIDEST:
         return [triples]
     return [[*triples, *(triple for part in choice for triple in part)] for choice in choices]

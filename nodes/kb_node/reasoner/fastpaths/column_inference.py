@@ -22,11 +22,11 @@ from semmap.nodes.kb_node.reasoner.tbox.axioms import Chain, Role
 Pair = tuple[int, int]
 
 
-class Following:
+class ColumnInference:
     """What follows from columns that are in the store now, in an ABox in which no nodes are the same."""
 
     def __init__(self, abox: ABox, columns: Sequence[Column], before: Ends) -> None:
-        """`before` is of all ends of the columns, as they were before, for all predicates `looked_for`."""
+        """`before` are the ends of the columns before they were stored, for all `relevant_predicates`."""
         self._abox = abox
         self._columns = columns
         self._before = before
@@ -35,7 +35,7 @@ class Following:
         self._made: dict[int, dict[Pair, tuple[Edge, Edge]]] = {}
         self._valued: dict[int, None] = {}
 
-    def take(self, column: Column, edges: Sequence[int]) -> Iterable[int]:
+    def apply_rules(self, column: Column, edges: Sequence[int]) -> Iterable[int]:
         """Widen the kinds of a column's ends, and note what its edges make; which places are doubtful."""
         doubtful = self._widen(column, edges)
         rules = self._abox.steps.rules(column.predicate)
@@ -44,7 +44,7 @@ class Following:
         if rules.limits:
             is_alone = self._abox.store.out.is_alone
             return doubtful.union(
-                at for at, edge in enumerate(edges) if not (rules.of_values and is_alone(edge))
+                at for at, edge in enumerate(edges) if not (rules.only_uniqueness and is_alone(edge))
             )
         doubtful.update(self._excluded(column, rules))
         if rules.irreflexive:
@@ -55,7 +55,7 @@ class Following:
                 self._conclude(column, edges, chain, is_head, forwards)
         return doubtful
 
-    def made(self) -> Iterator[Column]:
+    def conclusions(self) -> Iterator[Column]:
         """The edges that follow from those that were taken, and are not there."""
         for result, pairs in self._made.items():
             subjects, objects = zip(*pairs, strict=True)
@@ -102,7 +102,7 @@ class Following:
         return {
             at
             for at, pair in enumerate(kinds if special else ())
-            if pair in special and not self._is_all_told(steps[pair], pair, edges[at])
+            if pair in special and not self._is_done(steps[pair], pair, edges[at])
         }
 
     def _widen_one(self, node: int, mask: int) -> None:
@@ -114,9 +114,9 @@ class Following:
         if is_awaited or now is before or now.clash:
             return
         new = now.mask & ~before.mask
-        concerned = abox.steps.concerned
+        relevant_classes = abox.steps.relevant_classes
         if not any(
-            concerned(p)[which] & new
+            relevant_classes(p)[which] & new
             for which, side in enumerate((store.out, store.into))
             for p in side.predicates(node)
         ):
@@ -124,9 +124,9 @@ class Following:
             if now.values != before.values:
                 self._valued[node] = None
 
-    def _is_all_told(self, step: Step, pair: tuple[Kind, Kind], edge: int) -> bool:
+    def _is_done(self, step: Step, pair: tuple[Kind, Kind], edge: int) -> bool:
         """Whether nothing is left of a step of an edge once the kinds are widened."""
-        is_plain = not step.special or (step.of_values and self._abox.store.out.is_alone(edge))
+        is_plain = not step.special or (step.only_uniqueness and self._abox.store.out.is_alone(edge))
         return is_plain and pair[1].excluded is None
 
     # Pairs
@@ -147,7 +147,7 @@ class Following:
         self, column: Column, edges: Sequence[int], chain: Chain, is_head: bool, forwards: bool
     ) -> None:
         """Note what a chain makes that edges begin, or that they end."""
-        abox, role = self._abox, _role_beside(chain, is_head)
+        abox, role = self._abox, _other_role(chain, is_head)
         group = abox.steps.group(role)
         ends = column.subjects, column.objects
         outer, middle = ends if is_head == forwards else ends[::-1]
@@ -185,25 +185,25 @@ class Following:
         return found
 
 
-def looked_for(abox: ABox, columns: Iterable[Column]) -> set[int]:
+def relevant_predicates(abox: ABox, columns: Iterable[Column]) -> set[int]:
     """The predicates of edges that matter to whether something follows from new ones, and their own."""
     found: set[int] = set()
     for predicate in {column.predicate for column in columns}:
         found.add(predicate)
-        for role in _roles_beside(abox.steps.rules(predicate)):
+        for role in _other_roles(abox.steps.rules(predicate)):
             group = abox.steps.group(role)
             found.update(group.out, group.into)
     return found
 
 
-def _roles_beside(rules: EdgeRules | None) -> Iterator[Role]:
+def _other_roles(rules: EdgeRules | None) -> Iterator[Role]:
     """The roles of other edges that rules look for."""
     if rules is not None:
         yield from (other for _, other in rules.exclusive)
-        yield from (_role_beside(chain, True) for _, chain in rules.heads)
-        yield from (_role_beside(chain, False) for _, chain in rules.tails)
+        yield from (_other_role(chain, True) for _, chain in rules.heads)
+        yield from (_other_role(chain, False) for _, chain in rules.tails)
 
 
-def _role_beside(chain: Chain, is_head: bool) -> Role:
+def _other_role(chain: Chain, is_head: bool) -> Role:
     """How a chain goes on from the middle, seen from its first edge or else its second."""
     return (chain.second, False) if is_head else (chain.first, True)

@@ -15,7 +15,7 @@ _LOOK_S = 0.5
 _CHILD = "semmap.nodes.kb_node.owlrl.closure_process"
 
 
-def owlrl_faults(triples: Iterable[Triple], *, is_over: Callable[[], bool] = lambda: False) -> list[str]:
+def find_owlrl_faults(triples: Iterable[Triple], *, is_over: Callable[[], bool] = lambda: False) -> list[str]:
     """What owlrl finds wrong; empty when it finds the triples consistent. Takes minutes for a large map.
 
     It is given up as soon as `is_over()`, which is asked twice a second. Raises Refused when it does not come
