@@ -255,7 +255,7 @@ class Reasoner:
         return self._engine.computed(s, p, o)
 
     def given(self, s: Term | None = None, p: Term | None = None, o: Term | None = None) -> Iterator[Triple]:
-        """Return the facts of a pattern that hold without inference: asserted (not suppressed) or computed."""
+        """Return the facts of a pattern that are asserted and not suppressed, or computed."""
         return chain(self._engine.asserted(s, p, o), self._engine.computed(s, p, o))
 
     def is_computed(self, triple: Triple) -> bool:

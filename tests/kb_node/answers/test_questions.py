@@ -247,7 +247,7 @@ def test_what_would_take_long_is_not_tried_on_the_map_itself(furnished):
         (("Chair", "disjointWith", "Kitchen"), "nothing is both a chair and a Kitchen, because "),
         (
             ("chair1", "owl:topObjectProperty", "kitchen1"),
-            "chair1 has top object property kitchen1 (always).",
+            "chair1 has top object property kitchen1 (axiomatic).",
         ),
         (("Chair", "subClassOf", "Object"), "every chair is an Object, because "),
         (("chair1", "type", "owl:Thing"), "chair1 is something"),

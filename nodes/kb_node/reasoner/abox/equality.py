@@ -1,4 +1,4 @@
-"""When two nodes are the same: asserted, by value, by a limit on values, by a key."""
+"""Equality of nodes: asserted, by value, by a limit on values, or by a key."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from semmap.nodes.kb_node.reasoner.terms import is_literal
 
 
 class Equality:
-    """The rules that make individuals, or spellings of a value, the same in an ABox."""
+    """The rules that equate individuals, or spellings of a value, in an ABox."""
 
     def __init__(self, abox: ABox) -> None:
         self._abox = abox
@@ -19,7 +19,7 @@ class Equality:
         self._steps = abox.steps
 
     def merge_spellings(self, literal: int) -> None:
-        """Spellings of one value are the same node where that matters (dt-eq)."""
+        """Equate a literal with the other spellings of its value (dt-eq)."""
         value = self._abox.value(literal)
         if value is None:
             return
@@ -30,7 +30,7 @@ class Equality:
             self.merge(known[0], literal)
 
     def merge(self, one: int, other: int, *claims: Claim) -> None:
-        """Two nodes are the same (eq-*): one set of members, one mask, and all edges looked at anew."""
+        """Equate two nodes (eq-*): unite members and classes, and process all edges again."""
         mine, theirs = self._abox.equals.get(one), self._abox.equals.get(other)
         if one == other or (mine is not None and mine is theirs):
             return
@@ -52,7 +52,7 @@ class Equality:
             self._abox.fresh += self._store.into.all(node)
 
     def _merge_spellings_of(self, *literals: int) -> None:
-        """A literal without a known value is the same as another: so it is as all spellings of that one."""
+        """Equate a literal without a known value with all spellings of the literal that it equals."""
         self._abox.has_unknown_equals = True
         values = {self._abox.value(literal) for literal in literals} - {None}
         for term, node in list(self._store.numbers.items()) if values else ():
@@ -74,12 +74,12 @@ class Equality:
             )
 
     def _different(self, one: int, other: int) -> Iterator[Claim]:
-        """The literals known to be the same as two, among which are two values."""
+        """Yield the equality claims of two literals that have different values."""
         for node in (one, other):
             yield from (Same(node, member) for member in self._abox.members(node) if member != node)
 
     def apply_limit(self, edge: int, owner: int, value: int, limit: Limit) -> None:
-        """At most one value: this one and any other are the same (prp-fp, prp-ifp, cls-maxc2, cls-maxqc*)."""
+        """Equate a value with any other if there may be only one (prp-fp, prp-ifp, cls-maxc2, cls-maxqc*)."""
         group = self._steps.group(limit.role)
         if (
             not group.into
@@ -105,7 +105,7 @@ class Equality:
             return
 
     def apply_key(self, node: int, key: Key) -> None:
-        """Somebody else of the class who has a value in common for every property of the key (prp-key)."""
+        """Equate a node with other members that share a value of every key property (prp-key)."""
         onward = self._steps.group((key.properties[0], False))
         back = self._steps.group((key.properties[0], True))
         for first, end, value in list(self._abox.related(node, onward)):
@@ -124,7 +124,7 @@ class Equality:
                     self.merge(node, other, *claims, Member(node, key.owner), Member(other, key.owner))
 
     def _agreement(self, one: int, other: int, role: Role) -> list[Claim] | None:
-        """Two edges that lead from two nodes to the same value, or None."""
+        """Return the claims that two nodes have a common value of a role, or None."""
         group = self._steps.group(role)
         for first, here, value in self._abox.related(one, group):
             for second, there, found in self._abox.related(other, group):

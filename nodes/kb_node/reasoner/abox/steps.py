@@ -1,4 +1,4 @@
-"""What one edge says of the two individuals that it joins, worked out once for each pair of kinds."""
+"""The effect of an edge on its two individuals, computed once for each pair of kinds."""
 
 from __future__ import annotations
 
@@ -12,52 +12,52 @@ from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 
 @dataclass(frozen=True, slots=True)
 class EdgeRules:
-    """What a property's new edges are checked for whatever the kinds are."""
+    """The rules for new edges of a property that do not depend on kinds."""
 
     irreflexive: Role | None
     limits: tuple[tuple[bool, Limit], ...]
-    """Limits that everybody has (prp-fp, prp-ifp), and whether the owner is the subject."""
+    """Limits for all individuals (prp-fp, prp-ifp), and whether the owner is the subject."""
     exclusive: tuple[tuple[Role, Role], ...]
-    """(implied role, role that must not hold beside it)."""
+    """(implied role, role that must not hold at the same time)."""
     exclusive_group: Group
-    """Along which edges of the subject any of those roles leads."""
+    """The edges of the subject along which the excluded roles lead."""
     heads: tuple[tuple[bool, Chain], ...]
-    """Chains that the edge may begin, and whether it is read forwards."""
+    """Chains that the edge may start, and whether it is read forwards."""
     tails: tuple[tuple[bool, Chain], ...]
     """Chains that the edge may end."""
     beyond: tuple[Group, Group]
-    """Along which edges of the subject, and of the object, these chains go on."""
+    """The edges of the subject, and of the object, along which these chains continue."""
     by_value: bool
-    """Whether it matters that two literals are spellings of one value."""
+    """Whether literals must be compared by value."""
     only_uniqueness: bool
-    """Whether all there is to check is that the subject has no other edge with the predicate."""
+    """Whether the only check is that the subject has no other edge with the predicate."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """The kinds of subject and object afterwards, and what else must be looked at."""
+    """The resulting kinds of subject and object, and further checks."""
 
     subject: Kind
     object: Kind
     clash: tuple[Role, int, int] | None
-    """A role, an owner and a filler (or ANY) that it must not lead to (cls-maxc1, cls-maxqc1)."""
+    """A forbidden combination of role, owner and filler (or ANY) (cls-maxc1, cls-maxqc1)."""
     limits: tuple[tuple[bool, Limit], ...]
-    """Limits that the edge now counts for, and whether their owner is the subject."""
+    """Limits that apply to the edge, and whether their owner is the subject."""
     keys: tuple[tuple[bool, Key], ...]
-    """Keys that now identify the subject (or else the object)."""
+    """Keys that apply to the subject (or else the object)."""
     special: bool
-    """Whether there is anything beyond the kinds."""
+    """Whether there are further checks."""
     only_uniqueness: bool
-    """Whether there is not after all, when the subject has no other edge with the predicate."""
+    """Whether no check is needed if the subject has no other edge with the predicate."""
     rules: EdgeRules | None
-    """What a new edge of the property is checked for besides; None for nothing."""
+    """The rules for a new edge that do not depend on kinds; None if there are none."""
 
 
 class Steps:
-    """The memo of steps, and the rules of each property."""
+    """The cache of steps, and the rules of each property."""
 
     LIMIT = 50_000
-    """Steps kept; beyond that the memo starts anew (a home has about fifty)."""
+    """Maximum number of cached steps, after which the cache is cleared (a home has about 50)."""
 
     def __init__(self, schema: Schema, kinds: Kinds) -> None:
         self._schema = schema
@@ -69,7 +69,7 @@ class Steps:
         self._rules: dict[int, EdgeRules | None] = {}
 
     def step(self, prop: int, subject: Kind, object_: Kind) -> Step:
-        """What an edge of a property makes of two kinds."""
+        """Return the effect of an edge of a property on two kinds."""
         found = self.known.get((prop, subject, object_))
         if found is None:
             if len(self.known) >= self.LIMIT:
@@ -78,13 +78,13 @@ class Steps:
         return found
 
     def rules(self, prop: int) -> EdgeRules | None:
-        """What new edges of a property are checked for whatever the kinds are; None for nothing."""
+        """Return the rules for new edges of a property that do not depend on kinds, or None."""
         if prop not in self._rules:
             self._rules[prop] = self._edge_rules(prop)
         return self._rules[prop]
 
     def relevant_classes(self, prop: int) -> tuple[int, int]:
-        """The classes of the subject, and those of the object, that a step of a property depends on."""
+        """Return the classes of the subject and of the object that affect the steps of a property."""
         found = self._concerned.get(prop)
         if found is None:
             masks = [0, 0]
@@ -100,7 +100,7 @@ class Steps:
         return found
 
     def producing_chains(self, prop: int) -> tuple[tuple[bool, Chain], ...]:
-        """The chains that may make what an edge of a property implies, and whether that is backwards."""
+        """Return the chains that may imply the same as an edge of a property, and whether backwards."""
         found = self._producing_chains.get(prop)
         if found is None:
             found = self._producing_chains[prop] = tuple(
@@ -112,7 +112,7 @@ class Steps:
         return found
 
     def chain_starts(self, prop: int) -> tuple[Group, Group]:
-        """Return the groups along which `producing_chains` start: at a subject, and backwards at an object."""
+        """Return where `producing_chains` start: the groups of a subject, and backwards of an object."""
         found = self._chain_starts.get(prop)
         if found is None:
             groups: tuple[list[Group], list[Group]] = [], []
@@ -122,11 +122,11 @@ class Steps:
         return found
 
     def group(self, role: Role) -> Group:
-        """Along which edges a role leads."""
+        """Return the edges along which a role leads."""
         return self._schema.group(role)
 
     def _compute(self, prop: int, subject: Kind, object_: Kind) -> Step:
-        wider_subject, wider_object = self._added(prop, subject, object_)
+        wider_subject, wider_object = self._widened(prop, subject, object_)
         if wider_subject is not subject or wider_object is not object_:
             return self.step(prop, wider_subject, wider_object)
         clash, keys = None, []
@@ -162,12 +162,12 @@ class Steps:
         )
 
     def _only_check_uniqueness(self, prop: int, limits: list[tuple[bool, Limit]]) -> bool:
-        """Whether limits are kept if the subject has no other edge with the predicate."""
+        """Return whether limits are met if the subject has no other edge with the predicate."""
         alone = Group((prop,), ())
         return all(at_subject and self.group(limit.role) == alone for at_subject, limit in limits)
 
-    def _added(self, prop: int, subject: Kind, object_: Kind) -> tuple[Kind, Kind]:
-        """The kinds with what domains, ranges and restrictions add at once."""
+    def _widened(self, prop: int, subject: Kind, object_: Kind) -> tuple[Kind, Kind]:
+        """Return the kinds after domains, ranges and restrictions are applied once."""
         to_subject = to_object = 0
         for q, backwards in self._schema.roles(prop):
             axioms = self._schema.axioms[q]
@@ -228,7 +228,7 @@ class Steps:
 
 
 def _union(groups: Iterable[Group]) -> Group:
-    """What any of some leads along."""
+    """Return the union of groups."""
     out, into = dict[int, None](), dict[int, None]()
     for group in groups:
         out.update(dict.fromkeys(group.out))

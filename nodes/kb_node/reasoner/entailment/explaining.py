@@ -1,4 +1,4 @@
-"""Why something follows, or cannot be, where no rule says so: the asserted triples that are enough for it."""
+"""Proofs beyond the rules: why a statement is entailed or excluded, as a set of asserted triples."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS
 
 _LABEL, _SUB_CLASS_OF = iri("rdfs:label"), iri("rdfs:subClassOf")
 _DENIED = "_:denied"
-"""A node for what is said not to hold."""
+"""The blank node of a negated statement."""
 _NEAR = 2
-"""Steps from what a question names to the facts that may matter."""
+"""Number of steps from the terms of a query to the facts that are used."""
 _FACTS = 2000
-"""Facts that are looked at, at most; with fewer a proof may be missed, but none is wrong."""
+"""Maximum number of facts. With fewer facts proofs may be missed, but no proof is wrong."""
 _SMALL = 5000
-"""Triples that can be worked out anew in a second, for suppositions of the schema."""
+"""Maximum number of triples for assumptions about the schema: recomputing them takes about a second."""
 PATIENCE_S = 2.0
-"""How long a proof is looked for, and then again how long it is made smaller, in time of the processor."""
+"""CPU time limit for the search for a proof, and again for reducing it [s]."""
 
 
 def nearby(reasoner: Reasoner, terms: Sequence[Term]) -> list[Triple]:
-    """The schema with its labels, and the facts within a few steps of some individuals.
+    """Return the schema with its labels, and the facts within a few steps of some individuals.
 
-    Whatever follows from these follows from all.
+    All conclusions from these triples also follow from the whole map.
     """
     schema = [triple for triple in reasoner.asserted() if triple[1] == _LABEL or is_schema(triple)]
     facts: dict[Triple, None] = {}
@@ -55,10 +55,10 @@ def nearby(reasoner: Reasoner, terms: Sequence[Term]) -> list[Triple]:
 def why_entailed(
     reasoner: Reasoner, triple: Triple, *, words: Words | None = None, patience_s: float = PATIENCE_S
 ) -> Explanation | None:
-    """Why a triple follows that no rule derives; None if no proof is found in time. `words` tell of it.
+    """Return why a triple follows that no rule derives; None if no proof is found in time.
 
-    The proof is by refutation, generic individuals and names for what must exist, so it has no steps; its
-    support is minimal unless making it smaller takes too long.
+    The proof uses refutation, generic individuals, and names for values that must exist. So it has no steps.
+    Its support is minimal unless reducing it exceeds the time limit. `words` are used for its text.
     """
     support = _support(reasoner, [triple], patience_s)
     if support is None:
@@ -70,11 +70,11 @@ def why_entailed(
 def why_excluded(
     reasoner: Reasoner, supposed: Triple, *, words: Words | None = None, patience_s: float = PATIENCE_S
 ) -> Explanation | None:
-    """Why a triple about individuals cannot hold although no rule contradicts it; None if no proof is found.
+    """Return why a triple about individuals cannot hold although no rule contradicts it; None without proof.
 
-    Its contrary is proved, as `why_entailed` proves; what comes back is as `refutation.refute` has it.
+    Proves its negation as `why_entailed` does. The result has the form of `refutation.refute`.
     """
-    support = None if is_schema(supposed) else _support(reasoner, _contrary(supposed), patience_s)
+    support = None if is_schema(supposed) else _support(reasoner, _negation(supposed), patience_s)
     if support is None:
         return None
     s, p, o = supposed
@@ -87,8 +87,8 @@ def why_excluded(
     )
 
 
-def _contrary(triple: Triple) -> list[Triple]:
-    """A graph that says that a triple about individuals does not hold."""
+def _negation(triple: Triple) -> list[Triple]:
+    """Return a graph that states the negation of a triple about individuals."""
     s, p, o = triple
     if p == TYPE:
         return [(s, TYPE, _DENIED), (_DENIED, iri("owl:complementOf"), o)]
@@ -103,7 +103,7 @@ def _contrary(triple: Triple) -> list[Triple]:
 
 
 def _support(reasoner: Reasoner, goal: Sequence[Triple], patience_s: float) -> tuple[Triple, ...] | None:
-    """The asserted triples from which a graph follows, as few as are found in time; None without a proof."""
+    """Return asserted triples that entail a graph, reduced within the time limit; None without a proof."""
     allow_recompute = len(reasoner) <= _SMALL
     if not entails(reasoner, goal, Effort(patience_s, allow_recompute=allow_recompute)):
         return None
@@ -117,9 +117,9 @@ def _support(reasoner: Reasoner, goal: Sequence[Triple], patience_s: float) -> t
 
 
 def empty_classes(reasoner: Reasoner, classes: Iterable[Term], patience_s: float) -> Iterator[Explanation]:
-    """Why nothing can be of some classes, although the rules allow it, because of what must exist for it.
+    """Yield why classes are unsatisfiable because of values that their members must have.
 
-    Each that is found, for so many seconds of the processor's time.
+    The rules do not find these. The search ends after `patience_s` seconds of CPU time.
     """
     until_s = time.process_time() + patience_s
     known = set(reasoner.asserted())
@@ -155,9 +155,9 @@ def _suffice(triples: Sequence[Triple], goal: Sequence[Triple]) -> bool:
 def _shrunk(
     triples: list[Triple], suffice: Callable[[Sequence[Triple]], bool], until_s: float
 ) -> list[Triple]:
-    """Fewer triples that suffice, in their order: first large parts are left out, then single triples.
+    """Return fewer triples that suffice: first large parts are left out, then single triples.
 
-    `until_s` is a time of this thread's clock, so that what is told does not depend on who else is at work.
+    `until_s` is CPU time of this thread, so that results do not depend on the load of the machine.
     """
     size = len(triples)
     while size > 1 and time.thread_time() < until_s:

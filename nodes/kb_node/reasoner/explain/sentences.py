@@ -1,4 +1,4 @@
-"""Explanations in words: one sentence, with labels instead of IRIs, for somebody who builds robots."""
+"""Explanations as English sentences, with labels instead of IRIs."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ _STRUCTURE: Final = frozenset(
         "owl:maxQualifiedCardinality owl:qualifiedCardinality owl:minCardinality owl:minQualifiedCardinality"
     )
 )
-"""Predicates that are told with the class or axiom they are a part of."""
+"""Predicates that are included in the clause of their class or axiom."""
 _PARTS: Final = frozenset(iris("owl:unionOf owl:intersectionOf owl:oneOf owl:complementOf"))
-"""Predicates that are told where their subject, if it has no name, is spoken of."""
+"""Predicates that are included where their anonymous subject occurs."""
 _LIMITS: Final = ("prp-fp", "prp-ifp", "cls-maxc2", "cls-maxqc3", "cls-maxqc4")
 _CLASHES: Final = ("cax-dw", "cax-adc", "cls-com")
 
@@ -37,12 +37,12 @@ _CLASHES: Final = ("cax-dw", "cax-adc", "cls-com")
 def proof_sentence(
     goal: Triple | None, support: Sequence[Triple], steps: Sequence[Step], words: Words
 ) -> str:
-    """Tell a proof: what is the case or cannot be, and the asserted facts that make it so."""
+    """Return the sentence of a proof: the conclusion or contradiction, and the asserted facts behind it."""
     verbalizer = _Verbalizer(support, words)
     if goal is not None:
         claim = verbalizer.clause(goal)
         if not steps:
-            return f"{claim} ({'asserted' if support else 'always'})."
+            return f"{claim} ({'asserted' if support else 'axiomatic'})."
         return _because(claim, verbalizer.reasons(support, goal))
     subject, headline = _headline(steps, verbalizer)
     reasons = verbalizer.reasons(support, (subject, TYPE, "") if subject else None)
@@ -50,42 +50,42 @@ def proof_sentence(
 
 
 def entailment_sentence(goal: Triple, support: Sequence[Triple], words: Words) -> str:
-    """Tell a conclusion that no rule draws, and the asserted triples that make it so, the facts first."""
+    """Return the sentence of a proof without rules: the conclusion and its support, facts before axioms."""
     verbalizer = _Verbalizer((*support, goal), words)
     facts_first = sorted(support, key=verbalizer.axioms.is_axiom)
     claim = verbalizer.clause(goal)
-    return _because(claim, verbalizer.reasons(facts_first, goal)) if support else f"{claim} (always)."
+    return _because(claim, verbalizer.reasons(facts_first, goal)) if support else f"{claim} (axiomatic)."
 
 
 def refutation_sentence(supposed: Triple, support: Sequence[Triple], words: Words) -> str:
-    """Tell a refutation: what is not the case, because of the rest of a contradictory set of triples."""
+    """Return the sentence of a refutation: the negated assumption, and the triples that contradict it."""
     verbalizer = _Verbalizer(support, words)
     others = [triple for triple in support if triple != supposed]
-    others.sort(key=verbalizer.axioms.is_axiom)  # the facts first
+    others.sort(key=verbalizer.axioms.is_axiom)  # facts before axioms
     claim = verbalizer.negated_clause(supposed)
     reasons = verbalizer.reasons(others, supposed)
-    is_said = claim in map(verbalizer.clause, others)
-    if is_said or reasons == [f"{claim} (asserted)"]:
+    is_asserted = claim in map(verbalizer.clause, others)
+    if is_asserted or reasons == [f"{claim} (asserted)"]:
         return f"{claim} (asserted)."
     return _because(claim, reasons)
 
 
 def triple_clause(triple: Triple, words: Words) -> str:
-    """A triple as a clause: "milk1 is on counter1"."""
+    """Return a triple as a clause: "milk1 is on counter1"."""
     return _Verbalizer((triple,), words).clause(triple)
 
 
 class Clause(NamedTuple):
-    """A triple in words, and whether it is an axiom, which the TBox says, rather than a fact."""
+    """A triple in words, and whether it is an axiom of the TBox rather than a fact."""
 
     text: str
     is_axiom: bool
 
 
 def clauses(triples: Iterable[Triple], proof: Sequence[Triple], words: Words) -> dict[Triple, Clause]:
-    """The triples of a proof in words, without those that are told with the axiom they are a part of.
+    """Return triples of a proof as clauses. Parts of an axiom are included in the clause of the axiom.
 
-    `proof` has all triples of it: what anonymous classes and lists are is read there.
+    `proof` has all triples of the proof, which define the anonymous classes and lists.
     """
     verbalizer = _Verbalizer(proof, words)
     return {
@@ -96,17 +96,17 @@ def clauses(triples: Iterable[Triple], proof: Sequence[Triple], words: Words) ->
 
 
 def mark_measured(text: str, facts: Iterable[Triple], words: Words) -> str:
-    """The sentence of a proof, in which computed facts are not told as asserted."""
+    """Return the sentence of a proof with the computed `facts` marked as measured instead of asserted."""
     for fact in facts:
         verbalizer = _Verbalizer((fact,), words)
-        for who in (None, "it"):
-            clause = verbalizer.clause(fact, who)
+        for subject in (None, "it"):
+            clause = verbalizer.clause(fact, subject)
             text = text.replace(f"{clause} (asserted)", f"{clause} (measured)")
     return text
 
 
 def negated_triple_clause(triple: Triple, words: Words) -> str:
-    """What it is that a triple does not hold, as a clause: "milk1 is not on counter1"."""
+    """Return the negation of a triple as a clause: "milk1 is not on counter1"."""
     return _Verbalizer((triple,), words).negated_clause(triple)
 
 
@@ -119,42 +119,37 @@ def _joined(clauses: Sequence[str]) -> str:
 
 
 class _Verbalizer:
-    """Says triples, those of one proof."""
+    """Converts the triples of one proof to clauses."""
 
     def __init__(self, triples: Sequence[Triple], words: Words) -> None:
         self.axioms = AxiomVerbalizer(triples, words)
         self.words = words
 
     def name(self, term: Term) -> str:
-        """An individual or a value."""
+        """Return the name of an individual, or a value."""
         return self.words.name(term)
 
     def member_phrase(self, cls: Term) -> str:
-        """A member of a class."""
+        """Return a phrase for a member of a class."""
         return self.axioms.member_phrase(cls)
 
-    def what(self, prop: Term) -> str:
-        """A property by its label, in quotation marks unless it is what something has."""
-        verb = self.words.verb_phrase(prop)
-        return verb.rest if verb.kind == "has" else f"“{verb.with_object('').strip()}”"
-
-    def clause(self, triple: Triple, who: str | None = None) -> str:
-        """A triple as a clause; `who` is another word for its subject."""
+    def clause(self, triple: Triple, subject: str | None = None) -> str:
+        """Return a triple as a clause. `subject` replaces the name of its subject."""
         axiom = self.axioms.axiom_clause(triple)
         if axiom is not None:
             return axiom
         s, p, o = triple
-        who = who or self.name(s)
+        subject = subject or self.name(s)
         if p == TYPE:
-            return f"{who} {self.axioms.membership(o)}"
+            return f"{subject} {self.axioms.membership(o)}"
         if p == SAME_AS:
-            return f"{who} is the same as {self.name(o)}"
+            return f"{subject} is the same as {self.name(o)}"
         if p == DIFFERENT_FROM:
-            return f"{who} is different from {'itself' if s == o else self.name(o)}"
-        return f"{who} {self.words.predicate_phrase(p, o, reflexive=s == o)}"
+            return f"{subject} is different from {'itself' if s == o else self.name(o)}"
+        return f"{subject} {self.words.predicate_phrase(p, o, reflexive=s == o)}"
 
     def negated_clause(self, triple: Triple) -> str:
-        """That a triple does not hold, as a clause."""
+        """Return the negation of a triple as a clause."""
         s, p, o = triple
         if self.axioms.is_axiom(triple):
             return f"it is not true that {self.clause(triple)}"
@@ -167,7 +162,10 @@ class _Verbalizer:
         return f"{self.name(s)} {self.words.predicate_phrase(p, o, negated=True, reflexive=s == o)}"
 
     def reasons(self, support: Sequence[Triple], claim: Triple | None) -> list[str]:
-        """The triples that have clauses, in order; "it" is who alone was named just before."""
+        """Return the clauses of a support, in order.
+
+        A subject is replaced by "it" if it is the only individual named in the clause before.
+        """
         clauses: list[str] = []
         before = self._only_one_named(claim) if claim else None
         for triple in support:
@@ -188,12 +186,12 @@ class _Verbalizer:
         return clauses
 
     def _only_one_named(self, triple: Triple) -> Term | None:
-        """The subject, if a clause names no other individual."""
+        """Return the subject of a triple if its clause names no other individual, else None."""
         s, p, o = triple
         return s if p == TYPE or is_literal(o) or s == o else None
 
     def is_part_of_axiom(self, triple: Triple) -> bool:
-        """Whether a triple has no clause of its own, because it is a part of an axiom."""
+        """Return whether a triple is part of an axiom and therefore has no clause of its own."""
         return triple[1] in _STRUCTURE or self._is_part(triple)
 
     def _is_part(self, triple: Triple) -> bool:
@@ -211,7 +209,7 @@ class _Verbalizer:
 
 
 def _headline(steps: Sequence[Step], verbalizer: _Verbalizer) -> tuple[Term | None, str]:
-    """Who a contradiction is about, if it is about one thing only, and what cannot be."""
+    """Return the subject of a contradiction, if there is only one, and the clause that states it."""
     last = steps[-1]
     is_axiom = verbalizer.axioms.is_axiom
     facts = [triple for triple in last.premises if not is_axiom(triple) and triple[1] not in _STRUCTURE]
@@ -227,8 +225,8 @@ def _headline(steps: Sequence[Step], verbalizer: _Verbalizer) -> tuple[Term | No
     if last.rule.startswith("eq-diff"):
         if s == o:
             return s, f"{who} cannot be different from itself"
-        if told := _one_too_many({(s, o), (o, s)}, steps, verbalizer):
-            return None, told
+        if claim := _value_conflict({(s, o), (o, s)}, steps, verbalizer):
+            return None, claim
         return None, f"{who} and {verbalizer.name(o)} cannot be both the same and different"
     if last.rule in ("cls-nothing2", *_CLASHES):
         return s, f"{who} cannot be {verbalizer.member_phrase(o)}"
@@ -245,16 +243,16 @@ def _headline(steps: Sequence[Step], verbalizer: _Verbalizer) -> tuple[Term | No
 
 
 def _infinitive(clause: str) -> str:
-    """What is said of a thing, after "cannot": "be on table1", "have mass 3"."""
+    """Return a verb phrase as it follows "cannot": "be on table1", "have mass 3"."""
     first, blank, rest = clause.partition(" ")
     base = {"is": "be", "has": "have", "does": "do"}.get(first)
     return base_form(clause) if base is None else base + blank + rest
 
 
-def _one_too_many(
+def _value_conflict(
     pairs: set[tuple[Term, Term]], steps: Sequence[Step], verbalizer: _Verbalizer
 ) -> str | None:
-    """The claim when two values that differ had to be the same: who has them, by which property."""
+    """Return the clause for two different values of a property that allows one; None if there are none."""
     for step in steps:
         fact = step.conclusion
         if fact is None or (fact[0], fact[2]) not in pairs or step.rule not in _LIMITS:
@@ -281,15 +279,15 @@ def _one_too_many(
 
 
 def _is_value(triple: Triple, fact: Triple, rule: str) -> bool:
-    """Whether a premise relates the owner to one of the two values."""
+    """Return whether a premise relates the owner to one of the two values."""
     return triple[1] != TYPE and triple[0 if rule == "prp-ifp" else 2] in (fact[0], fact[2])
 
 
 def _ill_typed(fact: Triple, verbalizer: _Verbalizer) -> str:
-    """The claim is about the literal, so who has it is named in the facts."""
+    """Return the clause for a literal outside its datatype. Its subject is named in the facts."""
     s, p, o = fact
     text, kind = (s, o) if p == TYPE and is_literal(s) else (o, f"<{literal(o).datatype}>")
-    own = f"<{literal(text).datatype}>"
+    own, words, name = f"<{literal(text).datatype}>", verbalizer.words, verbalizer.name(text)
     if own != kind:
-        return f"{verbalizer.name(text)} ({verbalizer.words.cls(own)}) is not a value of {verbalizer.words.cls(kind)}"
-    return f"{verbalizer.name(text)} is not a value of {verbalizer.words.cls(kind)}"
+        return f"{name} ({words.cls(own)}) is not a value of {words.cls(kind)}"
+    return f"{name} is not a value of {words.cls(kind)}"

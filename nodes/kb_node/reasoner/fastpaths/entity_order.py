@@ -1,4 +1,4 @@
-"""Triples put in the order in which they are read quickest: star by star, those that are alike together."""
+"""Ordering of triples for fast loading: grouped by entity, entities of the same form together."""
 
 from __future__ import annotations
 
@@ -11,49 +11,47 @@ from semmap.nodes.kb_node.reasoner.terms import TYPE, is_literal
 
 
 def order_by_entity(triples: Iterable[Triple]) -> list[Triple]:
-    """The same triples: an individual with all that is said of it, then those that only it refers to.
+    """Order triples by entity: an individual with all its triples, then those that only it refers to.
 
-    Whoever several refer to comes before them, so that it is known by then.
+    An individual that several others refer to comes before them.
     """
-    said: dict[Term, list[Triple]] = {}
+    described: dict[Term, list[Triple]] = {}
     for triple in triples:
-        if (told := said.get(triple[0])) is None:
-            said[triple[0]] = [triple]
+        if (own := described.get(triple[0])) is None:
+            described[triple[0]] = [triple]
         else:
-            told.append(triple)
-    for told in said.values():
-        told.sort(key=_place)
-    counted = Counter([o for told in said.values() for _, p, o in told if p != TYPE and o in said])
+            own.append(triple)
+    for own in described.values():
+        own.sort(key=_sort_key)
+    counted = Counter([o for own in described.values() for _, p, o in own if p != TYPE and o in described])
     found: list[Triple] = []
     for wanted in (lambda count: count > 1, lambda count: count == 0, lambda count: True):
         heads: dict[tuple[Term, ...], list[Term]] = {}
-        for subject in said:
+        for subject in described:
             if wanted(counted[subject]):
-                heads.setdefault(_beginning(said[subject]), []).append(subject)
+                heads.setdefault(_form_key(described[subject]), []).append(subject)
         for subject in chain.from_iterable(heads.values()):
-            for star in _entity_triples(subject, said, counted):
-                found += star
+            for own in _entity_triples(subject, described, counted):
+                found += own
     return found
 
 
-def _beginning(told: list[Triple]) -> tuple[Term, ...]:
-    """What is the same in what is said of individuals that are likely to be alike."""
-    return (told[0][2], *(p for _, p, _ in told))
+def _form_key(own: list[Triple]) -> tuple[Term, ...]:
+    """Return a key that individuals of the same form are likely to share."""
+    return (own[0][2], *(p for _, p, _ in own))
 
 
 def _entity_triples(
-    subject: Term, said: dict[Term, list[Triple]], counted: Counter[Term]
+    subject: Term, described: dict[Term, list[Triple]], counted: Counter[Term]
 ) -> Iterator[list[Triple]]:
-    """What is said of an individual and of those that only it refers to; it is taken out of `said`."""
+    """Remove from `described` and yield the triples of an individual and of those that only it refers to."""
     pending = [subject]
     while pending:
-        told = said.pop(pending.pop(), None)
-        if told is not None:
-            yield told
-            pending += [
-                o for _, p, o in reversed(told) if counted[o] == 1 and p != TYPE and not is_literal(o)
-            ]
+        own = described.pop(pending.pop(), None)
+        if own is not None:
+            yield own
+            pending += [o for _, p, o in reversed(own) if counted[o] == 1 and p != TYPE and not is_literal(o)]
 
 
-def _place(triple: Triple) -> tuple[bool, Term]:
+def _sort_key(triple: Triple) -> tuple[bool, Term]:
     return triple[1] != TYPE, triple[1]

@@ -1,7 +1,7 @@
 """Fast paths for changes that affect no other individual.
 
-The two that robots ask for all day: a thing is removed with all that was said of it, and a number is
-replaced by another. Everything else is left to `retraction.Retraction`.
+The two most frequent ones: an object is removed with all its triples, and a number is replaced by another.
+All other deletions are left to `retraction.Retraction`.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 _MOST = 256
-"""Edges that are looked at besides those asked for: who has more, as values or computed, is no plain case."""
+"""Maximum number of edges beyond the deleted ones (values and computed edges) for a shortcut."""
 
 
 def remove_individuals(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
-    """Forget individuals of which these are all assertions.
+    """Remove individuals whose assertions are exactly these triples; return the individuals.
 
-    Who they were; None, with nothing done, where it is not plain.
+    Returns None and changes nothing if other individuals may be affected.
     """
     store = abox.store
     wanted, subjects = set(triples), {triple[0] for triple in triples}
@@ -36,38 +36,38 @@ def remove_individuals(abox: ABox, triples: Sequence[Triple]) -> set[Term] | Non
 
 
 def remove_independent(abox: ABox, triples: Sequence[Triple]) -> list[Triple]:
-    """Forget those individuals of which it is plain, among very many: the triples that went with them.
+    """Remove the independent individuals among many, and return their triples.
 
-    Plain is who is described by these triples alone, concerns nobody who stays, and is not joined to
-    somebody of whom it is not plain.
+    An individual is independent if its assertions are all among the triples, if its removal does not affect
+    remaining individuals, and if it is not related to a removed individual that is not independent.
     """
     store, wanted = abox.store, set(triples)
     going = {store.numbers.get(subject, NONE) for subject in {triple[0] for triple in triples}} - {NONE}
-    said: dict[int, list[Triple]] = {}
-    doubtful = [node for node in going if not _is_plain(abox, node, going, wanted, said)]
-    plain = going.difference(doubtful)
+    own: dict[int, list[Triple]] = {}
+    doubtful = [node for node in going if not _is_independent(abox, node, going, wanted, own)]
+    independent = going.difference(doubtful)
     while doubtful:
         node = doubtful.pop()
         others = {store.object[edge] for edge in store.out.all(node)}
         others.update(store.subject[edge] for edge in store.into.all(node))
-        others &= plain
-        plain -= others
+        others &= independent
+        independent -= others
         doubtful += others
-    edges = store.out.gather(plain, len(store.predicate))
-    _forget_spellings(abox, plain, edges)
-    store.erase(plain, edges)
-    return [triple for node in plain for triple in said[node]]
+    edges = store.out.gather(independent, len(store.predicate))
+    _forget_spellings(abox, independent, edges)
+    store.erase(independent, edges)
+    return [triple for node in independent for triple in own[node]]
 
 
-def _is_plain(
-    abox: ABox, node: int, going: Set[int], wanted: set[Triple], said: dict[int, list[Triple]]
+def _is_independent(
+    abox: ABox, node: int, going: Set[int], wanted: set[Triple], own: dict[int, list[Triple]]
 ) -> bool:
-    """Whether nobody who stays is otherwise without a node, all that is asserted of which is `said`, too."""
+    """Return whether removing a node affects no remaining node. Stores its assertions in `own`."""
     store, schema, kinds = abox.store, abox.schema, abox.store.kind
     if node in abox.equals or node in abox.reasons_by_node:
         return False
     term = store.terms[node]
-    mine = said[node] = [(term, TYPE, schema.classes[cls]) for cls in kinds[node].given]
+    mine = own[node] = [(term, TYPE, schema.classes[cls]) for cls in kinds[node].given]
     for edge in store.out.all(node):
         source, other = store.source[edge], store.object[edge]
         if source == DERIVED or edge in abox.reasons_by_edge:
@@ -82,7 +82,7 @@ def _is_plain(
 
 
 def _edges_of(abox: ABox, nodes: Set[int], wanted: set[Triple]) -> list[int] | None:
-    """The edges that leave from nodes; None if what was asserted of these is not exactly what is wanted."""
+    """Return the outgoing edges of nodes; None if their assertions are not exactly `wanted`."""
     store, classes, axioms = abox.store, abox.schema.classes, abox.schema.axioms
     terms, subject, predicate, object_ = store.terms, store.subject, store.predicate, store.object
     asserted = 0
@@ -104,7 +104,7 @@ def _edges_of(abox: ABox, nodes: Set[int], wanted: set[Triple]) -> list[int] | N
 
 
 def _are_independent(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
-    """Whether nothing is otherwise for anybody else without nodes and the edges that leave from them."""
+    """Return whether removing nodes and their outgoing edges affects no other node."""
     store, kinds = abox.store, abox.store.kind
     if not abox.equals.keys().isdisjoint(nodes):
         return False
@@ -122,7 +122,7 @@ def _are_independent(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
 
 
 def _forget_spellings(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> None:
-    """Of literals that only these nodes have, by these edges."""
+    """Remove the spellings of literals that only these nodes use, by these edges."""
     if not abox.spellings:
         return
     store = abox.store
@@ -132,9 +132,9 @@ def _forget_spellings(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> None
 
 
 def replace_literals(abox: ABox, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
-    """Replace values by others of their kind, pair by pair.
+    """Replace literals by others of the same kind, pair by pair; return their subjects.
 
-    Whose values they are; None, with nothing done, where it is not plain.
+    Returns None and changes nothing if the change is not that simple.
     """
     if len(delete) != len(insert) or abox.has_unknown_equals:
         return None
@@ -156,7 +156,7 @@ def replace_literals(abox: ABox, delete: Sequence[Triple], insert: Sequence[Trip
 
 
 def _only_edge(abox: ABox, s: Term, p: Term, o: Term) -> int:
-    """The edge of an asserted triple from which nothing follows and which has none beside it; or NONE."""
+    """Return the edge of an asserted triple if it implies nothing and is the only one of its predicate."""
     store = abox.store
     subject, predicate, literal = store.numbers.get(s), abox.schema.find_property(p), store.numbers.get(o)
     if subject is None or predicate is None or literal is None:
@@ -169,5 +169,5 @@ def _only_edge(abox: ABox, s: Term, p: Term, o: Term) -> int:
     if abox.spellings and abox.value(literal) in abox.spellings:
         return NONE
     kind = store.kind[literal]
-    comes_back = store.kind[subject].values or abox.steps.producing_chains(predicate)
-    return NONE if kind.base is not kind or comes_back or not abox.is_plain(edge) else edge
+    may_reappear = store.kind[subject].values or abox.steps.producing_chains(predicate)
+    return NONE if kind.base is not kind or may_reappear or not abox.is_plain(edge) else edge

@@ -99,7 +99,7 @@ class GeneralEngine:
         return self._fact(triple) is not None
 
     def _fact(self, triple: Triple) -> Triple | None:
-        """Return the fact of a triple, perhaps with another spelling of the value; None if it does not hold."""
+        """Return the fact that a triple states, in any spelling of its value; None if it does not hold."""
         if self._closure.holds(triple):
             return triple
         s, p, o = triple

@@ -19,12 +19,13 @@ HOLDS = {
     ":milk1 dm:isLocatedIn :kitchen1": (
         ":milk1 dm:isOn :counter1 . :counter1 dm:isLocatedIn :kitchen1",
         "milk1 is located in kitchen1, because milk1 is on counter1 (asserted), counter1 is located in "
-        "kitchen1 (asserted), and whatever is on something that is located in something is located in "
+        "kitchen1 (asserted), and everything that is on something that is located in something is located in "
         "the latter.",
     ),
     ":milk1 a dm:Food": (
         ":milk1 a dm:Milk",
-        "milk1 is food, because it is milk (asserted), whatever is milk is a drink, and every drink is food.",
+        "milk1 is food, because it is milk (asserted), everything that is milk is a drink, and every drink "
+        "is food.",
     ),
     ":counter1 dm:supports :milk1": (
         ":milk1 dm:isOn :counter1",
@@ -33,12 +34,12 @@ HOLDS = {
     ),
     ":door1 dm:hasPart :x": (
         ":door1 dm:hasHandle :x",
-        "door1 has part x, because door1 has handle x (asserted), whatever has something as handle has it as "
-        "direct part, and whatever has something as direct part has it as part.",
+        "door1 has part x, because door1 has handle x (asserted), everything that has something as handle "
+        "has it as direct part, and everything that has something as direct part has it as part.",
     ),
     ":x a dm:Handle": (
         ":door1 dm:hasHandle :x",
-        "x is a handle, because door1 has handle x (asserted), and whatever something has as handle "
+        "x is a handle, because door1 has handle x (asserted), and everything that something has as handle "
         "is a handle.",
     ),
     ":f dm:hasAffordance dm:cooling": (
@@ -48,16 +49,17 @@ HOLDS = {
     ),
     ":a a dm:Object": (
         ":a dm:isSwitchedOn false",
-        "a is an object, because it is not switched on (asserted), and whatever has a value for “is switched "
-        "on” is an object.",
+        "a is an object, because it is not switched on (asserted), and everything that has a value for “is "
+        "switched on” is an object.",
     ),
     ":plate1 a dm:Tableware": (
         ":plate1 a dm:Dishware",
-        "plate1 is tableware, because it is dishware (asserted), and whatever is dishware is tableware.",
+        "plate1 is tableware, because it is dishware (asserted), and everything that is dishware is "
+        "tableware.",
     ),
     ":door1 dm:isOpen true": (":door1 dm:isOpen true", "door1 is open (asserted)."),
     ":door1 dm:isOpen false": (":door1 dm:isOpen false", "door1 is not open (asserted)."),
-    ":m owl:sameAs :m": (":m a dm:Milk", "m is the same as m (always)."),
+    ":m owl:sameAs :m": (":m a dm:Milk", "m is the same as m (axiomatic)."),
 }
 
 CANNOT_BE = {
@@ -71,7 +73,7 @@ CANNOT_BE = {
     ),
     ":a dm:isOpen true , false": (
         "a cannot be both not open and open: a is not open (asserted), it is open (asserted), "
-        "and “is open” has one value at most."
+        "and “is open” has at most one value."
     ),
     ":a dm:hasMainColor dm:color_red , dm:color_blue": (
         "a cannot have both color_blue and color_red as main color: a has main color color_blue (asserted), "
@@ -163,5 +165,5 @@ def test_the_triples_of_a_proof_have_a_clause_each_but_for_the_parts_of_axioms()
     )
     told = clauses(proof, proof, home().words)
     assert Clause("milk1 is milk", is_axiom=False) in told.values()
-    assert Clause("whatever is milk has affordance drinking", is_axiom=True) in told.values()
+    assert Clause("everything that is milk has affordance drinking", is_axiom=True) in told.values()
     assert not any(predicate.endswith(("onProperty>", "hasValue>")) for _, predicate, _ in told)

@@ -185,7 +185,7 @@ def test_what_always_holds_is_explained_by_nothing():
     for turtle in (":x owl:sameAs :x", "rdfs:label a owl:AnnotationProperty"):
         explanation = Reasoner().explain(triple(turtle))
         assert explanation.support == ()
-        assert explanation.text.endswith("(always).")
+        assert explanation.text.endswith("(axiomatic).")
 
 
 def test_another_spelling_of_a_value_holds_and_is_explained():
