@@ -16,10 +16,10 @@ _CHILD = "semmap.nodes.kb_node.owlrl.closure_process"
 
 
 def find_owlrl_faults(triples: Iterable[Triple], *, is_over: Callable[[], bool] = lambda: False) -> list[str]:
-    """Return the inconsistencies that owlrl finds; empty if there are none. A large map takes minutes.
+    """Return the inconsistencies that owlrl finds; empty if there are none. Takes minutes for a large map.
 
-    Aborts when `is_over()`, which is polled twice a second. Raises Refused if owlrl is aborted, fails, or does
-    not finish within `TIMEOUT_S`.
+    Aborts when `is_over()`, which is polled twice a second. Raises Refused if owlrl is aborted, fails, or
+    does not finish within `TIMEOUT_S`.
     """
     document: str | None = "".join(f"{s} {p} {o} .\n" for s, p, o in triples)
     deadline_s = time.monotonic() + TIMEOUT_S
@@ -42,7 +42,7 @@ def find_owlrl_faults(triples: Iterable[Triple], *, is_over: Callable[[], bool] 
                 if time.monotonic() > deadline_s:
                     child.kill()
                     raise errors.Refused(
-                        f"owlrl check: timeout after {TIMEOUT_S:g} s, the map is too large; use --engine semmap"
+                        f"owlrl check: timeout after {TIMEOUT_S:g} s (large map); use --engine semmap"
                     ) from None
     if child.returncode != 0:
         reason = (stderr.strip() or f"exit status {child.returncode}").splitlines()[-1]

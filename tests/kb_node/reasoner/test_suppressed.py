@@ -1,4 +1,4 @@
-"""What is set suppressed, found by either end."""
+"""Suppressed facts are found by subject and by object."""
 
 from semmap.nodes.kb_node.reasoner.suppressed import SuppressedFacts
 
@@ -6,7 +6,7 @@ ON, OFF = "<urn:on>", "<urn:off>"
 TRIPLES = [("<urn:a>", ON, "<urn:b>"), ("<urn:b>", ON, "<urn:c>"), ("<urn:a>", OFF, "<urn:c>")]
 
 
-def test_it_is_found_by_either_end_until_it_is_removed():
+def test_facts_are_found_by_subject_and_object_until_they_are_removed():
     suppressed = SuppressedFacts()
     suppressed.add(TRIPLES)
     suppressed.add(TRIPLES[:1])

@@ -39,18 +39,10 @@ class AxiomVerbalizer:
         self._relations: Final[dict[Term, Callable[[Term, Term], str]]] = {
             iri("rdfs:subClassOf"): self._sub_class,
             iri("owl:equivalentClass"): self._same_class,
-            iri("owl:disjointWith"): lambda c, d: (
-                f"nothing is both {self.member_phrase(c)} and {self.member_phrase(d)}"
-            ),
-            iri("owl:complementOf"): lambda c, d: (
-                f"{self.member_phrase(c)} is by definition something that {self._negated(d)}"
-            ),
-            iri("owl:intersectionOf"): lambda c, head: (
-                f"{self.member_phrase(c)} is by definition something that {self._all_of(head)}"
-            ),
-            iri("owl:unionOf"): lambda c, head: (
-                f"{self.member_phrase(c)} is by definition something that {self._one_of(head)}"
-            ),
+            iri("owl:disjointWith"): self._disjoint,
+            iri("owl:complementOf"): lambda c, d: self._defined(c, self._negated(d)),
+            iri("owl:intersectionOf"): lambda c, head: self._defined(c, self._all_of(head)),
+            iri("owl:unionOf"): lambda c, head: self._defined(c, self._one_of(head)),
             iri("owl:oneOf"): lambda c, head: f"{self.member_phrase(c)} is one of {self._names(head)}",
             iri("owl:hasKey"): self._key,
             iri("rdfs:subPropertyOf"): self._sub_property,
@@ -86,8 +78,7 @@ class AxiomVerbalizer:
 
     def definition(self, cls: Term) -> str:
         """Return the clause that defines a named class which is itself a restriction."""
-        restriction = self._restricted(cls, self.get(cls, "owl:onProperty") or cls)
-        return f"{self.member_phrase(cls)} is by definition something that {restriction}"
+        return self._defined(cls, self._restricted(cls, self.get(cls, "owl:onProperty") or cls))
 
     def is_axiom(self, triple: Triple) -> bool:
         """Return whether a triple is an axiom that has a clause."""
@@ -171,7 +162,10 @@ class AxiomVerbalizer:
             one, other = other, one
         if is_named(other):
             return f"{self._sub_class(one, other)}, and vice versa"
-        return f"{self.member_phrase(one)} is by definition something that {self.membership(other)}"
+        return self._defined(one, self.membership(other))
+
+    def _defined(self, cls: Term, predicate: str) -> str:
+        return f"{self.member_phrase(cls)} is by definition something that {predicate}"
 
     def _disjoint(self, one: Term, other: Term) -> str:
         return f"nothing is both {self.member_phrase(one)} and {self.member_phrase(other)}"

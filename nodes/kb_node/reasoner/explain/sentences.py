@@ -167,7 +167,7 @@ class _Verbalizer:
         A subject is replaced by "it" if it is the only individual named in the clause before.
         """
         clauses: list[str] = []
-        before = self._only_one_named(claim) if claim else None
+        before = self._sole_individual(claim) if claim else None
         for triple in support:
             if triple[1] == iri("owl:assertionProperty"):
                 clauses.append(self._negative(triple))
@@ -182,10 +182,10 @@ class _Verbalizer:
                 before = None
                 continue
             clauses.append(f"{self.clause(triple, 'it' if triple[0] == before else None)} (asserted)")
-            before = self._only_one_named(triple)
+            before = self._sole_individual(triple)
         return clauses
 
-    def _only_one_named(self, triple: Triple) -> Term | None:
+    def _sole_individual(self, triple: Triple) -> Term | None:
         """Return the subject of a triple if its clause names no other individual, else None."""
         s, p, o = triple
         return s if p == TYPE or is_literal(o) or s == o else None
@@ -214,32 +214,28 @@ def _headline(steps: Sequence[Step], verbalizer: _Verbalizer) -> tuple[Term | No
     is_axiom = verbalizer.axioms.is_axiom
     facts = [triple for triple in last.premises if not is_axiom(triple) and triple[1] not in _STRUCTURE]
     s, p, o = facts[0] if facts else last.premises[0]
-    who = verbalizer.name(s)
+    name = verbalizer.name(s)
     if last.rule in _CLASHES and len({fact[2] for fact in facts}) > 1:
-        return (
-            s,
-            f"{who} cannot be both {verbalizer.member_phrase(o)} and {verbalizer.member_phrase(facts[1][2])}",
-        )
+        one, other = verbalizer.member_phrase(o), verbalizer.member_phrase(facts[1][2])
+        return s, f"{name} cannot be both {one} and {other}"
     if last.rule == "dt-not-type":
         return None, _ill_typed((s, p, o), verbalizer)
     if last.rule.startswith("eq-diff"):
         if s == o:
-            return s, f"{who} cannot be different from itself"
+            return s, f"{name} cannot be different from itself"
         if claim := _value_conflict({(s, o), (o, s)}, steps, verbalizer):
             return None, claim
-        return None, f"{who} and {verbalizer.name(o)} cannot be both the same and different"
+        return None, f"{name} and {verbalizer.name(o)} cannot be both the same and different"
     if last.rule in ("cls-nothing2", *_CLASHES):
-        return s, f"{who} cannot be {verbalizer.member_phrase(o)}"
+        return s, f"{name} cannot be {verbalizer.member_phrase(o)}"
     if last.rule == "prp-asyp" and s != o:
-        verb = verbalizer.words.verb_phrase(p)
-        return (
-            None,
-            f"{who} and {verbalizer.name(o)} cannot each {_infinitive(verb.with_pronoun('the other'))}",
-        )
+        predicate = _infinitive(verbalizer.words.verb_phrase(p).with_pronoun("the other"))
+        return None, f"{name} and {verbalizer.name(o)} cannot each {predicate}"
     if last.rule in ("prp-pdw", "prp-adp") and len(facts) > 1:
-        ways = [_infinitive(verbalizer.words.predicate_phrase(q, y, reflexive=x == y)) for x, q, y in facts]
-        return None, f"{who} cannot both {ways[0]} and {ways[-1]}"
-    return None, f"{who} cannot {_infinitive(verbalizer.words.predicate_phrase(p, o, reflexive=s == o))}"
+        phrase = verbalizer.words.predicate_phrase
+        predicates = [_infinitive(phrase(q, y, reflexive=x == y)) for x, q, y in facts]
+        return None, f"{name} cannot both {predicates[0]} and {predicates[-1]}"
+    return None, f"{name} cannot {_infinitive(verbalizer.words.predicate_phrase(p, o, reflexive=s == o))}"
 
 
 def _infinitive(clause: str) -> str:
@@ -265,16 +261,17 @@ def _value_conflict(
                 return f"{verbalizer.name(first[2])} cannot be the {verb.rest} of both {names}"
             return f"{names} cannot both {_infinitive(verb.with_object(verbalizer.name(first[2])))}"
         names = " and ".join(map(verbalizer.name, (first[2], second[2])))
-        who = verbalizer.name(first[0])
+        name = verbalizer.name(first[0])
         if verb.kind == "has":
-            return f"{who} cannot have both {names} as {verb.rest}"
+            return f"{name} cannot have both {names} as {verb.rest}"
         if verbalizer.words.is_data(first[1]) and verb.kind == "is":
-            ways = [
+            predicates = [
                 verbalizer.words.predicate_phrase(first[1], value).removeprefix("is ")
                 for value in (first[2], second[2])
             ]
-            return f"{who} cannot be both {ways[0]} and {ways[1]}"
-        return f"{who} cannot {_infinitive(verb.with_object('both ' + names))}"
+            predicates.sort(key=lambda text: text.startswith("not "))
+            return f"{name} cannot be both {predicates[0]} and {predicates[1]}"
+        return f"{name} cannot {_infinitive(verb.with_object('both ' + names))}"
     return None
 
 

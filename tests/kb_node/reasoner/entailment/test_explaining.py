@@ -1,4 +1,4 @@
-"""What follows although no rule derives it, with the asserted triples that it takes."""
+"""Proofs of statements that no rule derives, with their support."""
 
 import time
 
@@ -45,7 +45,7 @@ TBOX = """
         (":mug1 owl:topObjectProperty :wall1", "mug1 has top object property wall1 (axiomatic)."),
     ],
 )
-def test_the_support_is_enough_and_no_less_is(goal, text):
+def test_the_support_is_sufficient_and_minimal(goal, text):
     reasoner = Reasoner(triples(TBOX))
     goal = triple(goal)
     assert not reasoner.holds(goal)
@@ -89,7 +89,7 @@ DENYING = """
         ),
     ],
 )
-def test_what_cannot_be_although_no_rule_excludes_it(supposed, text):
+def test_statements_that_are_excluded_although_no_rule_contradicts_them(supposed, text):
     reasoner, supposed = Reasoner(triples(DENYING)), triple(supposed)
     assert refute(reasoner, supposed) is None
     found = why_excluded(Reasoner(nearby(reasoner, supposed[::2]), closed=reasoner.closed), supposed)
@@ -115,19 +115,19 @@ def test_what_cannot_be_although_no_rule_excludes_it(supposed, text):
         ":Mug rdfs:subClassOf :Plush",
     ],
 )
-def test_what_may_be_is_not_excluded(supposed):
+def test_a_possible_statement_is_not_excluded(supposed):
     assert why_excluded(Reasoner(triples(DENYING)), triple(supposed)) is None
 
 
 @pytest.mark.parametrize("goal", [":mug1 :on :mug2", ":mug1 a :Other", ":Cup rdfs:subClassOf :Mug"])
-def test_what_does_not_follow_has_no_proof(goal):
+def test_a_statement_that_does_not_follow_has_no_proof(goal):
     reasoner = Reasoner(triples(TBOX))
     before = set(reasoner.asserted())
     assert why_entailed(reasoner, triple(goal)) is None
     assert set(reasoner.asserted()) == before
 
 
-def test_only_the_facts_nearby_are_looked_at():
+def test_only_nearby_facts_are_used():
     told = triples(TBOX + "".join(f":mug{i} a :Mug ; :on :table{i} . " for i in range(3, 300)))
     reasoner = Reasoner(told)
     near = nearby(reasoner, triple(":mug3 :on :table3")[::2])
@@ -135,8 +135,8 @@ def test_only_the_facts_nearby_are_looked_at():
     assert not {t for t in near if "mug4>" in t[0]}
 
 
-def test_a_value_that_is_there_needs_no_other_name():
-    """Else an individual would be the same as a value, and everything be worked out anew, in seconds."""
+def test_an_existing_value_is_not_named_again():
+    """Otherwise an individual would equal a value, and everything would be recomputed, in seconds."""
     reasoner = Reasoner(
         [
             *household(),
@@ -154,7 +154,7 @@ def test_a_value_that_is_there_needs_no_other_name():
     assert all(one is engine for one in seen)
 
 
-def test_a_busy_machine_makes_no_proof_longer():
+def test_proofs_do_not_depend_on_the_load_of_the_machine():
     many = [(f"<s{i}>", "<p>", "<o>") for i in range(16)]
 
     def suffice(some):

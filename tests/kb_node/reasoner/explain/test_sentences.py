@@ -1,4 +1,4 @@
-"""Explanations as they are read: whole sentences."""
+"""The sentences of explanations."""
 
 import functools
 
@@ -72,7 +72,7 @@ CANNOT_BE = {
         "and if one thing is on another, the other is not on it."
     ),
     ":a dm:isOpen true , false": (
-        "a cannot be both not open and open: a is not open (asserted), it is open (asserted), "
+        "a cannot be both open and not open: a is not open (asserted), it is open (asserted), "
         "and “is open” has at most one value."
     ),
     ":a dm:hasMainColor dm:color_red , dm:color_blue": (
@@ -113,16 +113,16 @@ def test_why_something_cannot_be(given, text):
     assert sorted(explanation.text.split(", ")) == sorted(text.split(", "))  # facts come as they were found
 
 
-def test_another_proof_of_the_shape_has_its_own_names():
+def test_a_cached_proof_gets_the_names_of_its_individuals():
     for door in ("door1", "door2"):
         with pytest.raises(
-            Inconsistent, match=f"{door} cannot be both not open and open: {door} is not open"
+            Inconsistent, match=f"{door} cannot be both open and not open: {door} is not open"
         ):
             home().apply(insert=triples(f":{door} dm:isOpen true , false ."))
 
 
 @pytest.mark.parametrize(
-    ("name", "said", "denied"),
+    ("name", "affirmed", "negated"),
     [
         ("isOn", "is on x", "is not on x"),
         ("partOf", "is part of x", "is not part of x"),
@@ -136,13 +136,13 @@ def test_another_proof_of_the_shape_has_its_own_names():
         ("p", "has p x", "does not have p x"),
     ],
 )
-def test_a_property_without_a_label_is_taken_apart(name, said, denied):
+def test_a_property_without_a_label_is_split_into_words(name, affirmed, negated):
     words, prop = Words.of([]), f"<http://example.org/{name}>"
-    assert words.predicate_phrase(prop, "<http://example.org/x>") == said
-    assert words.predicate_phrase(prop, "<http://example.org/x>", negated=True) == denied
+    assert words.predicate_phrase(prop, "<http://example.org/x>") == affirmed
+    assert words.predicate_phrase(prop, "<http://example.org/x>", negated=True) == negated
 
 
-def test_the_english_label_counts_and_others_do_not():
+def test_the_english_label_is_used():
     cls = ":C rdfs:label "
     assert Words.of(triples(cls + '"Tasse"@de .')).cls(triple(":a :p :C")[2]) == "C"
     assert Words.of(triples(cls + '"cup" .')).cls(triple(":a :p :C")[2]) == "cup"
@@ -158,12 +158,12 @@ def test_articles():
     ]
 
 
-def test_the_triples_of_a_proof_have_a_clause_each_but_for_the_parts_of_axioms():
+def test_every_triple_of_a_proof_has_a_clause_except_parts_of_axioms():
     proof = triples(
         ":milk1 a dm:Milk . dm:Milk rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:hasAffordance ;"
         " owl:hasValue dm:drinking ] ."
     )
-    told = clauses(proof, proof, home().words)
-    assert Clause("milk1 is milk", is_axiom=False) in told.values()
-    assert Clause("everything that is milk has affordance drinking", is_axiom=True) in told.values()
-    assert not any(predicate.endswith(("onProperty>", "hasValue>")) for _, predicate, _ in told)
+    found = clauses(proof, proof, home().words)
+    assert Clause("milk1 is milk", is_axiom=False) in found.values()
+    assert Clause("everything that is milk has affordance drinking", is_axiom=True) in found.values()
+    assert not any(predicate.endswith(("onProperty>", "hasValue>")) for _, predicate, _ in found)

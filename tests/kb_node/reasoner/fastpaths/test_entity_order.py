@@ -14,11 +14,11 @@ TRIPLES = st.tuples(TERMS, PREDICATES, st.one_of(TERMS, st.just('"1"')))
 
 
 @given(st.lists(TRIPLES, max_size=30))
-def test_no_triple_is_lost_or_doubled(given_triples):
+def test_no_triple_is_lost_or_duplicated(given_triples):
     assert sorted(order_by_entity(given_triples)) == sorted(given_triples)
 
 
-def test_who_is_referred_to_by_one_stands_behind_it_and_by_several_before():
+def test_an_individual_follows_its_only_referrer_and_precedes_several():
     facts = triples(
         ":cup1 a :Cup ; :at :place1 ; :in :room . :cup2 a :Cup ; :in :room . :place1 :x 1 . :room a :Room ."
     )
@@ -28,8 +28,8 @@ def test_who_is_referred_to_by_one_stands_behind_it_and_by_several_before():
     assert order.index("place1") == order.index("cup1") + 1
 
 
-def test_a_map_in_any_order_is_written_by_columns(monkeypatch):
-    """What `check` works out from nothing: the triples come as they stand in the store."""
+def test_a_map_in_any_order_is_stored_by_columns(monkeypatch):
+    """`check` loads the triples in the order of the store."""
     tbox = ":Cup rdfs:subClassOf :Thing . :at rdfs:range :Place . "
     said = "".join(
         f":cup{i} a :Cup ; :at :place{i} ; :in :room{i % 3} . :place{i} :x {i}.5 . " for i in range(200)

@@ -1,4 +1,4 @@
-"""Runs of new individuals whose shape is known: written down as they would be worked out."""
+"""Runs of a known shape are stored as the rules would store them."""
 
 import pytest
 from hypothesis import given, note
@@ -34,29 +34,29 @@ VALUES = st.tuples(st.integers(0, 2), st.sampled_from(prefixed("", DATA_PROPERTI
 
 
 def sorted_by_subject(run):
-    """As people write it, an individual with what is said of it, beginning with the first."""
+    """Sort a run by individual, as in a usual document."""
     return sorted(run, key=lambda part: part[0])
 
 
 RUNS = st.lists(st.one_of(TYPES, TYPES, LINKS, VALUES), min_size=1, max_size=6)
-"""Runs without names: individuals by number, literals to be chosen."""
+"""Runs without names: individuals by number, literals to be inserted."""
 BEFORE = [triple(text) for text in (":old a :F", ":older a :F", ":older :free :i2")]
 
 
 def named(run, name, values):
-    """A run about individuals of that name."""
+    """Return a run with individuals named after `name`."""
 
-    def word(part):
+    def term(part):
         if isinstance(part, int):
             return f":{name}{part}"
         return next(values) if part == "value" else part
 
-    return [triple(" ".join(map(word, part))) for part in run]
+    return [triple(" ".join(map(term, part))) for part in run]
 
 
 @pytest.fixture(params=[False, True], ids=["singly", "in batches"])
 def by_columns(request, monkeypatch):
-    """Whether few runs are read and written together, as else many are."""
+    """Whether small numbers of runs are also processed in batches."""
     if request.param:
         monkeypatch.setattr(batches, "_MANY", 1)
         monkeypatch.setattr(Store, "free_rows", 0)
@@ -67,7 +67,7 @@ def by_columns(request, monkeypatch):
 @given(
     RUNS, st.lists(st.sampled_from(sorted(set(LITERALS) - {KNOWN})), min_size=24, max_size=24), st.booleans()
 )
-def test_what_a_run_leaves_does_not_depend_on_whether_its_shape_is_known(run, literals, together):
+def test_the_result_does_not_depend_on_whether_the_shape_is_known(run, literals, together):
     values = iter(literals)
     asserted = dict.fromkeys([*asserted_in(BASE), *BEFORE])
     closure = closure_of(asserted, BASE)
@@ -102,7 +102,7 @@ def test_what_a_run_leaves_does_not_depend_on_whether_its_shape_is_known(run, li
 @pytest.mark.usefixtures("by_columns")
 @sequences(30)
 @given(st.lists(RUNS, min_size=1, max_size=5), st.permutations(range(24)), st.data())
-def test_all_at_once_is_one_by_one(runs, order, data):
+def test_one_transaction_equals_single_transactions(runs, order, data):
     values = iter(data.draw(st.lists(st.sampled_from(LITERALS[:4]), min_size=40, max_size=40)))
     facts = [fact for i, run in enumerate(runs) for fact in named(run, f"n{i % 3}_", values)]
     facts = [facts[i] for i in order if i < len(facts)]
@@ -128,7 +128,7 @@ def known(reasoner):
     return list(reasoner._engine._paths.shapes.known.values())
 
 
-def test_a_shape_is_worked_out_once():
+def test_the_rules_are_applied_once_for_each_shape():
     reasoner = Reasoner(triples(HOME))
     for name in ("a", "b", "c"):
         reasoner.apply(insert=triples(f":{name} a :C , :K ; :p :{name}1 ; :n 1 . :{name}1 :n 2.5 ."))
@@ -138,7 +138,7 @@ def test_a_shape_is_worked_out_once():
     assert reasoner.holds(triple(":c :q :here"))
 
 
-def test_a_contradiction_in_itself_is_worked_out_once():
+def test_a_contradictory_shape_is_cached():
     reasoner = Reasoner(triples(HOME))
     for name in ("a", "b"):
         with pytest.raises(Inconsistent, match=f"{name} cannot be both a C and a D"):
@@ -147,8 +147,8 @@ def test_a_contradiction_in_itself_is_worked_out_once():
     assert len(reasoner) == len(triples(HOME))
 
 
-def test_a_contradiction_with_the_map_is_not():
-    """What one run contradicts, another of the shape need not."""
+def test_a_contradiction_with_the_map_is_not_cached():
+    """Another run of the same shape may be consistent with the map."""
     reasoner = Reasoner([*triples(HOME), *triples(":d a :C . :e a :B .")])
     with pytest.raises(Inconsistent):
         reasoner.apply(insert=triples(":x :p :d ."))
@@ -157,8 +157,8 @@ def test_a_contradiction_with_the_map_is_not():
     reasoner.apply(insert=triples(":d a :B . :y :p :d ."))
 
 
-def test_one_object_twice_is_one_triple():
-    """Two objects of a kind in the first run, and the same one twice in the second."""
+def test_a_repeated_object_is_one_triple():
+    """The first run has two objects of a kind, the second has the same object twice."""
     reasoner = Reasoner([*triples(HOME), *triples(":d a :B . :e a :B .")])
     reasoner.apply(insert=triples(":x :r :d , :e ."))
     reasoner.apply(insert=[triple(":y :r :d")] * 2)
@@ -166,8 +166,8 @@ def test_one_object_twice_is_one_triple():
     assert not list(reasoner.asserted(triple(":y :r :d")[0]))
 
 
-def test_a_constant_that_is_no_longer_as_it_was():
-    """The value that comes with a class lost what another individual made it."""
+def test_a_constant_that_changed():
+    """The value implied by a class lost a class that another individual implied."""
     reasoner = Reasoner([*triples(HOME), *triples(":s rdfs:range :Far .")])
     reasoner.apply(insert=triples(":z :s :here ."))
     reasoner.apply(insert=triples(":a a :K ."))
@@ -194,7 +194,7 @@ def names(count, stem="a"):
 
 @pytest.fixture
 def batched(monkeypatch):
-    """How many runs were written together, each time."""
+    """The number of runs in each batch."""
     sizes = []
     write_all = Shapes.write_all
 
@@ -207,7 +207,7 @@ def batched(monkeypatch):
     return sizes
 
 
-def test_a_load_is_written_by_columns(batched):
+def test_a_load_is_stored_by_columns(batched):
     home = triples(HOME)
     reasoner = Reasoner(home)
     reasoner.apply(insert=load(names(300)))
@@ -219,7 +219,7 @@ def test_a_load_is_written_by_columns(batched):
     assert set(reasoner.asserted()) == set(home)
 
 
-def test_what_is_free_is_filled_before_a_load_makes_room(batched):
+def test_free_rows_are_used_before_a_load_allocates_new_ones(batched):
     reasoner = Reasoner(triples(HOME))
     reasoner.apply(insert=load(names(300)))
     reasoner.apply(delete=load(names(300)))
@@ -228,7 +228,7 @@ def test_what_is_free_is_filled_before_a_load_makes_room(batched):
     assert len(reasoner._engine._abox.store.subject) == room
 
 
-def test_a_load_that_says_more_of_one_is_as_if_said_singly(batched):
+def test_a_load_with_more_facts_about_an_individual_equals_single_insertion(batched):
     reasoner = Reasoner(triples(HOME))
     reasoner.apply(insert=[*load(names(300)), *load(["a7_"], lambda _: "7.5")])
     assert len(list(reasoner.asserted(triple(":a7_ :p :a7_1")[0]))) == 4
@@ -258,7 +258,7 @@ PLAIN = st.lists(
 @given(
     PLAIN, st.lists(st.sampled_from(['"1.5"^^xsd:float', '"2"^^xsd:float', '"x"']), min_size=80, max_size=80)
 )
-def test_what_is_written_by_columns_is_what_is_written_singly(run, literals):
+def test_storing_by_columns_equals_storing_singly(run, literals):
     home = [*triples(HOME), *triples(":d a :B . :e a :B .")]
     values = iter(literals)
     loads = [[fact for name in group for fact in named(run, name, values)] for group in ("a", "bcd", "efg")]
