@@ -107,10 +107,10 @@ class CompiledEngine:
         """
         abox = self._abox
         if delete:
-            gone = self._paths.apply_independent(delete, insert)
-            if gone is not None:
+            changed = self._paths.apply_independent(delete, insert)
+            if changed is not None:
                 self._size += len(insert) - len(delete)
-                return Change(frozenset(gone))
+                return Change(frozenset(changed))
             if any(map(is_schema, delete)):
                 raise NotCompilable("the schema changes")
         added: list[Triple] = []

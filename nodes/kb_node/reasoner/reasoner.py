@@ -138,9 +138,9 @@ class Reasoner:
             except Refused as refused:
                 raise Inconsistent(refused.explanation) from None
             except NotCompilable:  # the engine has undone the change
-                gone, new = engine.without_unchanged_axioms(delete, insert)
-                if len(gone) + len(new) < len(delete) + len(insert):
-                    return self._apply(gone, new)
+                old, new = engine.without_unchanged_axioms(delete, insert)
+                if len(old) + len(new) < len(delete) + len(insert):
+                    return self._apply(old, new)
         return self._rebuild(delete, insert, (), ())
 
     def update_computed(

@@ -31,23 +31,23 @@ class Equality:
 
     def merge(self, one: int, other: int, *claims: Claim) -> None:
         """Equate two nodes (eq-*): unite members and classes, and process all edges again."""
-        mine, theirs = self._abox.equals.get(one), self._abox.equals.get(other)
-        if one == other or (mine is not None and mine is theirs):
+        first, second = self._abox.equals.get(one), self._abox.equals.get(other)
+        if one == other or (first is not None and first is second):
             return
         self._check_joinable(one, other, claims)
-        mine, theirs = mine or Equals(one), theirs or Equals(other)
-        if len(mine.members) < len(theirs.members):
-            mine, theirs = theirs, mine
-        newcomers = list(theirs.members)
-        mine.members += newcomers
-        mine.links += theirs.links
-        mine.links.append(self._abox.conclude(claims, link=(one, other)))
-        for node in mine.members:
-            self._abox.equals[node] = mine
+        first, second = first or Equals(one), second or Equals(other)
+        if len(first.members) < len(second.members):
+            first, second = second, first
+        added = list(second.members)
+        first.members += added
+        first.links += second.links
+        first.links.append(self._abox.conclude(claims, link=(one, other)))
+        for node in first.members:
+            self._abox.equals[node] = first
         if self._abox.is_literal(one) and None in (self._abox.value(one), self._abox.value(other)):
             self._merge_spellings_of(one, other)
         self._abox.widen(one, self._store.kind[one].mask | self._store.kind[other].mask)
-        for node in newcomers:
+        for node in added:
             self._abox.fresh += self._store.out.all(node)
             self._abox.fresh += self._store.into.all(node)
 

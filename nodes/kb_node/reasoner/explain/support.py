@@ -247,12 +247,16 @@ class Support:
                         )
             if x == node:
                 for restriction, filler in axioms.some:
-                    for way in self._through(edge, role, (restriction, cls), (y, filler), restriction, depth):
-                        yield way | chained
+                    for derivation in self._through(
+                        edge, role, (restriction, cls), (y, filler), restriction, depth
+                    ):
+                        yield derivation | chained
             if y == node:
                 for restriction, filler in axioms.only:
-                    for way in self._through(edge, role, (filler, cls), (x, restriction), restriction, depth):
-                        yield way | chained
+                    for derivation in self._through(
+                        edge, role, (filler, cls), (x, restriction), restriction, depth
+                    ):
+                        yield derivation | chained
 
     def _through(
         self, edge: int, role: Role, gained: tuple[int, int], needed: tuple[int, int], axiom: int, depth: int

@@ -25,13 +25,13 @@ def remove_individuals(abox: ABox, triples: Sequence[Triple]) -> set[Term] | Non
     """
     store = abox.store
     wanted, subjects = set(triples), {triple[0] for triple in triples}
-    going = {store.numbers.get(subject, NONE) for subject in subjects}
-    is_doubtful = NONE in going or len(wanted) < len(triples)
-    edges = None if is_doubtful else _edges_of(abox, going, wanted)
-    if edges is None or not _are_independent(abox, going, edges):
+    removed = {store.numbers.get(subject, NONE) for subject in subjects}
+    is_doubtful = NONE in removed or len(wanted) < len(triples)
+    edges = None if is_doubtful else _edges_of(abox, removed, wanted)
+    if edges is None or not _are_independent(abox, removed, edges):
         return None
-    _forget_spellings(abox, going, edges)
-    store.erase(going, edges)
+    _forget_spellings(abox, removed, edges)
+    store.erase(removed, edges)
     return subjects
 
 
@@ -42,10 +42,10 @@ def remove_independent(abox: ABox, triples: Sequence[Triple]) -> list[Triple]:
     remaining individuals, and if it is not related to a removed individual that is not independent.
     """
     store, wanted = abox.store, set(triples)
-    going = {store.numbers.get(subject, NONE) for subject in {triple[0] for triple in triples}} - {NONE}
+    removed = {store.numbers.get(subject, NONE) for subject in {triple[0] for triple in triples}} - {NONE}
     own: dict[int, list[Triple]] = {}
-    doubtful = [node for node in going if not _is_independent(abox, node, going, wanted, own)]
-    independent = going.difference(doubtful)
+    doubtful = [node for node in removed if not _is_independent(abox, node, removed, wanted, own)]
+    independent = removed.difference(doubtful)
     while doubtful:
         node = doubtful.pop()
         others = {store.object[edge] for edge in store.out.all(node)}
@@ -60,25 +60,25 @@ def remove_independent(abox: ABox, triples: Sequence[Triple]) -> list[Triple]:
 
 
 def _is_independent(
-    abox: ABox, node: int, going: Set[int], wanted: set[Triple], own: dict[int, list[Triple]]
+    abox: ABox, node: int, removed: Set[int], wanted: set[Triple], own: dict[int, list[Triple]]
 ) -> bool:
     """Return whether removing a node affects no remaining node. Stores its assertions in `own`."""
     store, schema, kinds = abox.store, abox.schema, abox.store.kind
     if node in abox.equals or node in abox.reasons_by_node:
         return False
     term = store.terms[node]
-    mine = own[node] = [(term, TYPE, schema.classes[cls]) for cls in kinds[node].given]
+    assertions = own[node] = [(term, TYPE, schema.classes[cls]) for cls in kinds[node].given]
     for edge in store.out.all(node):
         source, other = store.source[edge], store.object[edge]
         if source == DERIVED or edge in abox.reasons_by_edge:
             return False
-        if other not in going and (kinds[other].base is not kinds[other] or other in abox.equals):
+        if other not in removed and (kinds[other].base is not kinds[other] or other in abox.equals):
             return False
         if source == ASSERTED:
-            mine.append((term, schema.axioms[store.predicate[edge]].term, store.terms[other]))
-    if not wanted.issuperset(mine):
+            assertions.append((term, schema.axioms[store.predicate[edge]].term, store.terms[other]))
+    if not wanted.issuperset(assertions):
         return False
-    return all(store.subject[edge] in going for edge in store.into.all(node))
+    return all(store.subject[edge] in removed for edge in store.into.all(node))
 
 
 def _edges_of(abox: ABox, nodes: Set[int], wanted: set[Triple]) -> list[int] | None:

@@ -170,7 +170,7 @@ class Closure(Facts):
         self._note(fact)
         for key in patterns(fact):
             for found in list(self._triggers.get(key, ())):
-                self._take(found, 0, fact, [""] * found.variables, ())
+                self._match_atom(found, 0, fact, [""] * found.variables, ())
         for key in patterns(fact):
             for rule in list(self._watchers.get(key, ())):
                 self._specialise(rule, fact)
@@ -187,9 +187,9 @@ class Closure(Facts):
             known[o] if isinstance(o, int) else o,
         )
         for fact in self.match(*key):
-            self._take(found, at, fact, known, premises)
+            self._match_atom(found, at, fact, known, premises)
 
-    def _take(
+    def _match_atom(
         self, found: Plan, at: int, fact: Triple, known: list[Term], premises: tuple[Triple, ...]
     ) -> None:
         """Match a fact with an atom, bind its variables, and continue with the next atom."""
@@ -197,7 +197,7 @@ class Closure(Facts):
         for one, other in access.repeats:
             if fact[one] != fact[other]:
                 return
-        for variable, place in access.takes:
+        for variable, place in access.binds:
             known[variable] = fact[place]
         if at + 1 == len(found.accesses):
             self._apply(found, known, (*premises, fact))

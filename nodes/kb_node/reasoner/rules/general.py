@@ -52,7 +52,7 @@ class GeneralEngine:
         return (
             triple
             for triple in self._computed
-            if all(mine in (None, its) for mine, its in zip((s, p, o), triple, strict=True))
+            if all(wanted in (None, term) for wanted, term in zip((s, p, o), triple, strict=True))
         )
 
     def is_computed(self, triple: Triple) -> bool:

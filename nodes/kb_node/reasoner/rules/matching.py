@@ -20,7 +20,7 @@ class Access(NamedTuple):
     """The look-up key of an atom, and the variables that a fact binds."""
 
     key: tuple[Slot, Slot, Slot]
-    takes: tuple[tuple[int, int], ...]
+    binds: tuple[tuple[int, int], ...]
     """(variable, place in the fact)"""
     repeats: tuple[tuple[int, int], ...]
     """Places in the fact that must hold the same term."""
@@ -60,7 +60,7 @@ def _join_order(atoms: tuple[Atom, ...], first: int | None) -> tuple[int, ...]:
 
 def _access(atom: Atom, numbers: dict[str, int]) -> Access:
     key: list[Slot] = []
-    takes: list[tuple[int, int]] = []
+    binds: list[tuple[int, int]] = []
     repeats: list[tuple[int, int]] = []
     here: dict[str, int] = {}
     for place, word in enumerate(atom):
@@ -74,10 +74,10 @@ def _access(atom: Atom, numbers: dict[str, int]) -> Access:
         else:
             key.append(None)
             here[word] = place
-            takes.append((len(numbers) + len(takes), place))
-    numbers.update((word, number) for word, (number, _) in zip(here, takes, strict=True))
+            binds.append((len(numbers) + len(binds), place))
+    numbers.update((word, number) for word, (number, _) in zip(here, binds, strict=True))
     s, p, o = key
-    return Access((s, p, o), tuple(takes), tuple(repeats))
+    return Access((s, p, o), tuple(binds), tuple(repeats))
 
 
 def pattern(atom: Atom) -> Pattern:
