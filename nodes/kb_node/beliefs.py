@@ -103,7 +103,7 @@ class Beliefs:
 
     def all(self) -> Believed:
         """All that is computed or set aside."""
-        return Believed(come=tuple(self._reasoner.computed()), aside=tuple(self._reasoner.set_aside()))
+        return Believed(come=tuple(self._reasoner.computed()), aside=tuple(self._reasoner.suppressed()))
 
     def change(
         self, delete: Collection[Triple], insert: Collection[Triple], *, lenient: bool = False
@@ -142,7 +142,7 @@ class Beliefs:
         Geometry may deny either, but a later change of poses, or taking one back, would bring both together.
         The reasoner's beliefs are as before, also when this raises Inconsistent.
         """
-        if not self._reasoner.sets_aside:
+        if not self._reasoner.has_suppressed:
             return
         asserted = frozenset(inserted)
         given: list[Triple] = []
@@ -153,7 +153,7 @@ class Beliefs:
                     given.append(triple)
         finally:
             if given or gone:
-                self._reasoner.believe(aside=given, come=gone)
+                self._reasoner.update_computed(suppress=given, add=gone)
 
     def _aside_about(self, asserted: Iterable[Triple]) -> list[Triple]:
         """What is set aside and may contradict triples: all of it, as long as that is not much.
@@ -161,13 +161,13 @@ class Beliefs:
         Of very much it is what is about the same individuals, about those that this is about, and so on.
         """
         about = [triple for triple in asserted if triple[1] not in _MEASURES]
-        aside = list(islice(self._reasoner.set_aside(), FEW_ASIDE + 1))
+        aside = list(islice(self._reasoner.suppressed(), FEW_ASIDE + 1))
         if about and len(aside) <= FEW_ASIDE:
             return sorted(aside)
         waiting = {term for s, _, o in asserted for term in (s, o)}
         found: set[Triple] = set()
         while waiting:
-            joined = self._reasoner.set_aside_about(waiting) - found
+            joined = self._reasoner.suppressed_about(waiting) - found
             waiting = {term for s, _, o in joined for term in (s, o)}
             found |= joined
         return sorted(found)
@@ -179,11 +179,11 @@ class Beliefs:
         """
         while True:
             try:
-                self._reasoner.believe(back=[triple])
+                self._reasoner.update_computed(restore=[triple])
             except Inconsistent as error:
                 support = error.explanation.support
                 if doubtful := [t for t in support if self._reasoner.is_computed(t)]:
-                    self._reasoner.believe(gone=doubtful)
+                    self._reasoner.update_computed(remove=doubtful)
                     gone += doubtful
                 elif asserted.isdisjoint(support):
                     return False
@@ -217,7 +217,10 @@ class Beliefs:
         """What is withheld, and why, in a sentence."""
         words, found = self._reasoner.words, self.withheld[fact]
         measured = [t for t in found.support if t[1] in COMPUTED and not self._is_said(t)]
-        clause, reason = sentences.said(fact, words), sentences.as_measured(found.text, measured, words)
+        clause, reason = (
+            sentences.triple_clause(fact, words),
+            sentences.mark_measured(found.text, measured, words),
+        )
         seen = "asserted" if self._is_said(fact) else "measured"
         return f"that {clause} ({seen}) would contradict the map, so it is left out: {reason}"
 
@@ -276,7 +279,7 @@ class Beliefs:
                 yield
             return
         step = self.computed.begin(entities.get, said)
-        there, aside = set(self._reasoner.computed()), set(self._reasoner.set_aside())
+        there, aside = set(self._reasoner.computed()), set(self._reasoner.suppressed())
         step = step._replace(
             come=set(step.come) - there,
             gone=there.difference(step.come),
@@ -289,7 +292,7 @@ class Beliefs:
 
     def is_compared_in_steps(self, said: Sequence[Triple] | None = None) -> bool:
         """Whether the reasoner has what was computed, and nothing is asserted of places (`said`)."""
-        if self._reasoner.sets_aside or next(iter(self._reasoner.computed()), None) is None:
+        if self._reasoner.has_suppressed or next(iter(self._reasoner.computed()), None) is None:
             return False
         return not (self._said_of_places() if said is None else said)
 
@@ -327,7 +330,9 @@ class Beliefs:
         if not (gone or come or aside or back):
             return
         if len(come) <= PART:
-            self._moved.update(self._reasoner.believe(gone=gone, come=come, aside=aside, back=back).others)
+            self._moved.update(
+                self._reasoner.update_computed(remove=gone, add=come, suppress=aside, restore=back).others
+            )
         else:
             self._believe_in_parts(gone, come, aside, back)
         for triples, is_computed, holds in (
@@ -351,13 +356,13 @@ class Beliefs:
         back: Collection[Triple],
     ) -> None:
         reasoner, taken = self._reasoner, list[Triple]()
-        self._moved.update(reasoner.believe(gone=gone, aside=aside, back=back).others)
+        self._moved.update(reasoner.update_computed(remove=gone, suppress=aside, restore=back).others)
         try:
             for part in parts(come, PART, self._progress):
-                self._moved.update(reasoner.believe(come=part).others)
+                self._moved.update(reasoner.update_computed(add=part).others)
                 taken += part
         except Inconsistent:
-            reasoner.believe(gone=taken, come=gone, aside=back, back=aside)
+            reasoner.update_computed(remove=taken, add=gone, suppress=back, restore=aside)
             raise
 
     # What contradicts
@@ -393,7 +398,7 @@ class Beliefs:
     def _withhold(self, fact: Triple, found: Explanation, *, is_there: bool = True) -> None:
         """Believe a fact no longer."""
         if not is_there:
-            self._reasoner.believe(aside=[fact])
+            self._reasoner.update_computed(suppress=[fact])
         elif self._reasoner.is_computed(fact):
             self._believe(gone=[fact])
         else:

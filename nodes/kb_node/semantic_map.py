@@ -293,7 +293,7 @@ class SemanticMap(MapState):
         columns = self.reasoner.columns(self.tbox)
         return Checkpoint(
             seq=self.seq,
-            triples=tuple(self.reasoner.set_aside() if columns is not None else self.abox()),
+            triples=tuple(self.reasoner.suppressed() if columns is not None else self.abox()),
             columns=columns,
             entities=tuple(self.by_name.values()),
             read_by=conclusions_format.mark(),
@@ -315,7 +315,7 @@ class SemanticMap(MapState):
     def _replay(self, start: Checkpoint) -> None:
         is_ours = start.read_by == conclusions_format.mark()
         if start.columns is not None and is_ours and self.reasoner.fill(start.columns):
-            self.reasoner.believe(aside=start.triples)
+            self.reasoner.update_computed(suppress=start.triples)
             self.believes = True
         else:
             self._applier.change(insert=tuple(start.said()), lenient=True)

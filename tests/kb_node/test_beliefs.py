@@ -86,7 +86,7 @@ class Home:
     def state(self):
         return (
             set(self.reasoner.given()),
-            set(self.reasoner.set_aside()),
+            set(self.reasoner.suppressed()),
             set(self.beliefs.withheld),
             set(self.reasoner.inferred()),
             {name: self.reasoner.types(graphs.triple(f":{name} a dm:Cup")[0]) for name in NAMES},
@@ -153,7 +153,7 @@ def follow_from_nothing(commits):
             continue
         assert home.state() == home.from_nothing()
         assert home.seen(INFERRED) == set(inferred(home.reasoner))
-        assert home.seen(DENIED) == set(home.reasoner.set_aside())
+        assert home.seen(DENIED) == set(home.reasoner.suppressed())
         assert home.dataset.denials == len(home.seen(DENIED))
         assert home.seen(ASSERTED) | home.seen(DENIED) == {*home.said, *TBOX}
 
@@ -192,7 +192,7 @@ def test_what_is_computed_has_consequences():
 def test_a_move_that_changes_no_relation_is_no_work_for_the_reasoner(monkeypatch):
     home = Home(ROOM, SHELF, HERE)
     asked = []
-    monkeypatch.setattr(home.reasoner, "believe", lambda **kinds: asked.append(kinds))
+    monkeypatch.setattr(home.reasoner, "update_computed", lambda **kinds: asked.append(kinds))
     home.beliefs.follow([placed("cup1", 0.1, TOP)], (), home.there.get, (), ())
     assert not asked
 
@@ -204,11 +204,11 @@ def test_what_geometry_denies_does_not_hold_and_stays_asserted():
     assert any(home.reasoner.asserted(*ON))
     home.commit(moved=[HERE])
     assert home.holds(IN)
-    assert not set(home.reasoner.set_aside())
+    assert not set(home.reasoner.suppressed())
     home.commit(moved=[AWAY])
     home.commit(delete=[ON])
     assert not any(home.reasoner.asserted(*ON))
-    assert not set(home.reasoner.set_aside())
+    assert not set(home.reasoner.suppressed())
 
 
 def test_what_is_no_longer_asserted_may_still_be_computed():
@@ -245,7 +245,7 @@ def test_what_comes_back_and_contradicts_what_was_said_meanwhile_is_withheld():
     home = Home(ROOM, SHELF, AWAY, said=":cup1 dm:isOn :shelf1 .")
     inside = graphs.triple(":cup1 dm:isInside :shelf1")
     assert home.commit([inside])
-    assert set(home.reasoner.set_aside()) == {ON, inside}
+    assert set(home.reasoner.suppressed()) == {ON, inside}
     home.commit(moved=[HERE])
     assert home.state() == home.from_nothing()
 
@@ -253,7 +253,7 @@ def test_what_comes_back_and_contradicts_what_was_said_meanwhile_is_withheld():
 def test_what_is_said_to_be_in_itself_is_denied_only_while_it_is_there():
     home = Home(said=":flat1 dm:isInside :flat1 .")
     home.commit(moved=[placed("flat1", None)])
-    assert set(home.reasoner.set_aside()) == set(graphs.triples(":flat1 dm:isInside :flat1 ."))
+    assert set(home.reasoner.suppressed()) == set(graphs.triples(":flat1 dm:isInside :flat1 ."))
     home.commit(removed=["flat1"])
-    assert not set(home.reasoner.set_aside())
+    assert not set(home.reasoner.suppressed())
     assert home.state() == home.from_nothing()

@@ -49,7 +49,7 @@ def state(semantic_map):
     reasoner = semantic_map.reasoner
     return (
         set(reasoner.given()),
-        set(reasoner.set_aside()),
+        set(reasoner.suppressed()),
         {entity.name: entity.types for entity in semantic_map.entities()},
         len(reasoner),
     )

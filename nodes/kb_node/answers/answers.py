@@ -12,8 +12,8 @@ from semmap.nodes.kb_node import proofs
 from semmap.nodes.kb_node.answers import asked_terms
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.abox_document import undeclared_classes
-from semmap.nodes.kb_node.owlrl.second_opinion import owlrl_faults
-from semmap.nodes.kb_node.reasoner import Held, Inconsistent, Reasoner
+from semmap.nodes.kb_node.owlrl.consistency_check import find_owlrl_faults
+from semmap.nodes.kb_node.reasoner import GivenFacts, Inconsistent, Reasoner
 from semmap.nodes.kb_node.relations.facts import said
 from semmap.nodes.kb_node.relations.facts.beside import MIRRORED, Beside
 from semmap.nodes.kb_node.relations.facts.derived import Derived
@@ -46,7 +46,7 @@ def infer(semantic_map: SemanticMap, name: str) -> Inferred:
 class Inferring(NamedTuple):
     """What it takes to say, beside the map, what follows about all: enough for a reasoner of one's own."""
 
-    held: Held
+    held: GivenFacts
     entities: list[Term]
     measured: Callable[[], Iterable[Triple]]
     names: Mapping[Term, str]
@@ -62,7 +62,7 @@ def inferring(semantic_map: SemanticMap) -> Inferring:
         semantic_map.classes.limits,
     )
     return Inferring(
-        semantic_map.reasoner.held(),
+        semantic_map.reasoner.given_facts(),
         [v.iri(entity.iri) for entity in semantic_map.entities()],
         lambda: pairs(Space(placed, limits), None),
         semantic_map.classes.told_apart,
@@ -156,7 +156,7 @@ def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
     """The map as it is now, to be written: the ABox or, if `inferred`, what holds about those in it."""
     semantic_map.believe_places()
     abox = semantic_map.abox()
-    aside = set(semantic_map.reasoner.set_aside())
+    aside = set(semantic_map.reasoner.suppressed())
     held = [triple for triple in abox if triple not in aside] if aside else abox
     following: list[Triple] = []
     if inferred:
@@ -216,7 +216,7 @@ def check(triples: Iterable[Triple], engine: str, is_over: Callable[[], bool] = 
     start = time.perf_counter()
     explanation = None
     if engine == "owlrl":
-        faults = owlrl_faults(triples, is_over=is_over)
+        faults = find_owlrl_faults(triples, is_over=is_over)
         reason = "; ".join(faults)
     else:
         try:

@@ -91,7 +91,7 @@ def export_then(journal: Journal, past: Past, query: Export) -> Document:
 
 def _picture(then: _Held, seq: int) -> answers.Picture:
     """What held then, to be written, what was measured of pairs among it."""
-    abox = sorted(then.abox - set(then.reasoner.set_aside()))
+    abox = sorted(then.abox - set(then.reasoner.suppressed()))
     following = answers.followed(then.reasoner, then.tbox, abox)
     declared = [(c, v.RDF_TYPE, v.OWL_CLASS) for c in undeclared_classes(abox, then.classes)]
     written = [*abox, *following, *declared]

@@ -11,10 +11,10 @@ from msgspec import structs
 from semmap.nodes.kb_node import proofs
 from semmap.nodes.kb_node.answers import asked_terms
 from semmap.nodes.kb_node.answers.asked_terms import RELATIONS
-from semmap.nodes.kb_node.reasoner import Held, Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner import GivenFacts, Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner import explanations as reasons
 from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby, why_entailed, why_excluded
-from semmap.nodes.kb_node.reasoner.explain.sentences import as_measured, said
+from semmap.nodes.kb_node.reasoner.explain.sentences import mark_measured, triple_clause
 from semmap.nodes.kb_node.reasoner.refutation import refute, why_different
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -70,10 +70,10 @@ def is_quick(reasoner: Reasoner, asked: Asked) -> bool:
     )
 
 
-def copy_of(held: Held, names: Mapping[Term, str]) -> Reasoner:
+def copy_of(held: GivenFacts, names: Mapping[Term, str]) -> Reasoner:
     """A reasoner for work beside the map's own; `names` tell its classes apart."""
     reasoner = Reasoner.of(held)
-    reasoner.words.tell_apart(names)
+    reasoner.words.disambiguate(names)
     return reasoner
 
 
@@ -83,7 +83,7 @@ def _told(reasoner: Reasoner, found: reasons.Explanation) -> Explanation:
     message = proofs.message(found)
     if not computed:
         return message
-    return structs.replace(message, text=as_measured(message.text, computed, reasoner.words))
+    return structs.replace(message, text=mark_measured(message.text, computed, reasoner.words))
 
 
 def why(reasoner: Reasoner, asked: Asked) -> Explanation | None:
@@ -103,9 +103,9 @@ def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanati
             only what is near would have to be.
     """
     first = asked.triples[0]
-    clause = said(first, reasoner.words)
+    clause = triple_clause(first, reasoner.words)
     if asked.negated:
-        if (denied := refute(reasoner, first, anew=anew)) is not None:
+        if (denied := refute(reasoner, first, allow_recompute=anew)) is not None:
             return _told(reasoner, denied)
         holds = reasoner.explain(first)
         if holds is None:
@@ -122,9 +122,9 @@ def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanati
         )
     if (found := why(reasoner, asked)) is not None:
         return found
-    if (different := why_different(reasoner, first, anew=anew)) is not None:
+    if (different := why_different(reasoner, first, allow_recompute=anew)) is not None:
         return _told(reasoner, different)
-    if (excluded := refute(reasoner, first, anew=anew)) is not None:
+    if (excluded := refute(reasoner, first, allow_recompute=anew)) is not None:
         told = _told(reasoner, excluded)
         raise errors.Refused(f"it does not hold: {told.text}", explanation=told)
     if not anew:
@@ -150,29 +150,29 @@ def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True, against: str |
         NotCompilable: everything would have to be worked out `anew`, and that is not wanted.
     """
     triple = asked.triples[0]
-    clause = said(triple, reasoner.words)
+    clause = triple_clause(triple, reasoner.words)
     if reasoner.holds(triple):
         return Possible(possible=True, text=f"yes: {clause} already")
     measured: list[Triple] = []
     try:
-        while (excluded := refute(reasoner, triple, anew=anew)) is not None:
+        while (excluded := refute(reasoner, triple, allow_recompute=anew)) is not None:
             computed = [fact for fact in excluded.support if reasoner.is_computed(fact)]
             if not computed:
                 text = f"no: {excluded.text}"
                 return Possible(possible=False, text=text, explanation=_told(reasoner, excluded))
-            reasoner.believe(gone=computed)  # nothing that is computed refuses a commit
+            reasoner.update_computed(remove=computed)  # nothing that is computed refuses a commit
             measured += computed
     finally:
         if measured:
-            reasoner.believe(come=measured)
+            reasoner.update_computed(add=measured)
     text = f"yes: nothing excludes that {clause}"
     if measured:
-        seen = " and ".join(said(fact, reasoner.words) for fact in measured)
+        seen = " and ".join(triple_clause(fact, reasoner.words) for fact in measured)
         text += f", although by their poses {seen}"
     elif against is not None:
         text += f", but as things are, {against}"
     if same := sorted(_would_be_same(reasoner, triple)):
-        text += "; but then " + " and ".join(said(pair, reasoner.words) for pair in same)
+        text += "; but then " + " and ".join(triple_clause(pair, reasoner.words) for pair in same)
     return Possible(possible=True, text=text)
 
 
@@ -188,7 +188,7 @@ def _would_be_same(reasoner: Reasoner, triple: Triple) -> Iterator[Triple]:
     if not pairs:
         return
     try:
-        with reasoner.supposing([triple]):
+        with reasoner.assuming([triple]):
             same = [pair for pair in pairs if reasoner.holds(pair)]
     except Inconsistent:
         return

@@ -94,7 +94,7 @@ class Now:
     def denied(self) -> tuple[Relation, ...]:
         """What was said of where things are and is not so."""
         space = self._map.places.space()
-        return tuple(denied(space, filter(None, map(fact_of, sorted(self._map.reasoner.set_aside())))))
+        return tuple(denied(space, filter(None, map(fact_of, sorted(self._map.reasoner.suppressed())))))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """Where a thing is relative to others. Raises UnknownName; BadRequest for an ambiguous word."""

@@ -58,7 +58,7 @@ class ClassTable:
         self.iris = {name: c for c, name in self.names.items()}
         self.prefixed: dict[Term, str] = {c: prefixes.prefixed(c, self.prefixes) for c in self.names}
         """Class to name with its prefix, which always means that class."""
-        reasoner.words.tell_apart(self.prefixed)
+        reasoner.words.disambiguate(self.prefixed)
         self.alignments: tuple[Alignment, ...] = alignments.of_namespaces(self.prefixes.values())
         """Those that say how the TBox's vocabulary tells positions, sizes and names."""
         self.edges = frozenset(stars.STAR_PROPERTIES).union(*(known.edges for known in self.alignments))

@@ -120,7 +120,7 @@ def _read_at_sight(
     unseen: set[Term] = set()
     for alike in change.alike:
         pattern: Pattern | None = None
-        for star in alike.stars():
+        for star in alike.rows():
             individuals, _ = star
             entity: Entity | None = None
             if change.others.isdisjoint(individuals):

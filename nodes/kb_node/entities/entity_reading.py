@@ -288,7 +288,7 @@ def read_star(
 ) -> Star:
     """The triples about an entity, as `star_of` has them. Raises Refused."""
     own, incoming = star_of(reasoner, classes, iri, leaving, tbox)
-    aside = reasoner.set_aside_about([iri]) if reasoner.sets_aside else ()
+    aside = reasoner.suppressed_about([iri]) if reasoner.has_suppressed else ()
     return Star(
         seq=seq,
         name=v.entity_name(iri),

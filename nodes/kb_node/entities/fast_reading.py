@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 
 from semmap.nodes.kb_node.entities.class_table import ClassTable, Kind
 from semmap.nodes.kb_node.entities.entity_reading import entity_of
-from semmap.nodes.kb_node.reasoner import Alike, Form, Reasoner
+from semmap.nodes.kb_node.reasoner import Form, Reasoner, UniformRuns
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.entities import REACH_M, Entity, Pose, Provenance
@@ -65,7 +65,7 @@ class Patterns:
     def __init__(self) -> None:
         self._known: WeakKeyDictionary[object, Pattern | None] = WeakKeyDictionary()
 
-    def of(self, alike: Alike, star: _Star, reasoner: Reasoner, classes: ClassTable) -> Pattern | None:
+    def of(self, alike: UniformRuns, star: _Star, reasoner: Reasoner, classes: ClassTable) -> Pattern | None:
         """Where the parts of an entity are in all stars of a shape, of which this is one.
 
         None if it is not to be told at sight.
@@ -172,7 +172,7 @@ class _Said:
         self._nodes: dict[tuple[int, Term], list[int]] = {}
         self._places: dict[tuple[int, Term], list[int]] = {}
         place = count()
-        for subject, p, o in form.words:
+        for subject, p, o in form.tokens:
             if isinstance(o, str):
                 self.classes += [o] if subject == 0 else []
             elif o is not None:

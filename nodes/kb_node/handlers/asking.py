@@ -28,7 +28,7 @@ from semmap.nodes.kb_node.answers.sightings import Sightings
 from semmap.nodes.kb_node.answers.standing_places import StandingPlaces
 from semmap.nodes.kb_node.answers.understanding import Understanding
 from semmap.nodes.kb_node.answers.ways import Ways
-from semmap.nodes.kb_node.reasoner import Held
+from semmap.nodes.kb_node.reasoner import GivenFacts
 from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -258,7 +258,7 @@ class Asking:
     def _tried(self, answer: Callable[..., R], asked: questions.Asked) -> R | Future[R]:
         """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
         reasoner, names = self._map.reasoner, self._map.classes.prefixed
-        held: Held | None = None
+        held: GivenFacts | None = None
         self._map.believe_places()
         if questions.is_quick(reasoner, asked):
             try:
@@ -266,10 +266,10 @@ class Asking:
             except questions.Undecided:
                 needed = nearby(reasoner, asked.terms)
                 computed = dict.fromkeys(filter(reasoner.is_computed, needed))
-                held = Held([triple for triple in needed if triple not in computed], list(computed))
+                held = GivenFacts([triple for triple in needed if triple not in computed], list(computed))
             except NotCompilable:
                 pass
-        copied = reasoner.held() if held is None else held
+        copied = reasoner.given_facts() if held is None else held
         return self._aside.submit(lambda: answer(questions.copy_of(copied, names), asked))
 
     def on_export(self, query: Export) -> Future[Document]:
@@ -307,7 +307,7 @@ class Asking:
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""
         self._map.follow_places()
-        held, denied = self._map.reasoner.held(), self._now.denied()
+        held, denied = self._map.reasoner.given_facts(), self._now.denied()
         withheld, crowds = tuple(answers.withheld(self._map)), self._map.places.crowds()
 
         def check() -> Checked:

@@ -1,1 +1,1 @@
-"""owlrl as a second opinion, in a process of its own."""
+"""An independent consistency check with owlrl, in a separate process."""

@@ -1,4 +1,4 @@
-"""The closure by owlrl, run as a process of its own: N-Triples on stdin, one fault a line on stdout."""
+"""The closure by owlrl as a separate process: N-Triples on stdin, one inconsistency per line on stdout."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _ERROR = URIRef("http://www.daml.org/2002/03/agents/agent-ont#error")
 
 
 class QuickGraph(Graph):
-    """A graph in memory that finds a triple at sight: owlrl looks up all that it concludes, often."""
+    """An in-memory graph with fast look-ups of single triples, which owlrl does very often."""
 
     def __init__(self) -> None:
         super().__init__(store="SimpleMemory")
@@ -32,7 +32,7 @@ class QuickGraph(Graph):
         return self
 
     def remove(self, triple: Any) -> Self:
-        """Remove what matches a triple with wildcards."""
+        """Remove the triples that match a pattern."""
         self._triples.difference_update(list(self.triples(triple)))
         return super().remove(triple)
 
@@ -41,11 +41,11 @@ class QuickGraph(Graph):
 
 
 def close(graph: Graph) -> list[str]:
-    """Add all that follows under OWL 2 RL to `graph`; what makes it inconsistent, in owlrl's words.
+    """Add the OWL 2 RL closure to `graph`; return the inconsistencies in owlrl's words.
 
-    Annotations are dropped first: nothing follows from them, and they double owlrl's time. Two faults of
-    owlrl are mended: it takes 0.0 for no float, and it does not notice when a functional property makes two
-    different literals the same (rule dt-diff).
+    Annotations are removed first: they have no consequences, and double the run time. Two bugs of owlrl are
+    worked around: it rejects 0.0 as a float, and it misses different literals that a functional property
+    equates (rule dt-diff).
     """
     for annotation in (*graph.subjects(RDF.type, OWL.AnnotationProperty), RDFS.label, RDFS.comment):
         graph.remove((None, annotation, None))

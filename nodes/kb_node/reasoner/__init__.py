@@ -1,6 +1,6 @@
-"""An incremental, explaining OWL 2 RL reasoner in plain Python.
+"""An incremental OWL 2 RL reasoner in plain Python that explains its conclusions.
 
-Its parts are imported when they are first asked for: who only wants its words need not wait for the rules.
+Names are imported on first use, so that importing only `explain.words` does not load the rules.
 """
 
 from importlib import import_module
@@ -10,17 +10,17 @@ if TYPE_CHECKING:
     from semmap.nodes.kb_node.reasoner.change import Change
     from semmap.nodes.kb_node.reasoner.entailment import entails
     from semmap.nodes.kb_node.reasoner.fastpaths.runs import Form
-    from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Alike
-    from semmap.nodes.kb_node.reasoner.reasoner import Held, Inconsistent, Reasoner
+    from semmap.nodes.kb_node.reasoner.fastpaths.shapes import UniformRuns
+    from semmap.nodes.kb_node.reasoner.reasoner import GivenFacts, Inconsistent, Reasoner
     from semmap.nodes.kb_node.reasoner.refutation import refute
 
-__all__ = ["Alike", "Change", "Form", "Held", "Inconsistent", "Reasoner", "entails", "refute"]
+__all__ = ["Change", "Form", "GivenFacts", "Inconsistent", "Reasoner", "UniformRuns", "entails", "refute"]
 
-_WHERE = {
-    "Alike": "fastpaths.shapes",
+_MODULES = {
+    "UniformRuns": "fastpaths.shapes",
     "Change": "change",
     "Form": "fastpaths.runs",
-    "Held": "reasoner",
+    "GivenFacts": "reasoner",
     "Inconsistent": "reasoner",
     "Reasoner": "reasoner",
     "entails": "entailment",
@@ -29,6 +29,6 @@ _WHERE = {
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _WHERE:
+    if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_WHERE[name]}"), name)
+    return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)

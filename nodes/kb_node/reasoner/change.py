@@ -1,4 +1,4 @@
-"""What a transaction did."""
+"""The effect of a transaction on the individuals."""
 
 from __future__ import annotations
 
@@ -7,29 +7,29 @@ from itertools import chain
 from typing import NamedTuple
 
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
-from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Alike
+from semmap.nodes.kb_node.reasoner.fastpaths.shapes import UniformRuns
 
 
 class Change(NamedTuple):
     """The individuals whose asserted triples or inferred named classes changed.
 
-    Those who came in runs of known shapes are in `alike`; they are among the `others` only if triples
-    beside their run changed them, too.
+    `alike` has the individuals that were added in runs of known shapes. They are also in `others` if triples
+    outside their run changed them.
     """
 
     others: frozenset[Term]
-    alike: Sequence[Alike] = ()
+    alike: Sequence[UniformRuns] = ()
     implied: frozenset[Triple] | None = None
-    """Of a change of beliefs: the relations of which some came or went, and no others; None if not known, or
-    if nobody asked."""
+    """For an update of computed facts: all relations of which some were added or removed. None if they are
+    unknown or were not requested."""
 
     @classmethod
-    def together(cls, changes: Sequence[Change]) -> Change:
-        """Several, one after the other, as one."""
+    def merge(cls, changes: Sequence[Change]) -> Change:
+        """Return several consecutive changes as one."""
         others = frozenset[Term]().union(*(change.others for change in changes))
         return cls(others, tuple(chain.from_iterable(change.alike for change in changes)))
 
     @property
     def touched(self) -> frozenset[Term]:
-        """All of them."""
-        return self.others.union(*(stars.touched for stars in self.alike))
+        """All changed individuals."""
+        return self.others.union(*(runs.touched for runs in self.alike))

@@ -1,4 +1,4 @@
-"""The engine for OWL 2 DL: a compiled schema, and an ABox that is kept closed change by change."""
+"""The engine for OWL 2 DL: a compiled schema, and an ABox whose closure is maintained incrementally."""
 
 from __future__ import annotations
 
@@ -20,23 +20,19 @@ from semmap.nodes.kb_node.reasoner.explain.schema_support import SchemaSupport
 from semmap.nodes.kb_node.reasoner.explain.support import Support
 from semmap.nodes.kb_node.reasoner.explain.words import Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
-from semmap.nodes.kb_node.reasoner.fastpaths.paths import FastPaths, Known, PlainPaths
-from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Alike
-from semmap.nodes.kb_node.reasoner.fastpaths.star_order import in_stars
+from semmap.nodes.kb_node.reasoner.fastpaths.entity_order import order_by_entity
+from semmap.nodes.kb_node.reasoner.fastpaths.paths import FastPaths, KnownContradiction, NoFastPaths
+from semmap.nodes.kb_node.reasoner.fastpaths.shapes import UniformRuns
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, NotCompilable
 from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 from semmap.nodes.kb_node.reasoner.tbox.split import check_compilable, is_inert, is_schema
-from semmap.nodes.kb_node.reasoner.terms import (
-    DIFFERENT_FROM,
-    SAME_AS,
-    TYPE,
-)  # fmt: skip
+from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS, TYPE
 
 
 class Refused(Exception):
-    """A change was undone because it contradicts the rest."""
+    """A change was undone because it contradicts the other facts."""
 
     def __init__(self, explanation: Explanation) -> None:
         super().__init__(explanation.text)
@@ -44,10 +40,10 @@ class Refused(Exception):
 
 
 class CompiledEngine:
-    """A schema and an ABox.
+    """A compiled schema and an ABox.
 
     Raises:
-        NotCompilable: the graph is beyond this engine; `general.GeneralEngine` takes all.
+        NotCompilable: this engine does not support the graph; `general.GeneralEngine` does.
         Refused: the triples contradict each other.
     """
 
@@ -59,42 +55,42 @@ class CompiledEngine:
         scattered: bool = False,
         fast: bool = True,
     ) -> None:
-        """Start with some triples; `closed` is the closure of those of the schema, if it is known.
+        """Load triples. `closed` is the closure of their schema, if it is known.
 
-        If they are `scattered`, those of one individual are brought together first. Unless `fast`, every
-        change is worked out by the rules, however alike it is to others.
+        `scattered` triples are first sorted by individual. Without `fast`, the rules are applied to every
+        change, even if its consequences are known from a similar one.
         """
         triples = list(triples)
         self._prover = Prover(Words.of(triples))
         self._schema_triples = dict.fromkeys(filter(is_schema, triples))
         self._inert = Facts(dict.fromkeys(filter(is_inert, self._schema_triples)))
-        spoken = dict.fromkeys(t for t in self._schema_triples if t not in self._inert.facts)
-        for triple in spoken:
+        active = dict.fromkeys(t for t in self._schema_triples if t not in self._inert.facts)
+        for triple in active:
             check_compilable(triple)
-        closure = closed or Closure(spoken)
+        closure = closed or Closure(active)
         if closure.clash is not None:
             raise Refused(self._prover.prove(closure.leaves(None), None))
         self._schema = Schema(closure)
-        told = (*closure.facts, *self._inert.facts)
-        self._of_the_schema = frozenset(s for s, _, _ in told)
-        self._objects_of_the_schema = frozenset(o for _, _, o in told)
+        schema_facts = (*closure.facts, *self._inert.facts)
+        self._schema_subjects = frozenset(s for s, _, _ in schema_facts)
+        self._schema_objects = frozenset(o for _, _, o in schema_facts)
         self._abox = ABox(self._schema)
         self._saturation = Saturation(self._abox)
-        self._paths = FastPaths(self._abox) if fast else PlainPaths()
+        self._paths = FastPaths(self._abox) if fast else NoFastPaths()
         self._view = View(self._abox)
-        self._told_by = SchemaSupport(self._schema)
+        self._schema_support = SchemaSupport(self._schema)
         self._size = len(self._schema_triples)
         self._saturation.run()
         self._abox.settle()
         data = [triple for triple in triples if triple not in self._schema_triples]
-        self.apply((), in_stars(data) if scattered else data)
+        self.apply((), order_by_entity(data) if scattered else data)
 
     def __len__(self) -> int:
         return self._size
 
     @property
     def words(self) -> Words:
-        """What terms are called in sentences."""
+        """The words for terms in sentences."""
         return self._prover.words
 
     @property
@@ -106,84 +102,86 @@ class CompiledEngine:
         """Delete and insert triples.
 
         Raises:
-            Refused: it would contradict the rest; nothing has changed.
-            NotCompilable: it is beyond this engine; nothing has changed.
+            Refused: the change contradicts the other facts; nothing was changed.
+            NotCompilable: this engine does not support the change; nothing was changed.
         """
         abox = self._abox
         if delete:
-            gone = self._paths.change(delete, insert)
-            if gone is not None:
+            changed = self._paths.apply_independent(delete, insert)
+            if changed is not None:
                 self._size += len(insert) - len(delete)
-                return Change(frozenset(gone))
+                return Change(frozenset(changed))
             if any(map(is_schema, delete)):
                 raise NotCompilable("the schema changes")
         added: list[Triple] = []
         removed: list[Triple] = []
         touched: set[Term] = set()
-        alike: list[Alike] = []
+        alike: list[UniformRuns] = []
         retraction = Retraction(abox, self._saturation) if delete else None
         try:
             if retraction is None:
                 alike = self._paths.insert(insert, lambda some: self._insert(some, added, touched), added)
             else:
-                removed = self._paths.depart(delete)
+                removed = self._paths.remove_individuals(delete)
                 left = set(delete).difference(removed) if removed else delete
                 removed += retraction.delete(tuple(left))[0]
                 touched.update([s for s, _, _ in removed])
                 self._insert(insert, added, touched)
-        except Known as known:
+        except KnownContradiction as known:
             raise Refused(known.explanation) from None
         except Clash as clash:
-            proof, terms = self._prover.proof(Support(abox, self._told_by).of_clash(clash.claims), None)
+            proof, terms = self._prover.proof(
+                Support(abox, self._schema_support).of_clash(clash.claims), None
+            )
             self._undo(retraction, removed, added)
             if not removed:
-                self._paths.refuse(insert, proof, terms)
+                self._paths.note_rejection(insert, proof, terms)
             raise Refused(proof.about(terms)) from None
         except NotCompilable:
             self._undo(retraction, removed, added)
             raise
-        if abox.moved or abox.overlaid:
-            touched.update(self._moved())
+        if abox.changed_kinds or abox.overlaid:
+            touched.update(self._reclassified())
             abox.settle()
         if retraction is not None:
             retraction.release()
         self._size += len(added) - len(removed)
         return Change(frozenset(touched), alike)
 
-    def believe(
+    def update_computed(
         self,
-        gone: Sequence[Triple],
-        come: Sequence[Triple],
-        aside: Sequence[Triple],
-        back: Sequence[Triple],
+        remove: Sequence[Triple],
+        add: Sequence[Triple],
+        suppress: Sequence[Triple],
+        restore: Sequence[Triple],
         *,
-        tell_implied: bool,
+        report_implied: bool,
     ) -> Change:
-        """Computed facts that are gone and that come; asserted ones set `aside`, and `back` again.
+        """Remove and add computed facts; suppress asserted facts, or restore suppressed ones.
 
-        Of the change `others` are those whose named classes changed; `implied` is found if it is wanted.
-        Raises as `apply` does.
+        `Change.others` has the individuals whose named classes changed, `Change.implied` is set with
+        `report_implied`. Raises the same errors as `apply`.
         """
         abox, insert = self._abox, self._saturation.insert
         added: list[Triple] = []
         removed: tuple[list[Triple], list[Triple]] = [], []
         computed: list[Triple] = []
-        retraction = Retraction(abox, self._saturation) if gone or aside else None
+        retraction = Retraction(abox, self._saturation) if remove or suppress else None
         log = list[tuple[int, int, int]]()
-        if tell_implied:
+        if report_implied:
             abox.store.log = log
         try:
             if retraction is not None:
-                removed = retraction.delete(aside, gone)
-            for triple in back:
+                removed = retraction.delete(suppress, remove)
+            for triple in restore:
                 if insert(triple):
                     added.append(triple)
-            self._paths.compute(come, insert, computed)
+            self._paths.compute(add, insert, computed)
             self._saturation.run()
         except (Clash, NotCompilable) as error:
             explanation = None
             if isinstance(error, Clash):
-                found = Support(abox, self._told_by).of_clash(error.claims)
+                found = Support(abox, self._schema_support).of_clash(error.claims)
                 explanation = self._prover.prove(found, None)
             self._undo(retraction, removed[0], added, removed[1], computed)
             if explanation is None:
@@ -191,8 +189,8 @@ class CompiledEngine:
             raise Refused(explanation) from None
         finally:
             abox.store.log = None
-        touched = frozenset(self._moved()) if abox.moved else frozenset[Term]()
-        implied = self._implied(log) if tell_implied else None
+        touched = frozenset(self._reclassified()) if abox.changed_kinds else frozenset[Term]()
+        implied = self._implied(log) if report_implied else None
         abox.settle()
         if retraction is not None:
             retraction.release()
@@ -200,7 +198,7 @@ class CompiledEngine:
         return Change(touched, implied=implied)
 
     def _implied(self, edges: Iterable[tuple[int, int, int]]) -> frozenset[Triple] | None:
-        """What edges imply each by itself; None where they may also imply something together with others."""
+        """Return what each edge implies alone; None if edges may imply more in combination with others."""
         abox, schema, terms = self._abox, self._schema, self._abox.store.terms
         if abox.equals:
             return None
@@ -218,10 +216,10 @@ class CompiledEngine:
         return frozenset(found)
 
     def _insert(self, triples: Sequence[Triple], added: list[Triple], touched: set[Term]) -> None:
-        """Insert triples and draw all conclusions. Those that are new are `added` as they are inserted."""
+        """Insert triples and draw all conclusions. New triples are appended to `added`."""
         types = [triple for triple in triples if triple[1] == TYPE]
         edges = [triple for triple in triples if triple[1] != TYPE]
-        for batch in (types, edges):  # a node that has its kind when its edges come is looked at once
+        for batch in (types, edges):  # a node that has its kind before its edges is processed only once
             for triple in batch:
                 if is_schema(triple):
                     raise NotCompilable("the schema changes")
@@ -234,7 +232,7 @@ class CompiledEngine:
 
     def _check(self, triple: Triple) -> None:
         check_compilable(triple)
-        if self._schema.speaks_of(triple[0]) or self._schema.speaks_of(triple[2]):
+        if self._schema.is_used(triple[0]) or self._schema.is_used(triple[2]):
             raise NotCompilable(f"classes or properties are compared: {' '.join(triple)}")
 
     def _undo(
@@ -245,99 +243,100 @@ class CompiledEngine:
         removed_computed: Sequence[Triple] = (),
         added_computed: Sequence[Triple] = (),
     ) -> None:
-        back = Retraction(self._abox, self._saturation)
+        """Revert a change that failed."""
+        undo = Retraction(self._abox, self._saturation)
         overlaid = tuple(self._abox.overlaid)
-        back.delete(added, added_computed)
+        undo.delete(added, added_computed)
         for triple in removed:
             self._saturation.insert(triple)
         for triple in (*removed_computed, *overlaid):
             self._saturation.insert(triple, COMPUTED)
         self._saturation.run()
         self._abox.settle()
-        back.release()
+        undo.release()
         if retraction is not None:
             retraction.release()
 
-    def _moved(self) -> Iterator[Term]:
-        """The individuals whose named classes are others now."""
+    def _reclassified(self) -> Iterator[Term]:
+        """Yield the individuals whose named classes changed."""
         store = self._abox.store
-        for node, before in self._abox.moved.items():
+        for node, before in self._abox.changed_kinds.items():
             if before.excluded is None and store.kind[node].names != before.names:
                 yield store.terms[node]
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        """The asserted triples of a pattern."""
+        """Return the asserted triples that match a pattern."""
         found = self._view.asserted(s, p, o)
-        is_unsaid = o not in self._objects_of_the_schema if s is None else s not in self._of_the_schema
-        if is_unsaid and (s, o) != (None, None):  # as most are
+        is_data_only = o not in self._schema_objects if s is None else s not in self._schema_subjects
+        if is_data_only and (s, o) != (None, None):  # the common case
             return found
-        return chain(found, self._told_of_the_schema(s, p, o))
+        return chain(found, self._asserted_schema(s, p, o))
 
-    def _told_of_the_schema(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+    def _asserted_schema(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         for facts in (self._schema.closure, self._inert):
             for triple in facts.match(s, p, o):
                 if triple in self._schema_triples:
                     yield triple
 
     def computed(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        """The computed triples of a pattern."""
+        """Return the computed triples that match a pattern."""
         return self._view.computed(s, p, o)
 
     def is_computed(self, triple: Triple) -> bool:
-        """Whether a triple is computed, and not asserted."""
+        """Return whether a triple is computed and not asserted."""
         return self._view.is_computed(triple)
 
-    def without_idle_axioms(
+    def without_unchanged_axioms(
         self, delete: Sequence[Triple], insert: Sequence[Triple]
     ) -> tuple[list[Triple], list[Triple]]:
-        """A change without the triples of the schema that it leaves as they are."""
-        there, coming = self._schema_triples, set(insert)
-        gone = [t for t in delete if not is_schema(t) or (t in there and t not in coming)]
-        return gone, [t for t in insert if not is_schema(t) or t not in there]
+        """Return a change without the axioms that it does not change."""
+        present, inserted = self._schema_triples, set(insert)
+        deleted = [t for t in delete if not is_schema(t) or (t in present and t not in inserted)]
+        return deleted, [t for t in insert if not is_schema(t) or t not in present]
 
     def columns(self, schema: Container[Triple] | None) -> Columns | None:
-        """All of it but the schema, to be filled in again; None if there is more schema than this one.
+        """Return the ABox as columns, for `fill`.
 
-        And None for an ABox that columns cannot hold.
+        Returns None if there are axioms outside `schema`, or if columns cannot represent the ABox.
         """
         if schema is not None and not all(triple in schema for triple in self._schema_triples):
             return None
         return columns_of(self._abox, schema=self._digest(), size=self._size)
 
     def fill(self, columns: Columns) -> bool:
-        """Be what columns were made of. False, with nothing done, if their schema is another."""
+        """Load columns. Returns False and changes nothing if their schema differs."""
         if columns.schema != self._digest() or not fill(self._abox, columns):
             return False
         self._size = columns.size
         return True
 
     def _digest(self) -> bytes:
-        """Of the schema's triples."""
+        """Return a digest of the schema's triples."""
         lines = sorted(map(" ".join, self._schema_triples))
         return hashlib.blake2b("\n".join(lines).encode(), digest_size=16).digest()
 
     def by_subject(self) -> Iterator[list[Triple]]:
-        """The asserted triples in groups, between which the ABox may change."""
+        """Return the asserted triples in groups. The ABox may change between two groups."""
         yield list(self._schema_triples)
         yield from self._view.by_subject()
 
     def about(self, subject: Term) -> dict[Term, list[Term]]:
-        """The asserted triples of a subject: predicate to objects."""
+        """Return the asserted triples of a subject: predicate to objects."""
         objects = self._view.about(subject)
-        if subject not in self._of_the_schema:
+        if subject not in self._schema_subjects:
             return objects
-        for _, predicate, object_ in self._told_of_the_schema(subject, None, None):
+        for _, predicate, object_ in self._asserted_schema(subject, None, None):
             objects.setdefault(predicate, []).append(object_)
         return objects
 
     def mentioned(self, terms: Set[Term]) -> set[Term]:
-        """Those that a triple has as its subject or object."""
-        return (self._abox.store.numbers.keys() & terms) | (self._of_the_schema & terms)
+        """Return those of `terms` that are the subject or object of a triple."""
+        return (self._abox.store.numbers.keys() & terms) | (self._schema_subjects & terms)
 
     def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        """The triples of a pattern that follow and were not asserted.
+        """Return the inferred triples of a pattern that are not asserted.
 
-        What follows of classes and properties is given only when it is asked for by its predicate.
+        Inferred axioms are returned only if the pattern has their predicate.
         """
         yield from self._view.inferred(s, p, o)
         if p is not None and (p != TYPE or (o is not None and is_schema((o, p, o)))):
@@ -346,19 +345,19 @@ class CompiledEngine:
                     yield triple
 
     def holds(self, triple: Triple) -> bool:
-        """Whether a triple is asserted or follows."""
+        """Return whether a triple is asserted or inferred."""
         return self._view.holds(triple) or self._schema.closure.holds(triple) or triple in self._inert.facts
 
     def types(self, individual: Term) -> frozenset[Term]:
-        """The named classes of an individual."""
+        """Return the named classes of an individual."""
         return self._view.types(individual)
 
     def instances(self, cls: Term) -> Iterator[Term]:
-        """The individuals of a class."""
+        """Return the individuals of a class."""
         return self._view.instances(cls)
 
     def explain(self, triple: Triple) -> Explanation:
-        """Why a triple holds."""
+        """Return the proof of a triple that holds."""
         closure = self._schema.closure
         if triple in closure.facts:
             return self._prover.prove(closure.leaves(triple), triple)
@@ -371,4 +370,4 @@ class CompiledEngine:
         s, p, o = triple
         if not self._view.holds(triple) or (p == SAME_AS and s == o):
             return self._prover.prove((), triple)  # an axiomatic triple, or eq-ref
-        return self._prover.prove(Support(self._abox, self._told_by).of_triple(triple), triple)
+        return self._prover.prove(Support(self._abox, self._schema_support).of_triple(triple), triple)

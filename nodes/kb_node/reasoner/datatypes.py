@@ -1,7 +1,7 @@
-"""Table 8 of OWL 2 RL: the values that literals denote, and the datatypes that hold them.
+"""Table 8 of OWL 2 RL: the values of literals, and the datatypes that contain them.
 
-A value is a hashable key: equal keys, same value (dt-eq); different keys, different values (dt-diff).
-Floats are compared as IEEE 754 identifies them, as OWL 2 demands: `0.0` and `-0.0` are two values.
+A value is a hashable key. Equal keys are the same value (dt-eq), different keys different values (dt-diff).
+Floats are compared by their IEEE 754 representation, as OWL 2 requires: `0.0` and `-0.0` are two values.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from semmap.nodes.kb_node.reasoner.explanations import Term
 from semmap.nodes.kb_node.reasoner.terms import PREFIXES, iri, is_literal, literal, quoted
 
 Value = tuple[str, Hashable]
-"""A primitive datatype's name, and the key of the value in it."""
+"""The name of a primitive datatype, and the key of a value in it."""
 
 _XSD, _RDF = PREFIXES["xsd"], PREFIXES["rdf"]
 LITERAL: Final = iri("rdfs:Literal")
@@ -44,7 +44,7 @@ _INTEGERS: Final[dict[str, tuple[int | None, int | None]]] = {
     "unsignedShort": (0, 2**16 - 1),
     "unsignedByte": (0, 2**8 - 1),
 }
-"""Smallest and greatest value of the integer types."""
+"""Minimum and maximum of the integer types."""
 
 _NAME_START = r":A-Z_a-z\u00C0-\u00D6\u00D8-\u00F6\u00F8-\u02FF\u0370-\u037D\u037F-\u1FFF\u200C-\u200D" + (
     r"\u2070-\u218F\u2C00-\u2FEF\u3001-\uD7FF\uF900-\uFDCF\uFDF0-\uFFFD\U00010000-\U000EFFFF"
@@ -66,7 +66,7 @@ _WIDER: Final = {
     **dict.fromkeys(("language", "NMTOKEN", "Name"), ("string", "normalizedString", "token")),
     "NCName": ("string", "normalizedString", "token", "NMTOKEN", "Name"),
 }
-"""The string types that hold all values of another."""
+"""The string types that contain all values of another."""
 
 _FLOAT = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|[+-]?INF|NaN")
 _DECIMAL = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)")
@@ -77,22 +77,22 @@ _DATE_TIME = re.compile(rf"(\d{{4}})-(\d\d)-(\d\d)T(\d\d):(\d\d):(\d\d)(\.\d+)?{
 _DATE = re.compile(rf"(\d{{4}})-(\d\d)-(\d\d){_ZONE}")
 _BASE64 = re.compile(r"(?:[\w+/]{4})*(?:[\w+/]{2}==|[\w+/]{3}=)?", re.ASCII)
 _IRI = re.compile(
-    r"(?:[A-Za-z][A-Za-z0-9+.-]*:|(?![^/?#]*:))"  # a scheme, or a relative reference without a colon up front
+    r"(?:[A-Za-z][A-Za-z0-9+.-]*:|(?![^/?#]*:))"  # a scheme, or a relative reference without a leading colon
     r"(?:[^\s<>\"{}|\\^`%#]|%[0-9A-Fa-f]{2})*(?:\#(?:[^\s<>\"{}|\\^`%#]|%[0-9A-Fa-f]{2})*)?"
 )
 _PLAIN = re.compile(r"([\s\S]*)@([A-Za-z]{1,8}(?:-[A-Za-z0-9]{1,8})*|)")
 
 
 def is_datatype(term: Term) -> bool:
-    """Whether the term names a datatype whose values are known here."""
+    """Return whether a term names a supported datatype."""
     return term in _KNOWN
 
 
 @lru_cache(maxsize=4096)
 def value(term: Term) -> Value | None:
-    """The value of a literal; None when it has none (ill-typed) or its datatype is unknown.
+    """Return the value of a literal; None if it is ill-typed or if its datatype is not supported.
 
-    A literal of an unknown datatype is told from an ill-typed one by `is_ill_typed`.
+    `is_ill_typed` distinguishes the two cases.
     """
     text, datatype, language = literal(term)
     if language:
@@ -113,11 +113,11 @@ def value(term: Term) -> Value | None:
 
 
 def canonical(term: Term) -> Term:
-    """The literal by which a value is given when nobody spelled it: one and the same for all its spellings.
+    """Return the canonical literal of a value, which is the same for all its spellings.
 
-    Integers and decimals are the shortest `xsd:integer` or `xsd:decimal`, texts are plain or carry their
-    language in lower case, floats have the fewest digits that tell them apart. What is no literal, or a
-    literal without a known value, is returned as it is.
+    Integers and decimals become the shortest `xsd:integer` or `xsd:decimal`. Texts are plain or have their
+    language in lower case. Floats have the fewest digits that identify them. Other terms, and literals
+    without a known value, are returned unchanged.
     """
     found = value(term) if is_literal(term) else None
     return term if found is None else _spelled(found)
@@ -161,7 +161,7 @@ def _write_float(code: str) -> Callable[[bytes], str]:
 def _packed(code: str, text: str) -> bytes:
     try:
         return struct.pack(code, float(text))
-    except OverflowError:  # beyond the greatest single: rounds to infinity
+    except OverflowError:  # above the largest single: rounds to infinity
         return struct.pack(code, -inf if text[0] == "-" else inf)
 
 
@@ -172,12 +172,12 @@ def _write_date_time(key: tuple[str, str, Fraction]) -> str:
 
 
 def is_ill_typed(term: Term) -> bool:
-    """Whether a literal claims a known datatype and is outside of its lexical space."""
+    """Return whether a literal is outside the lexical space of its datatype."""
     return value(term) is None and is_datatype(f"<{literal(term).datatype}>")
 
 
 def contains(datatype: Term, term: Term) -> bool:
-    """Whether the value of a literal is in a known datatype's value space."""
+    """Return whether the value of a literal is in the value space of a datatype."""
     found = value(term)
     if found is None:
         return False
@@ -201,19 +201,19 @@ def contains(datatype: Term, term: Term) -> bool:
     return kind == name
 
 
-def tells_texts_apart(datatype: Term) -> bool:
-    """Whether a datatype holds some plain texts and others not, as `xsd:token` does."""
+def distinguishes_strings(datatype: Term) -> bool:
+    """Return whether a datatype contains only some plain texts, as `xsd:token` does."""
     name = datatype[1:-1].removeprefix(_XSD)
     return name in _STRINGS and name != "string"
 
 
 def known() -> frozenset[Term]:
-    """The datatypes whose values are known here."""
+    """Return the supported datatypes."""
     return _KNOWN
 
 
 def includes(wide: Term, narrow: Term) -> bool:
-    """Whether every value of one known datatype is a value of another; False if that is not known."""
+    """Return whether all values of a datatype are in another; False if unknown."""
     if wide in (narrow, LITERAL):
         return True
     one, other = (term[1:-1].removeprefix(_XSD) for term in (wide, narrow))
@@ -228,7 +228,7 @@ def includes(wide: Term, narrow: Term) -> bool:
 
 
 def includes_common(wide: Term, narrow: Collection[Term]) -> bool:
-    """Whether every value that some known datatypes have in common is one of another."""
+    """Return whether all common values of some datatypes are in another."""
     if any(includes(wide, datatype) for datatype in narrow):
         return True
     names = [datatype[1:-1].removeprefix(_XSD) for datatype in (wide, *narrow)]
@@ -242,19 +242,19 @@ def includes_common(wide: Term, narrow: Collection[Term]) -> bool:
 
 
 def _is_within(lowest: int | None, highest: int | None, low: int | None, high: int | None) -> bool:
-    """Whether the integers from `lowest` to `highest` are all from `low` to `high`; None is no bound."""
+    """Return whether the range `lowest` to `highest` is within `low` to `high`. None means unbounded."""
     return (low is None or (lowest is not None and lowest >= low)) and (
         high is None or (highest is not None and highest <= high)
     )
 
 
 def excludes(datatype: Term, term: Term) -> bool:
-    """Whether a literal is known not to be in a known datatype (an unknown one's literal might be)."""
+    """Return whether a literal is known not to be in a datatype. Literals of unknown datatypes may be."""
     return (value(term) is not None or is_ill_typed(term)) and not contains(datatype, term)
 
 
 def datatypes(term: Term) -> list[Term]:
-    """All known datatypes that hold the value of a literal (dt-type2)."""
+    """Return all supported datatypes that contain the value of a literal (dt-type2)."""
     return [datatype for datatype in sorted(_KNOWN) if contains(datatype, term)] if is_literal(term) else []
 
 
@@ -352,13 +352,13 @@ def _plain(text: str) -> Value | None:
 
 def _xml(text: str) -> Value | None:
     parser = expat.ParserCreate()
-    parser.EntityDeclHandler = _refuse_entity  # a document type has no place in a literal
+    parser.EntityDeclHandler = _reject_entity  # a literal must not declare a document type
     parser.Parse(f"<_>{text}</_>", True)
     return (_RDF + "XMLLiteral", text)
 
 
-def _refuse_entity(*_: object) -> None:
-    raise ValueError("an XML literal that declares entities")
+def _reject_entity(*_: object) -> None:
+    raise ValueError("an XML literal declares entities")
 
 
 _READERS: Final[dict[str, Callable[[str], Value | None]]] = {
@@ -385,7 +385,7 @@ _WRITERS: Final[dict[str, Callable[[Any], str]]] = {
     "dateTime": _write_date_time,
     "date": lambda key: key[0].isoformat() + (key[1] or ""),
 }
-"""How the values that are no text are written; all others are their own spelling."""
+"""Functions that write values. Values of other types are their own spelling."""
 _KNOWN: Final = frozenset(
     {f"<{_XSD}{name}>" for name in (*_INTEGERS, *_STRINGS)}
     | {f"<{name if ':' in name else _XSD + name}>" for name in _READERS}

@@ -1,4 +1,4 @@
-"""Terms, triples, and the proofs that the reasoner gives for what it says."""
+"""Terms, triples, and the proofs of the reasoner's conclusions."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ class Step(Struct, frozen=True, kw_only=True):
     rule: str
     premises: tuple[Triple, ...]
     conclusion: Triple | None
-    """None when the rule concludes that the map is inconsistent."""
+    """None if the rule concludes that the map is inconsistent."""
 
 
 class Explanation(Struct, frozen=True, kw_only=True):
-    """A proof: `steps` lead from the asserted triples in `support`, a minimal set, to `conclusion`.
+    """A proof: `steps` derive `conclusion` from the asserted triples in `support`, which is minimal.
 
-    `steps` are in order: each premise is in `support`, is `supposed`, or was concluded by an earlier step.
-    A conclusion that was asserted has itself as support and no steps.
+    The steps are in order: each premise is in `support`, is `supposed`, or was derived by an earlier step.
+    The support of an asserted conclusion is the conclusion itself, without steps.
     """
 
     conclusion: Triple | None
-    """None for an inconsistency, and for what no single triple says."""
+    """None for an inconsistency, and for a conclusion that is not a single triple."""
     support: tuple[Triple, ...]
     steps: tuple[Step, ...]
     text: str
-    """The same in one sentence, with labels instead of IRIs."""
+    """The proof in one sentence, with labels instead of IRIs."""
     supposed: Triple | None = None
-    """For a proof by refutation, the triple that cannot hold: `support` contradicts it, as `steps` show.
+    """For a proof by refutation: the assumed triple, which contradicts `support` as `steps` show.
 
-    `conclusion` is then what follows from that, if a triple says it, or else None.
+    `conclusion` is then its negation, if that is a single triple, or else None.
     """

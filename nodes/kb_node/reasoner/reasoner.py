@@ -1,4 +1,4 @@
-"""The reasoner as the rest of the knowledge base sees it."""
+"""The interface of the reasoner."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from itertools import chain
 from typing import NamedTuple
 
 from semmap.nodes.kb_node.reasoner.abox.columns import Columns
-from semmap.nodes.kb_node.reasoner.aside import Aside
 from semmap.nodes.kb_node.reasoner.change import Change
 from semmap.nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
 from semmap.nodes.kb_node.reasoner.explain.words import Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.rules.general import GeneralEngine
+from semmap.nodes.kb_node.reasoner.suppressed import SuppressedFacts
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from semmap.nodes.kb_node.reasoner.tbox.profile import outside_rl
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
@@ -25,24 +25,24 @@ _SUB_CLASS_OF = iri("rdfs:subClassOf")
 
 
 class Inconsistent(Exception):
-    """A change that contradicts the rest; it was undone. `explanation` says why."""
+    """A change was undone because it contradicts the other facts. `explanation` has the proof."""
 
     def __init__(self, explanation: Explanation) -> None:
         super().__init__(explanation.text)
         self.explanation = explanation
 
 
-class Held(NamedTuple):
-    """What holds by itself: what is asserted and not set aside, and what is computed."""
+class GivenFacts(NamedTuple):
+    """The facts that hold without inference: asserted and not suppressed, or computed."""
 
     asserted: list[Triple]
     computed: list[Triple]
 
 
 class Reasoner:
-    """A TBox and an ABox that are consistent, and what follows from them by the OWL 2 RL/RDF rules.
+    """A consistent TBox and ABox, with all conclusions of the OWL 2 RL/RDF rules.
 
-    Terms are strings in N-Triples syntax. A pattern's None is a wildcard. Not thread-safe.
+    Terms are strings in N-Triples syntax. None in a pattern is a wildcard. Not thread-safe.
     """
 
     def __init__(
@@ -53,82 +53,81 @@ class Reasoner:
         scattered: bool = False,
         fast: bool = True,
     ) -> None:
-        """Start with some triples. Raises Inconsistent when they contradict each other.
+        """Load triples. Raises Inconsistent if they contradict each other.
 
-        `closed` is what another reasoner's `closed` was that had the same schema. Triples that do not come
-        individual by individual, but as a store gives them, are `scattered`: that is only about speed. So is
-        `fast`: without it, changes like earlier ones are worked out like any other.
+        `closed` is the property `closed` of another reasoner with the same schema. The other two options only
+        affect speed: set `scattered` for triples that are not grouped by individual. Without `fast`, the
+        rules are applied to every change, even if its consequences are known from a similar one.
         """
         self._fast = fast
         self._engine: CompiledEngine | GeneralEngine = _engine_for(tbox, closed, scattered, fast)
-        self._aside = Aside()
+        self._suppressed = SuppressedFacts()
 
     def __len__(self) -> int:
-        """How many triples are asserted, the TBox's included."""
-        return len(self._engine) + len(self._aside)
+        """Return the number of asserted triples, including the TBox."""
+        return len(self._engine) + len(self._suppressed)
 
     @property
     def is_compiled(self) -> bool:
-        """Whether changes are worked out one by one; else everything is, at each change."""
+        """Whether changes are processed incrementally. Otherwise each change recomputes everything."""
         return isinstance(self._engine, CompiledEngine)
 
     @property
     def words(self) -> Words:
-        """What terms are called in sentences: labels of the TBox, or names."""
+        """The words for terms in sentences: labels of the TBox, or local names."""
         return self._engine.words
 
     @property
     def not_incremental(self) -> str | None:
-        """What keeps changes from being worked out one by one; None when nothing does.
+        """The reason why changes are not processed incrementally; None if they are.
 
-        No valid ontology of OWL 2 RL does. It takes a graph of OWL Full: one in which classes or properties
-        are the same as others, an individual is a value, or the vocabulary itself gets another meaning.
+        Every valid OWL 2 RL ontology is processed incrementally. Exceptions are OWL Full graphs: classes or
+        properties are the same as others, an individual equals a value, or the OWL vocabulary is redefined.
         """
-        return self._engine.why if isinstance(self._engine, GeneralEngine) else None
+        return self._engine.reason if isinstance(self._engine, GeneralEngine) else None
 
     @property
     def outside_rl(self) -> Counter[str]:
-        """How many axioms of each kind say more than OWL 2 RL can, so that the rules miss some of it."""
+        """The number of axioms beyond OWL 2 RL, by kind. The rules miss some of their consequences."""
         return outside_rl(filter(is_schema, self.asserted()))
 
     @property
     def closed(self) -> Facts | None:
-        """All that follows from the schema, if that is worked out by itself."""
+        """The closure of the schema; None if the schema is not processed separately."""
         return self._engine.closed if isinstance(self._engine, CompiledEngine) else None
 
     def columns(self, schema: Container[Triple] | None = None) -> Columns | None:
-        """What is held beyond the schema, conclusions included; None where columns cannot say it.
+        """Return the ABox with its conclusions as columns; None if columns cannot represent it.
 
-        They cannot if more counts as schema than the `schema` that they are to be filled in with: a map may
-        declare classes, too.
+        They cannot if the map itself declares classes, that is, if there are axioms outside `schema`.
         """
         return self._engine.columns(schema) if isinstance(self._engine, CompiledEngine) else None
 
     def fill(self, columns: Columns) -> bool:
-        """Hold what another reasoner of the same schema held; nothing but the TBox is held yet.
+        """Load the columns of another reasoner with the same schema. Only the TBox may be loaded before.
 
-        False, with nothing done, if the schema was another: then apply the columns' triples.
+        Returns False and changes nothing if the schema differs. Apply the triples of the columns instead.
         """
         return isinstance(self._engine, CompiledEngine) and self._engine.fill(columns)
 
     def apply(self, *, delete: Iterable[Triple] = (), insert: Iterable[Triple] = ()) -> Change:
-        """One transaction: deletes, then inserts, then checks.
+        """Apply one transaction: delete, then insert, then check consistency.
 
-        Deleting what is not there and inserting what is there changes nothing. Triples of the schema are
-        allowed and cost as much as loading the whole map anew.
+        Deleting an absent triple or inserting a present one changes nothing. Triples of the schema are
+        allowed, but then the whole map is loaded again.
 
         Raises:
-            Inconsistent: everything is as it was before.
+            Inconsistent: the change contradicts the other facts; nothing was changed.
         """
         delete, insert = list(delete), list(insert)
-        if not self._aside:
+        if not self._suppressed:
             return self._apply(delete, insert)
-        dropped = [triple for triple in delete if triple in self._aside]
+        dropped = [triple for triple in delete if triple in self._suppressed]
         change = self._apply(
-            [triple for triple in delete if triple not in self._aside],
-            [triple for triple in insert if triple not in self._aside or triple in dropped],
+            [triple for triple in delete if triple not in self._suppressed],
+            [triple for triple in insert if triple not in self._suppressed or triple in dropped],
         )
-        self._aside.remove(dropped)
+        self._suppressed.remove(dropped)
         return Change(change.others | {s for s, _, _ in dropped}, change.alike)
 
     def _apply(self, delete: list[Triple], insert: list[Triple]) -> Change:
@@ -138,63 +137,64 @@ class Reasoner:
                 return engine.apply(delete, insert)
             except Refused as refused:
                 raise Inconsistent(refused.explanation) from None
-            except NotCompilable:  # undone
-                gone, new = engine.without_idle_axioms(delete, insert)
-                if len(gone) + len(new) < len(delete) + len(insert):
-                    return self._apply(gone, new)
-        return self._apply_anew(delete, insert, (), ())
+            except NotCompilable:  # the engine has undone the change
+                old, new = engine.without_unchanged_axioms(delete, insert)
+                if len(old) + len(new) < len(delete) + len(insert):
+                    return self._apply(old, new)
+        return self._rebuild(delete, insert, (), ())
 
-    def believe(
+    def update_computed(
         self,
         *,
-        gone: Iterable[Triple] = (),
-        come: Iterable[Triple] = (),
-        aside: Iterable[Triple] = (),
-        back: Iterable[Triple] = (),
-        tell_implied: bool = False,
+        remove: Iterable[Triple] = (),
+        add: Iterable[Triple] = (),
+        suppress: Iterable[Triple] = (),
+        restore: Iterable[Triple] = (),
+        report_implied: bool = False,
     ) -> Change:
-        """Computed facts are gone and others come; asserted triples are set `aside`, or are `back`.
+        """Remove and add computed facts; suppress asserted facts, or restore suppressed ones.
 
-        What is computed holds, and is inferred rather than asserted. What is set aside is asserted and does
-        not hold. Facts that are not there, or there already, change nothing.
+        A computed fact holds without being asserted. A suppressed fact is asserted but does not hold.
+        Removing an absent fact or adding a present one changes nothing.
 
-        Returns those whose named classes changed; and what is `implied`, if that is to be told.
+        Returns the individuals whose named classes changed, and with `report_implied` also `Change.implied`.
 
         Raises:
-            Inconsistent: everything is as it was before.
+            Inconsistent: the change contradicts the other facts; nothing was changed.
         """
-        gone, come, aside = list(gone), list(come), list(aside)
-        back = [triple for triple in back if triple in self._aside]
+        remove, add, suppress = list(remove), list(add), list(suppress)
+        restore = [triple for triple in restore if triple in self._suppressed]
         engine = self._engine
         try:
             if isinstance(engine, CompiledEngine):
-                change = engine.believe(gone, come, aside, back, tell_implied=tell_implied)
+                change = engine.update_computed(remove, add, suppress, restore, report_implied=report_implied)
             else:
-                change = self._apply_anew(aside, back, gone, come)
+                change = self._rebuild(suppress, restore, remove, add)
         except Refused as refused:
             raise Inconsistent(refused.explanation) from None
         except NotCompilable:
-            change = self._apply_anew(aside, back, gone, come)
-        self._aside.remove(back)
-        self._aside.add(aside)
+            change = self._rebuild(suppress, restore, remove, add)
+        self._suppressed.remove(restore)
+        self._suppressed.add(suppress)
         return change
 
-    def _apply_anew(
+    def _rebuild(
         self,
         delete: Sequence[Triple],
         insert: Sequence[Triple],
-        gone: Iterable[Triple],
-        come: Iterable[Triple],
+        remove: Iterable[Triple],
+        add: Iterable[Triple],
     ) -> Change:
+        """Apply a change by loading all triples into a new engine."""
         before = dict.fromkeys(self._engine.asserted(None, None, None))
         after = before.copy()
         for triple in delete:
             after.pop(triple, None)
         after.update(dict.fromkeys(insert))
         computed = dict.fromkeys(self.computed())
-        for triple in gone:
+        for triple in remove:
             computed.pop(triple, None)
-        computed.update(dict.fromkeys(come))
+        computed.update(dict.fromkeys(add))
         engine = _engine_for(after, scattered=True, fast=self._fast, computed=computed)
         old, self._engine = self._engine, engine
         individuals = {s for s, _, _ in (*before, *after)} | {o for _, _, o in (*before, *after)}
@@ -203,14 +203,14 @@ class Reasoner:
         return Change(frozenset(term for term in touched if not is_literal(term)))
 
     @contextmanager
-    def supposing(self, triples: Iterable[Triple], *, anew: bool = True) -> Iterator[None]:
-        """For the length of a `with`, what would be with some more triples; then all is as before.
+    def assuming(self, triples: Iterable[Triple], *, allow_recompute: bool = True) -> Iterator[None]:
+        """Add triples for the duration of a `with` block, then restore the previous state.
 
-        Unless `anew`, only what the compiled engine can try and take back at once is supposed.
+        Without `allow_recompute`, only changes that the compiled engine can apply and revert are tried.
 
         Raises:
-            Inconsistent: they contradict the rest.
-            NotCompilable: everything would have to be worked out anew, and that was not wanted.
+            Inconsistent: the assumptions contradict the other facts.
+            NotCompilable: everything would have to be recomputed, which `allow_recompute` forbids.
         """
         new = [
             triple
@@ -224,7 +224,7 @@ class Reasoner:
             except Refused as refused:
                 raise Inconsistent(refused.explanation) from None
             except NotCompilable:
-                if not anew:
+                if not allow_recompute:
                     raise
             else:
                 try:
@@ -232,10 +232,10 @@ class Reasoner:
                 finally:
                     engine.apply(new, ())
                 return
-        elif not anew:
-            raise NotCompilable("the engine works everything out anew")
-        said = engine.asserted(None, None, None)
-        self._engine = _engine_for([*said, *new], fast=self._fast, computed=list(self.computed()))
+        elif not allow_recompute:
+            raise NotCompilable("the general engine recomputes everything for each change")
+        asserted = engine.asserted(None, None, None)
+        self._engine = _engine_for([*asserted, *new], fast=self._fast, computed=list(self.computed()))
         try:
             yield
         finally:
@@ -244,113 +244,115 @@ class Reasoner:
     def asserted(
         self, s: Term | None = None, p: Term | None = None, o: Term | None = None
     ) -> Iterator[Triple]:
-        """The asserted triples of a pattern, those that are set aside included."""
+        """Return the asserted triples that match a pattern, including suppressed ones."""
         found = self._engine.asserted(s, p, o)
-        return chain(found, self._aside.match(s, p, o)) if self._aside else found
+        return chain(found, self._suppressed.match(s, p, o)) if self._suppressed else found
 
     def computed(
         self, s: Term | None = None, p: Term | None = None, o: Term | None = None
     ) -> Iterator[Triple]:
-        """The computed triples of a pattern that are not asserted besides."""
+        """Return the computed triples that match a pattern and are not also asserted."""
         return self._engine.computed(s, p, o)
 
     def given(self, s: Term | None = None, p: Term | None = None, o: Term | None = None) -> Iterator[Triple]:
-        """What holds by itself: the asserted triples of a pattern, not set aside, and the computed."""
+        """Return the facts of a pattern that are asserted and not suppressed, or computed."""
         return chain(self._engine.asserted(s, p, o), self._engine.computed(s, p, o))
 
     def is_computed(self, triple: Triple) -> bool:
-        """Whether a triple is computed, and not asserted."""
+        """Return whether a triple is computed and not asserted."""
         return self._engine.is_computed(triple)
 
-    def set_aside(self) -> Iterator[Triple]:
-        """What is asserted and does not hold."""
-        return iter(self._aside)
+    def suppressed(self) -> Iterator[Triple]:
+        """Return the suppressed facts: asserted, but not holding."""
+        return iter(self._suppressed)
 
     @property
-    def sets_aside(self) -> bool:
-        """Whether anything is set aside."""
-        return bool(self._aside)
+    def has_suppressed(self) -> bool:
+        """Whether any fact is suppressed."""
+        return bool(self._suppressed)
 
-    def set_aside_about(self, terms: Iterable[Term]) -> set[Triple]:
-        """What is set aside and has one of the terms as its subject or object."""
-        return self._aside.touching(terms)
+    def suppressed_about(self, terms: Iterable[Term]) -> set[Triple]:
+        """Return the suppressed facts whose subject or object is one of `terms`."""
+        return self._suppressed.about(terms)
 
-    def held(self) -> Held:
-        """All that is `given`, for a reasoner elsewhere: `Reasoner.of`."""
-        return Held(list(self._engine.asserted(None, None, None)), list(self.computed()))
+    def given_facts(self) -> GivenFacts:
+        """Return all `given` facts, to create a copy with `Reasoner.of`."""
+        return GivenFacts(list(self._engine.asserted(None, None, None)), list(self.computed()))
 
     @classmethod
-    def of(cls, held: Held) -> Reasoner:
-        """One in which the same holds; nothing is set aside there. Raises Inconsistent."""
-        reasoner = cls(held.asserted)
-        reasoner.believe(come=held.computed)
+    def of(cls, facts: GivenFacts) -> Reasoner:
+        """Create a reasoner in which the same facts hold, without suppressed facts. Raises Inconsistent."""
+        reasoner = cls(facts.asserted)
+        reasoner.update_computed(add=facts.computed)
         return reasoner
 
     def by_subject(self) -> Iterator[list[Triple]]:
-        """The asserted triples in groups of one subject, for whoever has no time to read all of them at once.
+        """Return the asserted triples grouped by subject, for callers that read them in several steps.
 
-        The triples may change between two groups: one that is asserted all the while is among them, and one
-        that is asserted at no time is not.
+        The triples may change between two groups. A triple that is asserted during the whole iteration is
+        returned, one that is never asserted is not.
         """
         engine = self._engine
         if not isinstance(engine, CompiledEngine):
             return iter([list(self.asserted())])
-        return chain(engine.by_subject(), map(list, (self._aside,)))
+        return chain(engine.by_subject(), map(list, (self._suppressed,)))
 
     def about(self, subject: Term) -> dict[Term, list[Term]]:
-        """The asserted triples of a subject, predicate to objects. Costs as much as there is."""
+        """Return the asserted triples of a subject as a mapping from predicate to objects.
+
+        The time is proportional to the number of these triples.
+        """
         found = self._engine.about(subject)
-        if self._aside:
-            for _, predicate, object_ in self._aside.match(subject, None, None):
+        if self._suppressed:
+            for _, predicate, object_ in self._suppressed.match(subject, None, None):
                 found.setdefault(predicate, []).append(object_)
         return found
 
     def mentioned(self, terms: Set[Term]) -> set[Term]:
-        """Those that a triple may have as its subject or object: what is not mentioned is new."""
-        return self._engine.mentioned(terms) | self._aside.mentioned(terms)
+        """Return those of `terms` that may be the subject or object of a triple. All others are new."""
+        return self._engine.mentioned(terms) | self._suppressed.mentioned(terms)
 
     def inferred(
         self, s: Term | None = None, p: Term | None = None, o: Term | None = None
     ) -> Iterator[Triple]:
-        """The triples about individuals that are computed or follow and were not asserted, of a pattern.
+        """Return the triples of a pattern about individuals that are computed or inferred, but not asserted.
 
-        Left out are classes without a name, and that everything is the same as itself; `holds` knows both.
-        A value is given once, in its canonical spelling (`datatypes.canonical`), unless it was asserted in
-        any spelling. What follows of classes and properties is given when the pattern's predicate asks
-        for it.
+        Anonymous classes and `x owl:sameAs x` are left out; `holds` answers both. A value is returned once,
+        in its canonical spelling (`datatypes.canonical`), unless it was asserted in any spelling. Inferred
+        axioms are returned only if the predicate of the pattern asks for them.
         """
         return self._engine.inferred(s, p, o)
 
     def holds(self, triple: Triple) -> bool:
-        """Whether a triple is asserted or computed, or follows; not if it is set aside."""
+        """Return whether a triple is asserted, computed or inferred. Suppressed facts do not hold."""
         return self._engine.holds(triple)
 
     def follows(self, triple: Triple) -> bool:
-        """Whether a triple is computed or follows, and is not asserted, unless that is set aside."""
+        """Return whether a triple is computed or inferred, and not asserted (or asserted but suppressed)."""
         return self._engine.holds(triple) and next(self._engine.asserted(*triple), None) is None
 
     def types(self, individual: Term) -> frozenset[Term]:
-        """The named classes of an individual, asserted and inferred."""
+        """Return the named classes of an individual, asserted and inferred."""
         return self._engine.types(individual)
 
     def instances(self, cls: Term) -> Iterator[Term]:
-        """The individuals of a class, asserted and inferred."""
+        """Return the individuals of a class, asserted and inferred."""
         return self._engine.instances(cls)
 
     def superclasses(self, cls: Term) -> frozenset[Term]:
-        """The named classes that a class is a subclass of, itself included."""
+        """Return the named superclasses of a class, including the class itself."""
         wider = {o for source in (self.asserted, self.inferred) for _, _, o in source(cls, _SUB_CLASS_OF)}
         return frozenset(filter(is_named, wider)) | {cls}
 
     def subclasses(self, cls: Term) -> frozenset[Term]:
-        """The named classes that are subclasses of a class, itself included."""
+        """Return the named subclasses of a class, including the class itself."""
         narrower = {
             s for source in (self.asserted, self.inferred) for s, _, _ in source(None, _SUB_CLASS_OF, cls)
         }
         return frozenset(filter(is_named, narrower)) | {cls}
 
     def explain(self, triple: Triple) -> Explanation | None:
-        """Why a triple holds; None when it does not."""
+        """Return the proof of a triple; None if it does not hold."""
         return self._engine.explain(triple) if self.holds(triple) else None
 
 
@@ -361,12 +363,12 @@ def _engine_for(
     fast: bool = True,
     computed: Iterable[Triple] = (),
 ) -> CompiledEngine | GeneralEngine:
-    """The fast engine if it knows all that the triples use, else the general one. Raises Inconsistent."""
+    """Return the compiled engine, or the general one if the triples need it. Raises Inconsistent."""
     triples, computed = list(dict.fromkeys(triples)), list(computed)
     try:
         compiled = CompiledEngine(triples, closed, scattered=scattered, fast=fast)
         if computed:
-            compiled.believe((), computed, (), (), tell_implied=False)
+            compiled.update_computed((), computed, (), (), report_implied=False)
         return compiled
     except Refused as refused:
         raise Inconsistent(refused.explanation) from None

@@ -1,26 +1,26 @@
-"""Why something cannot be: it is supposed, the contradiction is kept, and the supposition is taken back."""
+"""Proof by refutation: assume a triple, keep the proof of the contradiction, retract the assumption."""
 
 from __future__ import annotations
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.reasoner.explain.sentences import denial
+from semmap.nodes.kb_node.reasoner.explain.sentences import refutation_sentence
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Triple
 from semmap.nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS, is_literal
 
 
-def refute(reasoner: Reasoner, supposed: Triple, *, anew: bool = True) -> Explanation | None:
-    """Why a triple cannot hold, by the contradiction that it would make; None if it would make none.
+def refute(reasoner: Reasoner, supposed: Triple, *, allow_recompute: bool = True) -> Explanation | None:
+    """Return the proof that a triple would make the map inconsistent; None if it would not.
 
-    Costs what the transaction does that adds the triple and takes it back, about a tenth of a millisecond.
-    The explanation's conclusion is None, or for `owl:sameAs` that the two are different.
+    Applies and reverts a transaction with the triple, which takes about 0.1 ms. The conclusion of the
+    explanation is None, or for `owl:sameAs` that the two individuals are different.
 
     Raises:
-        NotCompilable: everything would have to be worked out `anew`, and that is not wanted.
+        NotCompilable: everything would have to be recomputed, which `allow_recompute` forbids.
     """
     try:
-        with reasoner.supposing([supposed], anew=anew):
+        with reasoner.assuming([supposed], allow_recompute=allow_recompute):
             return None
     except Inconsistent as inconsistent:
         found = inconsistent.explanation
@@ -32,13 +32,13 @@ def refute(reasoner: Reasoner, supposed: Triple, *, anew: bool = True) -> Explan
         conclusion=conclusion,
         supposed=supposed,
         support=support,
-        text=denial(supposed, found.support, reasoner.words),
+        text=refutation_sentence(supposed, found.support, reasoner.words),
     )
 
 
-def why_different(reasoner: Reasoner, triple: Triple, *, anew: bool = True) -> Explanation | None:
-    """Why two individuals are different although no rule says so; None if they may be the same."""
+def why_different(reasoner: Reasoner, triple: Triple, *, allow_recompute: bool = True) -> Explanation | None:
+    """Return the proof that two individuals are different, by refutation; None if they may be the same."""
     s, p, o = triple
     if p != DIFFERENT_FROM or is_literal(o):
         return None
-    return refute(reasoner, (s, SAME_AS, o), anew=anew)
+    return refute(reasoner, (s, SAME_AS, o), allow_recompute=allow_recompute)

@@ -1,4 +1,4 @@
-"""RDF terms as strings in N-Triples syntax, and the vocabulary that the rules speak of."""
+"""RDF terms as strings in N-Triples syntax, and the vocabulary of the rules."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _ESCAPED = {char: "\\" + letter for letter, char in (*_CONTROL.items(), ('"', '"
 
 @cache
 def iri(name: str) -> Term:
-    """The term for a prefixed name: `iri("owl:Thing")`; `a` is rdf:type."""
+    """Return the term of a prefixed name, for example `iri("owl:Thing")`. `a` is rdf:type."""
     if name == "a":
         name = "rdf:type"
     prefix, local = name.split(":", 1)
@@ -32,7 +32,7 @@ def iri(name: str) -> Term:
 
 
 def iris(names: str) -> tuple[Term, ...]:
-    """The terms for prefixed names with blanks between them."""
+    """Return the terms of prefixed names that are separated by spaces."""
     return tuple(map(iri, names.split()))
 
 
@@ -47,7 +47,7 @@ NOTHING: Final = iri("owl:Nothing")
 
 
 class Literal(NamedTuple):
-    """A literal taken apart: text without escapes, the datatype's IRI (no brackets), language or ''."""
+    """A parsed literal: text without escapes, the datatype's IRI (no brackets), language or ''."""
 
     text: str
     datatype: str
@@ -55,17 +55,17 @@ class Literal(NamedTuple):
 
 
 def is_literal(term: Term) -> bool:
-    """Whether the term is a literal."""
+    """Return whether a term is a literal."""
     return term[0] == '"'
 
 
 def is_named(term: Term) -> bool:
-    """Whether the term is an IRI."""
+    """Return whether a term is an IRI."""
     return term[0] == "<"
 
 
 def is_reserved(term: Term) -> bool:
-    """Whether the term is an IRI of the RDF, RDFS, OWL or XSD vocabulary."""
+    """Return whether a term is an IRI of the RDF, RDFS, OWL or XSD vocabulary."""
     return term.startswith(_RESERVED)
 
 
@@ -73,10 +73,10 @@ _RESERVED = tuple(f"<{namespace}" for namespace in PREFIXES.values())
 
 
 def literal(term: Term) -> Literal:
-    """Take a literal apart.
+    """Parse a literal.
 
     Raises:
-        ValueError: the term is no literal in N-Triples syntax.
+        ValueError: the term is not a literal in N-Triples syntax.
     """
     match = _LITERAL.fullmatch(term)
     if match is None:
@@ -90,7 +90,7 @@ def literal(term: Term) -> Literal:
 
 
 def quoted(text: str, *, datatype: str = "", language: str = "") -> Term:
-    """A literal put together: the inverse of `literal`, with a datatype's IRI without brackets."""
+    """Return a literal as a term: the inverse of `literal`. `datatype` is an IRI without brackets."""
     escaped = text if _PLAIN_TEXT.fullmatch(text) else _SPECIAL.sub(_escaped, text)
     if language:
         return f'"{escaped}"@{language}'

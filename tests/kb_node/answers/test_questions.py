@@ -2,7 +2,7 @@ import pytest
 
 from semmap.nodes.kb_node.answers import questions
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.reasoner import Held, Reasoner
+from semmap.nodes.kb_node.reasoner import GivenFacts, Reasoner
 from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from semmap.ontology import vocabulary as v
@@ -247,7 +247,7 @@ def test_what_would_take_long_is_not_tried_on_the_map_itself(furnished):
         (("Chair", "disjointWith", "Kitchen"), "nothing is both a chair and a Kitchen, because "),
         (
             ("chair1", "owl:topObjectProperty", "kitchen1"),
-            "chair1 has top object property kitchen1 (always).",
+            "chair1 has top object property kitchen1 (axiomatic).",
         ),
         (("Chair", "subClassOf", "Object"), "every chair is an Object, because "),
         (("chair1", "type", "owl:Thing"), "chair1 is something"),
@@ -264,7 +264,9 @@ def test_a_proof_is_not_searched_for_on_the_map_itself(furnished):
     asked = questions.of_explain(furnished, Explain(name="chair1", predicate="type", value="Door"))
     with pytest.raises(questions.Undecided):
         questions.explain(furnished.reasoner, asked, anew=False)
-    beside = questions.copy_of(Held(nearby(furnished.reasoner, asked.terms), []), furnished.classes.prefixed)
+    beside = questions.copy_of(
+        GivenFacts(nearby(furnished.reasoner, asked.terms), []), furnished.classes.prefixed
+    )
     with pytest.raises(
         errors.Refused, match="it does not hold that chair1 is a Door, and nothing excludes it"
     ):
@@ -277,7 +279,7 @@ def test_classes_that_are_called_alike_have_prefixes_in_sentences(tmp_path):
     semantic_map.commit(transaction(1, turtle(":chair1 a dm:Chair . :a a <http://a.org/lab.owl#Seat> .")))
     said = explained(semantic_map, "chair1", "type", "dm:Seat").text
     assert said == "chair1 is a Seat, because it is a dm:Chair (asserted), and every dm:Chair is a Seat."
-    copied = questions.copy_of(semantic_map.reasoner.held(), semantic_map.classes.prefixed)
+    copied = questions.copy_of(semantic_map.reasoner.given_facts(), semantic_map.classes.prefixed)
     asked = questions.of_explain(semantic_map, Explain(name="a", predicate="type", value="lab:Seat"))
     assert questions.explain(copied, asked).text == "a is a lab:Seat (asserted)."
     home.close(semantic_map)

@@ -1,4 +1,4 @@
-"""The graph that owlrl works on is like any other."""
+"""The graph for owlrl behaves like an rdflib graph."""
 
 import rdflib
 from rdflib import RDF, Literal, URIRef
@@ -9,7 +9,7 @@ from semmap.nodes.kb_node.owlrl.closure_process import QuickGraph
 A, B, C, P = (URIRef(f"urn:{name}") for name in "abcp")
 
 
-def test_it_has_what_was_added_and_not_removed():
+def test_it_contains_the_same_triples_as_an_rdflib_graph():
     quick, plain = QuickGraph(), rdflib.Graph()
     for graph in (quick, plain):
         graph.add((A, P, B))

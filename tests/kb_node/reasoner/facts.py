@@ -31,4 +31,4 @@ ANY_FACT = facts(
     prefixed("", DATA_PROPERTIES),
     LITERALS,
 )
-"""About the schema of every construct (`graphs.EVERYTHING`)."""
+"""Facts for the schema of every construct (`graphs.EVERYTHING`)."""

@@ -79,19 +79,19 @@ LITERALS = (
 
 
 def household():
-    """The household TBox."""
+    """Return the household TBox."""
     path = Path(__file__).parents[3] / "ontology" / "household.ttl"
     quads = pyoxigraph.parse(path=str(path), format=pyoxigraph.RdfFormat.TURTLE)
     return [(str(quad.subject), str(quad.predicate), str(quad.object)) for quad in quads]
 
 
 def triples(turtle):
-    """The triples of a Turtle text, with the usual prefixes."""
+    """Parse Turtle with the usual prefixes."""
     quads = pyoxigraph.parse(PREFIXES + turtle, format=pyoxigraph.RdfFormat.TURTLE)
     return [(str(quad.subject), str(quad.predicate), str(quad.object)) for quad in quads]
 
 
 def triple(turtle):
-    """The one triple of a Turtle text."""
+    """Parse Turtle that has one triple."""
     [found] = triples(turtle + " .")
     return found

@@ -1,10 +1,10 @@
-"""What every explanation must be, whatever it explains."""
+"""Checks of explanations."""
 
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 
 
 def check(explanation, asserted):
-    """Valid: what it rests on is asserted and suffices. Minimal: no less does. Its steps lead there."""
+    """Check that the support is asserted, sufficient and minimal, and that the steps prove the conclusion."""
     goal, support = explanation.conclusion, list(explanation.support)
     assert set(support) <= set(asserted)
     assert _reached(support, goal)
@@ -21,5 +21,5 @@ def check(explanation, asserted):
 
 
 def _reached(some, goal):
-    closure = Closure(some, mentions=goal or ())  # the goal may spell a value as none of the facts does
+    closure = Closure(some, mentions=goal or ())  # the goal may have another spelling of a value
     return closure.clash is not None if goal is None else closure.clash is None and closure.holds(goal)

@@ -14,7 +14,7 @@ NOT_PASSED = {
     "rdfbased-dat-dtype-double-illtyped-lo": '"0.0" is a double: well-typed',
     "rdfbased-dat-dtype-float-illtyped-lo": '"1e-50" rounds to 0 (XML Schema 1.1): well-typed',
 }
-"""Cases that claim a contradiction where XML Schema sees none (the literal was rewritten since, it seems)."""
+"""Cases that expect a contradiction that XML Schema does not imply (the literal was apparently rewritten)."""
 
 
 def _found():

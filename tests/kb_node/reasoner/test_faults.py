@@ -1,4 +1,4 @@
-"""Ways to be inconsistent in a home, each with a look-alike that is not."""
+"""Inconsistencies in a home, each with a similar consistent case."""
 
 import pytest
 
@@ -123,7 +123,7 @@ def reasoner(tbox):
 
 
 @pytest.mark.parametrize("name", FAULTS)
-def test_a_fault_is_refused_and_explained(name, reasoner, tbox):
+def test_a_contradiction_is_rejected_and_explained(name, reasoner, tbox):
     turtle, claim = FAULTS[name]
     facts, size = triples(turtle + " ."), len(reasoner)
     with pytest.raises(Inconsistent) as refusal:
@@ -138,7 +138,7 @@ def test_a_fault_is_refused_and_explained(name, reasoner, tbox):
 
 
 @pytest.mark.parametrize("name", LOOK_ALIKES)
-def test_a_look_alike_is_accepted(name, reasoner):
+def test_a_similar_consistent_case_is_accepted(name, reasoner):
     facts, size = triples(LOOK_ALIKES[name] + " ."), len(reasoner)
     try:
         reasoner.apply(insert=facts)
@@ -148,6 +148,6 @@ def test_a_look_alike_is_accepted(name, reasoner):
     assert len(reasoner) == size
 
 
-def test_there_are_as_many_look_alikes():
+def test_every_case_has_a_consistent_counterpart():
     assert len(FAULTS) >= 20
     assert len(LOOK_ALIKES) >= 20

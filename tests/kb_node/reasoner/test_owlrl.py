@@ -1,4 +1,4 @@
-"""The engine beside owlrl, an implementation of the same rules by others, where owlrl follows them."""
+"""Comparison with owlrl, an independent implementation of the same rules, where it follows them."""
 
 import random
 
@@ -17,7 +17,7 @@ INDIVIDUALS = [f":i{n}" for n in range(7)]
 
 
 def _map(seed):
-    """A random consistent map of 25 facts, and the reasoner that holds it."""
+    """Return a random consistent map of 25 facts, and its reasoner."""
     random_ = random.Random(seed)
     reasoner = Reasoner(triples(EVERYTHING))
     facts = []
@@ -40,7 +40,7 @@ def _by_owlrl(turtle):
 
 
 def _expanded(asserted):
-    """All that follows as owlrl sees it, and whether it sees a contradiction."""
+    """Return the closure by owlrl, and whether it finds a contradiction."""
     graph = rdflib.Graph().parse(data="".join(f"{s} {p} {o} .\n" for s, p, o in asserted), format="nt")
     owlrl.DeductiveClosure(owlrl.OWLRL_Semantics).expand(graph)
     facts = {tuple(term.n3() for term in fact) for fact in graph}
@@ -92,12 +92,12 @@ WRONG = {
         ":d a owl:InverseFunctionalProperty . :a :d 1 . :b :d 1.0 .",
     ),
 }
-"""Where owlrl does not follow the recommendation: what it does, and a case. Such axioms are left out."""
+"""Deviations of owlrl from the recommendation, each with a case. Such axioms are left out."""
 
 
 @pytest.mark.parametrize("case", WRONG.values(), ids=list(WRONG))
-def test_where_owlrl_says_something_else(case):
-    """So that an axiom that owlrl learns is no longer left out."""
+def test_deviations_of_owlrl(case):
+    """Fails when owlrl fixes a deviation, so that its axioms are tested again."""
     _, turtle = case
     theirs, is_contradictory = _expanded(triples(turtle))
     ours = set()
@@ -112,7 +112,7 @@ def test_where_owlrl_says_something_else(case):
 
 @pytest.mark.parametrize("seed", range(tries(20)))
 def test_random_worlds_are_the_same_as_with_owlrl(seed):
-    """Ten changes, the last of which may be refused."""
+    """Ten changes, the last of which may be rejected."""
     world = World(seed, without=WRONG)
     try:
         reasoner = Reasoner(world.asserted)

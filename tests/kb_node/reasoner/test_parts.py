@@ -1,4 +1,4 @@
-"""The reasoner's parts are imported when they are first asked for."""
+"""The names of the package are imported on first use."""
 
 import subprocess
 import sys
@@ -15,12 +15,12 @@ sys.exit(str(rules) if rules else 0)
 """
 
 
-def test_who_wants_words_does_not_import_the_rules():
+def test_importing_words_does_not_import_the_rules():
     done = subprocess.run([sys.executable, "-c", _WORDS_ALONE], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
 
-def test_every_part_that_is_named_is_there():
+def test_every_exported_name_exists():
     assert all(getattr(reasoner, name).__module__.startswith(reasoner.__name__) for name in reasoner.__all__)
     with pytest.raises(AttributeError, match="has no attribute 'Reasonr'"):
         reasoner.Reasonr  # noqa: B018

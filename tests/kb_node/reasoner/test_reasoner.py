@@ -21,7 +21,7 @@ HOME = cache(lambda: Closure(household()))
 
 @pytest.fixture(autouse=True)
 def _closed_once(monkeypatch):
-    """The schema is the same in all examples: close it once."""
+    """Close the schema once, because it is the same in all examples."""
     close = cache(lambda facts: Closure(facts))
     monkeypatch.setattr(compiled, "Closure", lambda facts: close(tuple(facts)))
 
@@ -62,17 +62,17 @@ AT_HOME = _changes(
 
 
 def expected(closure, base, asserted):
-    """What `inferred` promises of a closure that started from `base`, whose facts come first in it."""
-    promised = [*_promised_of(base), *_promised(islice(closure.facts, len(base.facts), None))]
-    return {fact for fact in promised if fact not in asserted}
+    """Return what `inferred` must return for a closure that started from `base`, whose facts come first."""
+    inferable = [*_inferable_of_base(base), *_inferable(islice(closure.facts, len(base.facts), None))]
+    return {fact for fact in inferable if fact not in asserted}
 
 
 @cache
-def _promised_of(base):
-    return _promised(base.facts)
+def _inferable_of_base(base):
+    return _inferable(base.facts)
 
 
-def _promised(facts):
+def _inferable(facts):
     return [
         (s, p, o)
         for s, p, o in facts
@@ -81,13 +81,13 @@ def _promised(facts):
 
 
 def _canonical(fact):
-    """A triple with its literal, if it has one, in the canonical spelling."""
+    """Return a triple with its literal, if any, in the canonical spelling."""
     s, p, o = fact
     return (s, p, datatypes.canonical(o))
 
 
 def check_same(reasoner, asserted, base, closure=None):
-    """The reasoner says what a fresh closure of what is asserted does (`closure`, if it is there already)."""
+    """Check a reasoner against a fresh closure of the asserted facts (`closure`, if it exists already)."""
     closure = closure or closure_of(asserted, base)
     assert closure.clash is None
     assert set(reasoner.asserted()) == set(asserted)
@@ -114,7 +114,7 @@ def check_same(reasoner, asserted, base, closure=None):
 
 
 def check_sequence(changes, base):
-    """Ten random transactions, each compared with a fresh closure of what is then asserted."""
+    """Compare ten random transactions with a fresh closure of the asserted facts."""
     asserted = dict.fromkeys(asserted_in(base))
     reasoner = Reasoner(asserted)
     closure = base
@@ -145,8 +145,8 @@ def sequences(examples):
     )
 
 
-def test_a_spelling_that_goes_while_another_comes():
-    """The old spelling's node must not be joined to the new one's on its way out."""
+def test_one_spelling_is_deleted_while_another_is_inserted():
+    """The node of the deleted spelling must not be merged with that of the new one."""
     reasoner = Reasoner(asserted_in(BASE))
     old, new = (triple(f':i0 :ifd "{text}"^^xsd:float') for text in ("1.0", "1.00"))
     reasoner.apply(insert=[old])
@@ -155,18 +155,18 @@ def test_a_spelling_that_goes_while_another_comes():
 
 
 @pytest.mark.parametrize("odd", ["", ":A rdfs:subClassOf rdf:type . "], ids=["compiled", "general"])
-def test_what_is_set_aside_is_asserted_and_does_not_hold_until_it_is_back(odd):
+def test_a_suppressed_fact_is_asserted_and_does_not_hold_until_it_is_restored(odd):
     facts = triples(
         odd + ":A rdfs:subClassOf :B . :on a owl:ObjectProperty . :cup a :A ; :on :tray , :shelf ."
     )
     reasoner = Reasoner(facts)
     assert reasoner.is_compiled is (not odd)
     on_tray, on_shelf, a_b = triple(":cup :on :tray"), triple(":cup :on :shelf"), triple(":cup a :B")
-    reasoner.believe(aside=[on_tray])
-    assert reasoner.sets_aside
-    assert list(reasoner.set_aside()) == [on_tray]
-    assert reasoner.set_aside_about([on_tray[2]]) == {on_tray}
-    assert reasoner.set_aside_about([on_shelf[2]]) == set()
+    reasoner.update_computed(suppress=[on_tray])
+    assert reasoner.has_suppressed
+    assert list(reasoner.suppressed()) == [on_tray]
+    assert reasoner.suppressed_about([on_tray[2]]) == {on_tray}
+    assert reasoner.suppressed_about([on_shelf[2]]) == set()
     assert len(reasoner) == len(facts)
     assert set(reasoner.asserted()) == set(facts)
     assert set(reasoner.asserted(None, on_tray[1])) == {on_tray, on_shelf}
@@ -176,17 +176,17 @@ def test_what_is_set_aside_is_asserted_and_does_not_hold_until_it_is_back(odd):
     assert set(reasoner.about(on_tray[0])) == {TYPE, on_tray[1]}
     assert reasoner.mentioned({on_tray[2], "<http://example.org/none>"}) == {on_tray[2]}
     assert (reasoner.holds(on_tray), reasoner.holds(on_shelf), reasoner.holds(a_b)) == (False, True, True)
-    again = Reasoner.of(reasoner.held())
+    again = Reasoner.of(reasoner.given_facts())
     assert set(again.given(None, on_tray[1])) == {on_shelf}
-    reasoner.believe(back=[on_tray, on_shelf])
-    assert not reasoner.sets_aside
+    reasoner.update_computed(restore=[on_tray, on_shelf])
+    assert not reasoner.has_suppressed
     assert reasoner.holds(on_tray)
     assert set(reasoner.about(on_tray[0])[on_tray[1]]) == {on_tray[2], on_shelf[2]}
     assert set(reasoner.asserted()) == set(facts)
 
 
-def test_how_an_inferred_value_is_spelled_does_not_depend_on_who_came_first():
-    """Spellings met early are told from each other no more; the others bring their edges first."""
+def test_the_spelling_of_an_inferred_value_does_not_depend_on_the_order_of_facts():
+    """Early spellings are already merged; the others are inserted with their edges."""
     facts = [
         triple(text)
         for text in (
@@ -226,7 +226,7 @@ def test_an_individual_that_a_class_lists_has_the_values_of_the_class():
     proofs.check(reasoner.explain(has_it), tbox)
 
 
-def test_what_such_a_value_contradicts_is_refused():
+def test_a_contradiction_with_such_a_value_is_rejected():
     tbox = triples(
         CHARGING + ":hasAffordance rdfs:range :Affordance . :Affordance owl:disjointWith :Device ."
     )
@@ -273,7 +273,7 @@ def test_a_key_needs_every_value_of_both():
 
 
 def test_a_literal_of_an_unknown_datatype_that_is_a_number():
-    """It is as all spellings of that number are, whichever came first."""
+    """It equals all spellings of that number, in any order of insertion."""
     facts = [
         triple(text)
         for text in (
@@ -295,7 +295,7 @@ def test_a_literal_of_an_unknown_datatype_that_is_a_number():
             check_same(reasoner, asserted, BASE)
 
 
-def test_what_is_a_number_by_another_is_so_in_every_spelling():
+def test_a_literal_that_equals_a_number_equals_every_spelling_of_it():
     asserted = dict.fromkeys(asserted_in(BASE))
     reasoner = Reasoner(asserted)
     for text in (':i0 :key2 "x"^^:unknown', ':i0 :fundata "1.00"^^xsd:float', ':i0 :fundata "x"^^:unknown'):
@@ -308,7 +308,7 @@ def test_what_is_a_number_by_another_is_so_in_every_spelling():
 
 @sequences(tries(120))
 @given(CHANGES)
-def test_any_sequence_of_changes_leaves_what_a_fresh_closure_has(changes):
+def test_any_sequence_of_changes_equals_a_fresh_closure(changes):
     check_sequence(changes, BASE)
 
 
@@ -328,5 +328,5 @@ def test_many_at_home(changes):
 @pytest.mark.long
 @sequences(5000)
 @given(CHANGES)
-def test_any_of_many_sequences_leaves_what_a_fresh_closure_has(changes):
+def test_any_of_many_sequences_equals_a_fresh_closure(changes):
     check_sequence(changes, BASE)

@@ -1,4 +1,4 @@
-"""What is supposed is taken back, whatever came of it, and a refutation is a proof."""
+"""Assumptions are always reverted, and a refutation is a proof."""
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -15,43 +15,43 @@ from tests.kb_node.reasoner.graphs import EVERYTHING, household, triple, triples
 BASE = triples(EVERYTHING)
 
 
-def _picture(reasoner):
-    """All that can be asked of a reasoner, and how many nodes it has."""
+def _snapshot(reasoner):
+    """Return all query results of a reasoner, and its nodes."""
     engine = reasoner._engine
     return set(reasoner.asserted()), set(reasoner.inferred()), len(reasoner), set(engine._abox.store.numbers)
 
 
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(ANY_FACT, max_size=6), st.lists(ANY_FACT, min_size=1, max_size=8))
-def test_supposing_leaves_no_trace(facts, supposed):
-    check_supposing(facts, supposed)
+def test_an_assumption_leaves_no_trace(facts, supposed):
+    check_assuming(facts, supposed)
 
 
 @pytest.mark.long
 @settings(max_examples=500, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(ANY_FACT, max_size=6), st.lists(ANY_FACT, min_size=1, max_size=8))
-def test_any_of_many_suppositions_leaves_no_trace(facts, supposed):
-    check_supposing(facts, supposed)
+def test_any_of_many_assumptions_leaves_no_trace(facts, supposed):
+    check_assuming(facts, supposed)
 
 
-def check_supposing(facts, supposed):
+def check_assuming(facts, supposed):
     reasoner = Reasoner(BASE)
     for fact in facts:
         try:
             reasoner.apply(insert=[fact])
         except Inconsistent:
             continue
-    before = _picture(reasoner)
+    before = _snapshot(reasoner)
     for triple_ in supposed:
         why = refute(reasoner, triple_)
         assert (why is None) == (Closure([*reasoner.asserted(), triple_]).clash is None)
         if why is not None:
             check(why, set(reasoner.asserted()))
-        assert _picture(reasoner) == before
+        assert _snapshot(reasoner) == before
 
 
 def check(why, asserted):
-    """What was supposed contradicts the support, and nothing of it is too much."""
+    """The assumption contradicts the support, and the support is minimal."""
     assert set(why.support) <= asserted
     assert Closure([*why.support, why.supposed]).clash is not None
     for left_out in why.support:
@@ -61,37 +61,40 @@ def check(why, asserted):
     assert "http" not in why.text
 
 
-def _fail_supposing(reasoner, *supposed):
-    with reasoner.supposing(supposed):
+def _fail_while_assuming(reasoner, *supposed):
+    with reasoner.assuming(supposed):
         assert reasoner.holds(triple(":i1 a :F"))
         raise ZeroDivisionError
 
 
-def test_suppositions_nest_and_end_with_an_error():
+def test_assumptions_nest_and_end_with_an_error():
     reasoner = Reasoner(BASE)
-    before = _picture(reasoner)
-    with reasoner.supposing([triple(":i0 a :B")]):
+    before = _snapshot(reasoner)
+    with reasoner.assuming([triple(":i0 a :B")]):
         with pytest.raises(ZeroDivisionError):
-            _fail_supposing(reasoner, triple(":i0 :p :i1"), triple(":i0 a :B"))
+            _fail_while_assuming(reasoner, triple(":i0 :p :i1"), triple(":i0 a :B"))
         assert reasoner.holds(triple(":i0 a :A"))
         assert not reasoner.holds(triple(":i1 a :F"))
-        with pytest.raises(Inconsistent), reasoner.supposing([triple(":i0 a :X"), triple(":i0 a :Y")]):
+        with pytest.raises(Inconsistent), reasoner.assuming([triple(":i0 a :X"), triple(":i0 a :Y")]):
             pass
-    assert _picture(reasoner) == before
+    assert _snapshot(reasoner) == before
 
 
-def test_axioms_are_supposed_of_a_new_engine_and_the_old_one_comes_back():
+def test_axioms_are_assumed_in_a_new_engine_and_the_old_one_is_restored():
     reasoner = Reasoner(BASE)
     engine = reasoner._engine
-    with pytest.raises(NotCompilable), reasoner.supposing([triple(":B rdfs:subClassOf :G")], anew=False):
+    with (
+        pytest.raises(NotCompilable),
+        reasoner.assuming([triple(":B rdfs:subClassOf :G")], allow_recompute=False),
+    ):
         pass
-    with reasoner.supposing([triple(":B rdfs:subClassOf :G"), triple(":i0 a :B")]):
+    with reasoner.assuming([triple(":B rdfs:subClassOf :G"), triple(":i0 a :B")]):
         assert reasoner.holds(triple(":i0 a :G"))
     assert reasoner._engine is engine
     assert not reasoner.holds(triple(":i0 a :B"))
 
 
-def test_why_two_are_different():
+def test_why_two_individuals_are_different():
     reasoner = Reasoner([*household(), *triples(':a dm:mass "1"^^xsd:float . :b dm:mass "2"^^xsd:float .')])
     why = why_different(reasoner, triple(":a owl:differentFrom :b"))
     assert (why.conclusion[1], why.supposed[1]) == (DIFFERENT_FROM, SAME_AS)

@@ -1,6 +1,6 @@
-"""Worlds with every construct, followed change by change, beside what has no part in the fast engine.
+"""Random worlds with every construct: the incremental engine is compared with the rule table.
 
-At each step the rule table is applied to all that is asserted, from nothing, as slowly as it takes.
+After each change the rule table is applied to all asserted facts from scratch.
 """
 
 import random
@@ -23,7 +23,7 @@ SCHEMA_PREDICATES = [iri("rdfs:subClassOf"), iri("rdfs:domain"), iri("owl:equiva
 
 
 def promised(closure, asserted):
-    """What `inferred` promises, picked from all that the rules make."""
+    """Return the part of the closure that `inferred` must return."""
     said = {(s, p, canonical(o)) for s, p, o in asserted}
     return {
         (s, p, canonical(o))
@@ -37,7 +37,7 @@ def promised(closure, asserted):
 
 
 def check(reasoner, closure, asserted, random_):
-    """The reasoner says what the rules make."""
+    """Check a reasoner against the rules."""
     assert reasoner.is_compiled
     assert set(reasoner.asserted()) == set(asserted)
     found = list(reasoner.inferred())
@@ -60,7 +60,7 @@ def check(reasoner, closure, asserted, random_):
 
 
 def refused(reasoner, change):
-    """Why a change is refused; None when it was made."""
+    """Apply a change; return the explanation of a rejection, or None."""
     try:
         reasoner.apply(delete=change.delete, insert=change.insert)
     except Inconsistent as refusal:
@@ -69,7 +69,7 @@ def refused(reasoner, change):
 
 
 def follow(seed, steps, theme):
-    """One world and so many changes."""
+    """Apply `steps` random changes to one world."""
     world, random_ = World(seed, theme), random.Random(seed)
     closure = Closure(world.asserted)
     while closure.clash is not None:

@@ -1,4 +1,4 @@
-"""Random worlds: a schema of any constructs of OWL 2 RL, facts, and changes of both."""
+"""Random worlds: a schema with any constructs of OWL 2 RL, facts, and changes of both."""
 
 import random
 from typing import NamedTuple
@@ -115,16 +115,16 @@ class Change(NamedTuple):
 
 
 class World:
-    """What is asserted, and where it may go from here."""
+    """The asserted facts of a random world, and random changes of them."""
 
     def __init__(self, seed, templates=AXIOMS, without=()):
-        """`without` are words of templates that are not to be used."""
+        """Templates that contain a word of `without` are not used."""
 
         def used(texts):
             return [text for text in texts if not any(word in text for word in without)]
 
         self.random = random.Random(seed)
-        few = self.random.random() < 0.7  # names, so that the axioms meet more often
+        few = self.random.random() < 0.7  # few names, so that axioms interact more often
         self._names = {
             "c": CLASSES[: 3 if few else None],
             "p": OBJECT_PROPERTIES[: 2 if few else None],
@@ -142,7 +142,7 @@ class World:
         self.asserted = dict.fromkeys(fact for axiom in self.axioms for fact in axiom)
 
     def change(self):
-        """Some facts go, some come; now and then axioms do, by themselves or together with facts."""
+        """Return a random change: facts are deleted and inserted, sometimes also axioms."""
         chance = self.random.random
         gone, new = [], []
         if chance() < 0.12:
@@ -160,12 +160,12 @@ class World:
         return Change(delete, insert)
 
     def after(self, change):
-        """What is asserted after a change."""
+        """Return the asserted facts after a change."""
         left = dict.fromkeys(fact for fact in self.asserted if fact not in change.delete)
         return left | dict.fromkeys(change.insert)
 
     def accept(self, change):
-        """The change was made: go on from there."""
+        """Record that a change was accepted."""
         self.asserted = self.after(change)
         self.axioms = [axiom for axiom in self.axioms if all(fact in self.asserted for fact in axiom)]
         known = {fact for axiom in self.axioms for fact in axiom}

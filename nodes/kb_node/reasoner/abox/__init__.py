@@ -1,1 +1,1 @@
-"""The ABox: individuals in columns, and what follows of them, change by change."""
+"""The ABox: individuals in columns, and their conclusions, maintained incrementally."""

@@ -1,9 +1,10 @@
-"""The ABox: what is stored of individuals, what is concluded of them, and how they are looked at.
+"""The state of the ABox: stored facts, conclusions, and the agenda of the rules.
 
-Stored are the asserted edges, the kind of each node, and what cannot be read off them: edges that chains or
-values make, and which nodes are the same. The agenda is a queue of new edges and of nodes whose kind grew.
+It stores the asserted edges, the kind of each node, and the conclusions that do not follow from these alone:
+edges implied by chains or values, and which nodes are the same. The agenda has the new edges, and the nodes
+whose kind grew.
 
-Nodes that are the same individual share one `Equals`; whatever is asked of one is asked of all.
+Nodes that are the same individual share one `Equals`. Queries about one of them are answered for all.
 """
 
 from __future__ import annotations
@@ -23,11 +24,11 @@ from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 from semmap.nodes.kb_node.reasoner.terms import is_literal
 
 MANY = 16
-"""Pairs of nodes beyond which edges are searched by the one end only."""
+"""Number of node pairs above which edges are searched from one end only."""
 
 
 class Equals:
-    """Nodes that are the same individual, and the links that made them so."""
+    """Nodes that are the same individual, and the links that make them equal."""
 
     __slots__ = ("links", "members")
 
@@ -37,7 +38,7 @@ class Equals:
 
 
 class ABox:
-    """The state that all rules share: columns, kinds, equalities, reasons, and the agenda of what is new."""
+    """The state shared by all rules: columns, kinds, equalities, reasons, and the agenda."""
 
     def __init__(self, schema: Schema) -> None:
         self.schema = schema
@@ -46,29 +47,31 @@ class ABox:
         self.store = Store(self.kinds)
         self.equals: dict[int, Equals] = {}
         self.reasons: dict[int, Reason] = {}
-        self.moved: dict[int, Kind] = {}
-        """The nodes whose kind changed since `settle`, with the kind they had."""
-        self.rest_on_edge: dict[int, list[Reason]] = {}
-        self.rest_on_node: dict[int, list[Reason]] = {}
+        self.changed_kinds: dict[int, Kind] = {}
+        """The nodes whose kind changed since `settle`, with their previous kind."""
+        self.reasons_by_edge: dict[int, list[Reason]] = {}
+        self.reasons_by_node: dict[int, list[Reason]] = {}
         self._order = count()
         self.spellings: dict[datatypes.Value, list[int]] = {}
-        self.is_mixed = False
-        """Whether a literal without a known value was ever the same as another: all spellings matter then."""
+        self.has_unknown_equals = False
+        """Whether a literal without a known value was ever equal to another. Then spellings are compared."""
         self.overlaid: list[Triple] = []
-        """What was computed, and was asserted since `settle`."""
+        """Computed triples that were asserted since `settle`."""
         self.fresh: list[int] = []
         self.dirty: dict[int, None] = {}
         for term in schema.nominals:
             if not is_literal(term):
-                self.dirty[self.store.node(term)] = None  # the schema alone may say what they are and have
+                self.dirty[self.store.node(term)] = (
+                    None  # the schema alone may state their classes and values
+                )
 
     def members(self, node: int) -> list[int]:
-        """All nodes that are the same as one, itself included."""
+        """Return all nodes that are the same as a node, including itself."""
         equals = self.equals.get(node)
         return [node] if equals is None else equals.members
 
     def is_same(self, one: int, other: int) -> bool:
-        """Whether two nodes are the same individual or value."""
+        """Return whether two nodes are the same individual or value."""
         if one == other:
             return True
         equals = self.equals.get(one)
@@ -77,7 +80,7 @@ class ABox:
         return self.value(one) is not None and self.value(one) == self.value(other)
 
     def named(self, node: int, term: Term) -> int | None:
-        """Which of those that are the same as a node a term names, a literal also in another spelling."""
+        """Return the node of a term among the nodes equal to `node`. Literals match in any spelling."""
         found, members = self.store.find(term), self.members(node)
         if found is not None and found in members:
             return found
@@ -85,17 +88,17 @@ class ABox:
         return None if value is None else next((m for m in members if self.value(m) == value), None)
 
     def is_literal(self, node: int) -> bool:
-        """Whether a node is a literal."""
+        """Return whether a node is a literal."""
         return self.store.kind[node].excluded is not None
 
     def value(self, node: int) -> datatypes.Value | None:
-        """The value of a literal; None for an individual."""
+        """Return the value of a literal; None for an individual."""
         if not self.is_literal(node):
             return None
         return datatypes.value(self.store.terms[node])
 
     def related(self, node: int, group: Group) -> Iterator[tuple[int, int, int]]:
-        """The edges that a role follows from a node: (edge, its end here, its end there)."""
+        """Return the edges along a role from a node: (edge, near end, far end)."""
         store = self.store
         if group.is_wide:
             yield from self._among_all(node, group)
@@ -107,7 +110,7 @@ class ABox:
                 yield edge, member, store.subject[edge]
 
     def has_any(self, node: int, group: Group) -> bool:
-        """Whether a role of that group leads anywhere from a node: whether `related` has any."""
+        """Return whether a node has an edge of a group, that is, whether `related` returns any."""
         out, into = self.store.out, self.store.into
         if not self.equals:
             return out.has_any(node, group.out) or into.has_any(node, group.into)
@@ -128,9 +131,9 @@ class ABox:
                     yield edge, member, store.subject[edge]
 
     def reached(self, node: int, role: Role) -> dict[int, tuple[int, int, int]]:
-        """Who is reached from a node by one step of a role or more: the last edge, and its ends.
+        """Return the nodes reached from a node by one or more steps of a role: the last edge and its ends.
 
-        Of those that are the same, the first of their `members` stands for all.
+        Equal nodes are represented by the first of their `members`.
         """
         group, found = self.steps.group(role), dict[int, tuple[int, int, int]]()
         pending = [node]
@@ -142,7 +145,7 @@ class ABox:
         return found
 
     def find(self, one: int, role: Role, other: int) -> int:
-        """An edge that implies a role between two nodes or their equals, or NONE."""
+        """Return an edge that implies a role between two nodes or their equals, or NONE."""
         group, store = self.steps.group(role), self.store
         if not self.equals and not group.is_wide:
             edge = store.edge_of(one, group.out, other)
@@ -165,7 +168,7 @@ class ABox:
         return NONE
 
     def is_plain(self, edge: int) -> bool:
-        """Whether nothing follows from an edge but the kinds that its ends have now."""
+        """Return whether an edge implies no more than the kinds that its ends already have."""
         store = self.store
         s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
         if p <= DIFFERENT or store.source[edge] == DERIVED:
@@ -173,57 +176,59 @@ class ABox:
         step = self.steps.step(p, store.kind[s], store.kind[o])
         rules = step.rules
         if step.special or rules is not None:
-            of_values = (step.of_values or not step.special) and (rules is None or rules.of_values)
-            return of_values and store.out.is_alone(edge)
+            only_uniqueness = (step.only_uniqueness or not step.special) and (
+                rules is None or rules.only_uniqueness
+            )
+            return only_uniqueness and store.out.is_alone(edge)
         return True
 
-    def bridges(self, edges: Iterable[int], *nodes: int) -> list[Claim]:
-        """That nodes and the ends of edges are the same, where they are and are not one node."""
+    def equality_claims(self, edges: Iterable[int], *nodes: int) -> list[Claim]:
+        """Return the equality claims between the given nodes and ends of edges."""
         store = self.store
         ends = {node for edge in edges for node in (store.subject[edge], store.object[edge])}
         pairs = combinations(sorted(ends.union(nodes)), 2)
         return [Same(one, other) for one, other in pairs if self.equals and self.is_same(one, other)]
 
-    def set(self, node: int, kind: Kind) -> None:
-        """Change the kind of a node."""
-        self.moved.setdefault(node, self.store.kind[node])
+    def set_kind(self, node: int, kind: Kind) -> None:
+        """Set the kind of a node."""
+        self.changed_kinds.setdefault(node, self.store.kind[node])
         self.store.kind[node] = kind
 
     def widen(self, node: int, mask: int) -> None:
-        """Add classes to a node and all that are the same."""
+        """Add classes to a node and all equal nodes."""
         for member in self.members(node):
             kind = self.store.kind[member]
             wider = self.kinds.widen(kind, mask)
             if wider is not kind:
-                self.set(member, wider)
+                self.set_kind(member, wider)
                 self.dirty[member] = None
 
     def conclude(
         self, claims: tuple[Claim, ...], *, edge: int | None = None, link: tuple[int, int] | None = None
     ) -> Reason:
-        """A new reason for an edge or a link, found again by what it rests on when that is deleted."""
+        """Create a reason for an edge or link, indexed by the facts that it depends on."""
         reason = Reason(next(self._order), claims, edge=edge, link=link)
         for claim in reason.claims:
             if isinstance(claim, Edge):
-                rest = self.rest_on_edge.setdefault(claim.edge, [])
+                rest = self.reasons_by_edge.setdefault(claim.edge, [])
             else:
                 node = claim.node if isinstance(claim, Member) else claim.one
-                rest = self.rest_on_node.setdefault(node, [])
+                rest = self.reasons_by_node.setdefault(node, [])
             if len(rest) >= MANY and len(rest) & (len(rest) - 1) == 0:
                 rest[:] = [other for other in rest if other.alive]
             rest.append(reason)
         return reason
 
     def settle(self) -> None:
-        """File the individuals whose kind changed; to be called at the end of a transaction."""
-        for node, before in self.moved.items():
+        """Update the lists of individuals by kind. Call it at the end of a transaction."""
+        for node, before in self.changed_kinds.items():
             if before.excluded is None:
-                self.store.file(node, before, self.store.kind[node])
-        self.moved.clear()
+                self.store.list_under_kind(node, before, self.store.kind[node])
+        self.changed_kinds.clear()
         self.overlaid.clear()
 
     def forget_spelling(self, literal: int) -> None:
-        """A literal that nothing has any more is no spelling of its value."""
+        """Remove an unused literal from the spellings of its value."""
         value = self.value(literal)
         if value in self.spellings:
             self.spellings[value] = [other for other in self.spellings[value] if other != literal]

@@ -1,4 +1,4 @@
-"""What the ABox says, asked by pattern: the asserted triples, and those implied without being stored."""
+"""Pattern queries on the ABox: asserted triples, and inferred ones that are not stored."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Role
 from semmap.nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal
 
 Further = tuple[tuple[int, Term], ...]
-"""Properties with their names that an edge implies, at one of its ends."""
+"""The properties, with their names, that an edge implies at one of its ends."""
 
 
 class View:
@@ -27,25 +27,25 @@ class View:
         self._store = abox.store
         self._schema = abox.schema
         self._further: dict[int, tuple[Further, Further]] = {}
-        self._unsaid: dict[Kind, list[Term]] = {}
+        self._inferred_names: dict[Kind, list[Term]] = {}
 
     # Asserted
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        """The asserted triples of a pattern."""
+        """Return the asserted triples that match a pattern."""
         if p is None and (s is None or o is None):
             if s is not None:
-                return self._said_of(s)
-            return self._everything() if o is None else self._said_with(o)
+                return self._asserted_about(s)
+            return self._everything() if o is None else self._asserted_with_object(o)
         return self._matching(s, p, o)
 
     def _everything(self) -> Iterator[Triple]:
         for node, term in enumerate(self._store.terms):
             if term and not self._abox.is_literal(node):
-                yield from self._said_of(term)
+                yield from self._asserted_about(term)
 
-    def _said_of(self, s: Term) -> Iterator[Triple]:
-        """The asserted triples of a subject."""
+    def _asserted_about(self, s: Term) -> Iterator[Triple]:
+        """Yield the asserted triples of a subject."""
         store, axioms, node = self._store, self._schema.axioms, self._store.numbers.get(s)
         if node is None:
             return
@@ -55,8 +55,8 @@ class View:
             if store.source[edge] == ASSERTED:
                 yield (s, axioms[store.predicate[edge]].term, store.terms[store.object[edge]])
 
-    def _said_with(self, o: Term) -> Iterator[Triple]:
-        """The asserted triples of an object."""
+    def _asserted_with_object(self, o: Term) -> Iterator[Triple]:
+        """Yield the asserted triples of an object."""
         if self._schema.find_class(o) is not None:
             yield from self._asserted_types(None, o)
         store, axioms, node = self._store, self._schema.axioms, self._store.numbers.get(o)
@@ -74,7 +74,7 @@ class View:
                 yield self._triple(edge)
 
     def computed(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        """The computed triples of a pattern."""
+        """Yield the computed triples that match a pattern."""
         source, edge = self._store.source, -1
         if s is None and p is None and o is None:
             while (edge := source.find(COMPUTED, edge + 1)) >= 0:
@@ -85,7 +85,7 @@ class View:
                 yield self._triple(edge)
 
     def is_computed(self, triple: Triple) -> bool:
-        """Whether a triple is computed, and not asserted."""
+        """Return whether a triple is computed and not asserted."""
         s, o, predicate = (
             self._store.find(triple[0]),
             self._store.find(triple[2]),
@@ -97,23 +97,24 @@ class View:
         return edge != NONE and self._store.source[edge] == COMPUTED
 
     def by_subject(self) -> Iterator[list[Triple]]:
-        """The asserted triples, subject by subject. The ABox may change between two of them.
+        """Yield the asserted triples, subject by subject. The ABox may change between two subjects.
 
-        Of a subject that changes meanwhile it is what was said before or after; a new one may be missing.
+        A subject that changes during the iteration is returned as before or after the change. New subjects
+        may be missing.
         """
         store, schema = self._store, self._schema
         for node, term in enumerate(store.terms):
             if not term or self._abox.is_literal(node):
                 continue
-            said = [(term, TYPE, schema.classes[cls]) for cls in self._given(node)]
+            triples = [(term, TYPE, schema.classes[cls]) for cls in self._given(node)]
             for edge in store.out.all(node):
                 if store.source[edge] == ASSERTED:
                     predicate = schema.axioms[store.predicate[edge]].term
-                    said.append((term, predicate, store.terms[store.object[edge]]))
-            yield said
+                    triples.append((term, predicate, store.terms[store.object[edge]]))
+            yield triples
 
     def about(self, s: Term) -> dict[Term, list[Term]]:
-        """The asserted triples of a subject: predicate to objects."""
+        """Return the asserted triples of a subject: predicate to objects."""
         store, schema, node = self._store, self._schema, self._store.find(s)
         if node is None:
             return {}
@@ -137,7 +138,7 @@ class View:
                     yield (self._store.terms[node], TYPE, self._schema.classes[given])
 
     def _nodes(self, s: Term | None, cls: int | None) -> Iterator[int]:
-        """The individuals that may have asserted classes: one, those given a class, or all."""
+        """Yield the individuals that may have asserted classes: one, those given a class, or all."""
         if s is not None:
             node = self._store.find(s)
             if node is not None:
@@ -189,22 +190,22 @@ class View:
     # Inferred
 
     def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        """The triples of a pattern that follow and were not asserted, each once.
+        """Yield the inferred triples of a pattern that are not asserted, each once.
 
-        Left out are what is trivial (everything is the same as itself) and classes without a name. A value
-        is given once, in its canonical spelling, unless it was asserted in any spelling.
+        Anonymous classes and `x owl:sameAs x` are left out. A value is returned once, in its canonical
+        spelling, unless it was asserted in any spelling.
         """
         if s is not None:
             node = self._store.find(s)
             nodes = iter(()) if node is None else iter((node,))
         elif o is not None and p != TYPE and not is_literal(o):
-            nodes = self._linked_to(o)
+            nodes = self._neighbours(o)
         elif p == TYPE and o is not None:
             nodes = (node for node in self._instances(o))
         else:
             nodes = (node for node, term in enumerate(self._store.terms) if term)
         is_regular = p is None and not (self._abox.equals or self._abox.spellings)
-        virtual = self._of_virtual_roles() if is_regular else frozenset[int]()
+        virtual = self._virtual_predicates() if is_regular else frozenset[int]()
         for node in nodes:
             if not self._abox.is_literal(node):
                 found = self._inferred_quickly(node, virtual) if is_regular else self._inferred_of(node, p)
@@ -213,22 +214,22 @@ class View:
                 else:
                     yield from (triple for triple in found if triple[2] == o)
 
-    def _of_virtual_roles(self) -> frozenset[int]:
-        """The predicates of the edges by which somebody may be reached by a virtual role."""
+    def _virtual_predicates(self) -> frozenset[int]:
+        """Return the predicates of the edges that may be steps of a virtual role."""
         groups = [
             self._abox.steps.group((p, turned)) for p in self._schema.virtual for turned in (False, True)
         ]
         return frozenset(p for group in groups for p in (*group.out, *group.into))
 
     def _inferred_quickly(self, node: int, virtual: Set[int]) -> Iterable[Triple]:
-        """`_inferred_of` where nothing is the same as anything else; `virtual` are `_of_virtual_roles`."""
+        """Return `_inferred_of` for an ABox without equalities. `virtual` is from `_virtual_predicates`."""
         store = self._store
         term, kind = store.terms[node], store.kind[node]
-        unsaid = self._unsaid.get(kind)
-        if unsaid is None:
+        inferred_names = self._inferred_names.get(kind)
+        if inferred_names is None:
             given = {self._schema.classes[cls] for cls in self._given(node)}
-            unsaid = self._unsaid[kind] = list(kind.names - given)
-        types = [(term, TYPE, name) for name in unsaid]
+            inferred_names = self._inferred_names[kind] = list(kind.names - given)
+        types = [(term, TYPE, name) for name in inferred_names]
         object_of, predicate, source, further = store.object, store.predicate, store.source, self._further
         implied: dict[tuple[int, int], Term] = {}
         for edge in store.out.all(node):
@@ -237,9 +238,9 @@ class View:
             onward, _ = further.get(p) or self._further_of(p)
             if onward:
                 end = object_of[edge]
-                is_told = source[edge] == ASSERTED
+                is_asserted = source[edge] == ASSERTED
                 for q, name in onward:
-                    if q != p or not is_told:
+                    if q != p or not is_asserted:
                         implied[q, end] = name
         for edge in store.into.all(node):
             if (p := predicate[edge]) in virtual:
@@ -253,15 +254,15 @@ class View:
             return types
         kinds = store.kind
         if any(kinds[end].excluded is not None for _, end in implied):
-            return self._inferred_of(node, None)  # of values, which have spellings
-        told = {(predicate[e], object_of[e]) for e in store.out.all(node) if source[e] == ASSERTED}
+            return self._inferred_of(node, None)  # literals have spellings
+        asserted = {(predicate[e], object_of[e]) for e in store.out.all(node) if source[e] == ASSERTED}
         terms = store.terms
         return types + [
-            (term, name, terms[end]) for (q, end), name in implied.items() if (q, end) not in told
+            (term, name, terms[end]) for (q, end), name in implied.items() if (q, end) not in asserted
         ]
 
     def _further_of(self, predicate: int) -> tuple[Further, Further]:
-        """The named properties that an edge's subject has by it, and those that its object has."""
+        """Return the named properties that an edge implies for its subject, and those for its object."""
         ends: tuple[list[tuple[int, Term]], list[tuple[int, Term]]] = ([], [])
         for q, backwards in self._schema.roles(predicate) if predicate != SAME else ():
             name = self._schema.axioms[q].term
@@ -270,8 +271,8 @@ class View:
         found = self._further[predicate] = (tuple(ends[0]), tuple(ends[1]) if predicate > DIFFERENT else ())
         return found
 
-    def _linked_to(self, term: Term) -> Iterator[int]:
-        """The individuals that may be related to a term."""
+    def _neighbours(self, term: Term) -> Iterator[int]:
+        """Return the individuals that may be related to a term."""
         found: dict[int, None] = {}
         found.update(dict.fromkeys(self._instances(term)))
         here = self._store.find(term)
@@ -288,7 +289,7 @@ class View:
         return iter(found)
 
     def _reached(self, node: int, role: Role) -> Iterator[int]:
-        """Whom a transitive role leads to."""
+        """Yield the nodes that a transitive role leads to."""
         for _, _, end in self._abox.reached(node, role).values():
             yield from self._equals(end)
 
@@ -305,7 +306,7 @@ class View:
         wanted = None if p is None else self._schema.find_property(p)
         if p is not None and wanted is None:
             return
-        told = {
+        asserted = {
             (store.predicate[e], store.object[e]) for e in store.out.all(node) if store.source[e] == ASSERTED
         }
         values: dict[tuple[int, Term], None] = {}
@@ -315,10 +316,12 @@ class View:
                 continue
             if self._abox.is_literal(object_):
                 values[predicate, datatypes.canonical(store.terms[object_])] = None
-            elif (predicate, object_) not in told:
+            elif (predicate, object_) not in asserted:
                 yield (term, name, store.terms[object_])
         if values:
-            known = {(p, datatypes.canonical(store.terms[o])) for p, o in told if self._abox.is_literal(o)}
+            known = {
+                (p, datatypes.canonical(store.terms[o])) for p, o in asserted if self._abox.is_literal(o)
+            }
             yield from ((term, self._schema.axioms[p].term, o) for p, o in values if (p, o) not in known)
 
     def _inferred_same(self, node: int) -> Iterator[Triple]:
@@ -329,7 +332,7 @@ class View:
                 yield (store.terms[node], SAME_AS, store.terms[member])
 
     def _implied(self, node: int) -> Iterator[tuple[int, int]]:
-        """Every property and object that a node is related by, over equals at both ends."""
+        """Yield all properties and objects of a node, including those of equal nodes at both ends."""
         store, schema, abox = self._store, self._schema, self._abox
         for member in abox.members(node):
             for edge in store.out.all(member):
@@ -355,10 +358,10 @@ class View:
             other for other in members if other == node or value is None or value != self._abox.value(other)
         ]
 
-    # Questions
+    # Queries
 
     def holds(self, triple: Triple) -> bool:
-        """Whether a triple about individuals is asserted or follows."""
+        """Return whether a triple about individuals is asserted or inferred."""
         s, p, o = triple
         if p == SAME_AS and s == o:
             return True
@@ -387,12 +390,12 @@ class View:
         )
 
     def types(self, individual: Term) -> frozenset[Term]:
-        """The named classes of an individual."""
+        """Return the named classes of an individual."""
         node = self._store.find(individual)
         return frozenset() if node is None else self._store.kind[node].names
 
     def instances(self, cls: Term) -> Iterator[Term]:
-        """The individuals of a class."""
+        """Return the individuals of a class."""
         return (self._store.terms[node] for node in self._instances(cls))
 
     def _instances(self, term: Term) -> Iterator[int]:
@@ -403,7 +406,7 @@ class View:
 
 
 def _places_of(value: int, column: list[int]) -> Iterator[int]:
-    """Where a value stands in a column; a rare one is found several times as fast as by looking at each."""
+    """Yield the positions of a value in a column. `index` is faster than a loop for rare values."""
     place = -1
     with suppress(ValueError):
         while True:

@@ -1,6 +1,6 @@
-"""Edges in columns: linked lists of the edges at a node, in groups of one predicate.
+"""Edges in columns: linked lists of the edges of a node, grouped by predicate.
 
-So a room with ten thousand parts is asked for its walls without looking at the parts.
+The walls of a room with 10 000 parts are found without visiting the parts.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ NONE: Final = -1
 class Adjacency:
     """The edges that leave (or enter) each node, in groups of one predicate.
 
-    `heads[node]` is the first edge of the node's first group, `group[edge]` leads from there to the first
-    edge of the next group, `after` and `before` within a group. All are NONE for an edge in no list.
+    `heads[node]` is the first edge of the node's first group. `group[edge]` is the first edge of the next
+    group. `after` and `before` link the edges of a group. All are NONE for an edge that is in no list.
     """
 
     __slots__ = ("after", "before", "group", "heads", "predicate")
@@ -29,7 +29,7 @@ class Adjacency:
         self.group = array("i")
 
     def link(self, node: int, edge: int, predicate: int) -> None:
-        """Put an edge, whose predicate is set already, into the list of a node."""
+        """Insert an edge, whose predicate is already set, into the list of a node."""
         head = first = self.heads[node]
         if head == NONE:
             self.heads[node] = edge
@@ -41,7 +41,7 @@ class Adjacency:
             group[edge] = head
             self.heads[node] = edge
             return
-        # behind the first of its group, so that the chain of groups stays as it is
+        # after the first edge of its group, so that the chain of groups does not change
         second = self.after[first]
         self.after[first], self.before[edge] = edge, first
         if second != NONE:
@@ -49,13 +49,13 @@ class Adjacency:
             self.before[second] = edge
 
     def link_each(self, nodes: Sequence[int], edges: range, predicate: int) -> None:
-        """`link` a new edge, whose predicate is set already, to each node."""
+        """Do `link` for each node and its new edge, whose predicate is already set."""
         if len(nodes) > 1 and nodes.count(nodes[0]) == len(nodes):
             self._link_all(nodes[0], edges, predicate)
             return
         heads, column, group = self.heads, self.predicate, self.group
         after, before = self.after, self.before
-        for node, edge in zip(nodes, edges, strict=True):  # `link` written out: this runs millions of times
+        for node, edge in zip(nodes, edges, strict=True):  # `link` inlined: this runs millions of times
             head = first = heads[node]
             while first != NONE and column[first] != predicate:
                 first = group[first]
@@ -71,14 +71,14 @@ class Adjacency:
                 before[second] = edge
 
     def link_firsts(self, nodes: Sequence[int], edges: range) -> None:
-        """`link` a new edge to each of some different nodes, which have none of its predicate yet."""
+        """Do `link` for different nodes that have no edge of the predicate yet."""
         heads = self.heads
         self.group[edges.start : edges.stop] = array("i", map(heads.__getitem__, nodes))
         for node, edge in zip(nodes, edges, strict=True):
             heads[node] = edge
 
     def _link_all(self, node: int, edges: range, predicate: int) -> None:
-        """`link` each edge to one node, column by column. The lists come out as if linked one by one."""
+        """Do `link` for many edges of one node. The result is the same as for single calls."""
         self.link(node, edges[0], predicate)
         first = self.heads[node]
         while self.predicate[first] != predicate:
@@ -94,7 +94,7 @@ class Adjacency:
             before[second] = oldest
 
     def unlink(self, node: int, edge: int) -> None:
-        """Take an edge out of the list of a node."""
+        """Remove an edge from the list of a node."""
         before, after = self.before[edge], self.after[edge]
         if after != NONE:
             self.before[after] = before
@@ -119,7 +119,7 @@ class Adjacency:
         group[first] = replacement
 
     def clear(self, edge: int) -> None:
-        """Forget the neighbours of an edge whose whole list goes."""
+        """Reset the links of an edge whose whole list is removed."""
         if self.after[edge] != NONE:
             self.after[edge] = NONE
         if self.before[edge] != NONE:
@@ -128,18 +128,18 @@ class Adjacency:
             self.group[edge] = NONE
 
     def is_alone(self, edge: int) -> bool:
-        """Whether a node has no other edge with the edge's predicate."""
+        """Return whether a node has no other edge with the edge's predicate."""
         return self.before[edge] == NONE and self.after[edge] == NONE
 
     def first(self, node: int, predicate: int) -> int:
-        """The first edge of a node with a predicate, or NONE."""
+        """Return the first edge of a node with a predicate, or NONE."""
         edge, column, group = self.heads[node], self.predicate, self.group
         while edge != NONE and column[edge] != predicate:
             edge = group[edge]
         return edge
 
     def has_any(self, node: int, predicates: tuple[int, ...]) -> bool:
-        """Whether a node has an edge with one of some predicates."""
+        """Return whether a node has an edge with one of some predicates."""
         edge, column, group = self.heads[node], self.predicate, self.group
         while edge != NONE:
             if column[edge] in predicates:
@@ -148,14 +148,14 @@ class Adjacency:
         return False
 
     def predicates(self, node: int) -> Iterator[int]:
-        """Those of a node's edges, each once."""
+        """Yield the predicates of a node's edges, each once."""
         edge = self.heads[node]
         while edge != NONE:
             yield self.predicate[edge]
             edge = self.group[edge]
 
     def firsts(self, node: int, predicates: tuple[int, ...]) -> list[int]:
-        """The first edge of each of some predicates that a node has, in the order of the predicates."""
+        """Return the first edge of a node for each of some predicates, in the order of the predicates."""
         edge, column, group = self.heads[node], self.predicate, self.group
         found: list[int] = []
         while edge != NONE:
@@ -167,14 +167,14 @@ class Adjacency:
         return found
 
     def of(self, node: int, predicate: int) -> Iterator[int]:
-        """The edges of a node with a predicate."""
+        """Yield the edges of a node with a predicate."""
         edge = self.first(node, predicate)
         while edge != NONE:
             yield edge
             edge = self.after[edge]
 
     def among(self, node: int, predicates: tuple[int, ...]) -> Iterable[int]:
-        """The edges of a node with one of some predicates, predicate by predicate."""
+        """Return the edges of a node with one of some predicates, predicate by predicate."""
         if not predicates or self.heads[node] == NONE:
             return ()
         return self._among(node, predicates)
@@ -187,7 +187,7 @@ class Adjacency:
                 edge = after[edge]
 
     def gather(self, nodes: Iterable[int], most: int) -> list[int]:
-        """All edges of some nodes; of more than so many, at least one more."""
+        """Return all edges of some nodes. Stops after more than `most` edges."""
         heads, after, group = self.heads, self.after, self.group
         found: list[int] = []
         for node in nodes:
@@ -201,7 +201,7 @@ class Adjacency:
         return found
 
     def all(self, node: int) -> Iterator[int]:
-        """All edges of a node."""
+        """Yield all edges of a node."""
         first = self.heads[node]
         while first != NONE:
             edge = first

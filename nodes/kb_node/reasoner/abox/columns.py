@@ -1,7 +1,7 @@
-"""An ABox in columns that can be written down.
+"""An ABox as columns that can be serialised.
 
-Only of an ABox in which no nodes are the same: what makes them so is not kept. Classes and properties go by
-their terms, because another process may number them otherwise.
+This is only possible without equal nodes, because the reasons of equality are not stored. Classes and
+properties are stored as terms, because their numbers differ between processes.
 """
 
 from __future__ import annotations
@@ -16,53 +16,53 @@ from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 ASSERTED = 0
-"""The source of an edge that is asserted."""
+"""The source of an asserted edge."""
 Claimed = tuple[int, ...]
-"""A claim: a member and its class; or an edge, with the role that it implies, if any (1 for backwards)."""
+"""A claim: a node and its class, or an edge with the role that it implies, if any (1 for backwards)."""
 
 
 class KindSaid(Struct, frozen=True, array_like=True):
-    """A kind, by the numbers of classes: the given ones, all, and of a literal the excluded datatypes."""
+    """A kind by class numbers: given classes, all classes, and for a literal the excluded datatypes."""
 
     given: list[int]
     classes: list[int]
     excluded: list[int] | None
     ill_typed: bool
     told: list[Term]
-    """The classes that were asserted."""
+    """The asserted classes."""
 
 
 class Columns(Struct, frozen=True, kw_only=True):
     """The columns of a store, and the reasons of derived edges.
 
-    Those of nodes are as long as `terms`, those of edges as `subject`; see `store.Store`.
+    Node columns have the length of `terms`, edge columns that of `subject`; see `store.Store`.
     """
 
     schema: bytes
-    """A digest of what it was worked out by."""
+    """The digest of the schema."""
     size: int
-    """How many triples are asserted, the schema's included."""
+    """The number of asserted triples, including the schema."""
     classes: list[Term]
-    """By their numbers, as `properties` and `kinds`."""
+    """The class terms by number. `properties` and `kinds` are also in the order of their numbers."""
     properties: list[Term]
     kinds: list[KindSaid]
     reasons: list[tuple[int, list[Claimed]]]
-    """Derived edges in the order of their derivation, and what each rests on."""
+    """Derived edges in the order of derivation, with the claims that each depends on."""
     terms: list[Term]
-    """Those of the nodes; "" for a free one."""
+    """The terms of the nodes; "" for a free row."""
     kind: array[int]
     places: array[int]
     subject: array[int]
     predicate: array[int]
-    """`NONE` for a free edge."""
+    """`NONE` for a free row."""
     object: array[int]
     source: bytes
     out: tuple[array[int], ...]
-    """Of the edges that leave: heads, after, before, group."""
+    """The links of outgoing edges: heads, after, before, group."""
     into: tuple[array[int], ...]
 
     def triples(self) -> Iterator[Triple]:
-        """The asserted triples but those of the schema, subject by subject."""
+        """Yield the asserted triples without the schema, subject by subject."""
         terms, subject, predicate, object_ = self.terms, self.subject, self.predicate, self.object
         heads, after, _, group = self.out
         for node, first in enumerate(heads):

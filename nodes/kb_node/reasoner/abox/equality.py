@@ -1,4 +1,4 @@
-"""When two nodes are the same: asserted, by value, by a limit on values, by a key."""
+"""Equality of nodes: asserted, by value, by a limit on values, or by a key."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from semmap.nodes.kb_node.reasoner.terms import is_literal
 
 
 class Equality:
-    """The rules that make individuals, or spellings of a value, the same in an ABox."""
+    """The rules that equate individuals, or spellings of a value, in an ABox."""
 
     def __init__(self, abox: ABox) -> None:
         self._abox = abox
         self._store = abox.store
         self._steps = abox.steps
 
-    def meet(self, literal: int) -> None:
-        """Spellings of one value are the same node where that matters (dt-eq)."""
+    def merge_spellings(self, literal: int) -> None:
+        """Equate a literal with the other spellings of its value (dt-eq)."""
         value = self._abox.value(literal)
         if value is None:
             return
@@ -27,37 +27,37 @@ class Equality:
         if literal not in known:
             known.append(literal)
         if known[0] != literal:
-            self.join(known[0], literal)
+            self.merge(known[0], literal)
 
-    def join(self, one: int, other: int, *claims: Claim) -> None:
-        """Two nodes are the same (eq-*): one set of members, one mask, and all edges looked at anew."""
-        mine, theirs = self._abox.equals.get(one), self._abox.equals.get(other)
-        if one == other or (mine is not None and mine is theirs):
+    def merge(self, one: int, other: int, *claims: Claim) -> None:
+        """Equate two nodes (eq-*): unite members and classes, and process all edges again."""
+        first, second = self._abox.equals.get(one), self._abox.equals.get(other)
+        if one == other or (first is not None and first is second):
             return
         self._check_joinable(one, other, claims)
-        mine, theirs = mine or Equals(one), theirs or Equals(other)
-        if len(mine.members) < len(theirs.members):
-            mine, theirs = theirs, mine
-        newcomers = list(theirs.members)
-        mine.members += newcomers
-        mine.links += theirs.links
-        mine.links.append(self._abox.conclude(claims, link=(one, other)))
-        for node in mine.members:
-            self._abox.equals[node] = mine
+        first, second = first or Equals(one), second or Equals(other)
+        if len(first.members) < len(second.members):
+            first, second = second, first
+        added = list(second.members)
+        first.members += added
+        first.links += second.links
+        first.links.append(self._abox.conclude(claims, link=(one, other)))
+        for node in first.members:
+            self._abox.equals[node] = first
         if self._abox.is_literal(one) and None in (self._abox.value(one), self._abox.value(other)):
-            self._mix(one, other)
+            self._merge_spellings_of(one, other)
         self._abox.widen(one, self._store.kind[one].mask | self._store.kind[other].mask)
-        for node in newcomers:
+        for node in added:
             self._abox.fresh += self._store.out.all(node)
             self._abox.fresh += self._store.into.all(node)
 
-    def _mix(self, *literals: int) -> None:
-        """A literal without a known value is the same as another: so it is as all spellings of that one."""
-        self._abox.is_mixed = True
+    def _merge_spellings_of(self, *literals: int) -> None:
+        """Equate a literal without a known value with all spellings of the literal that it equals."""
+        self._abox.has_unknown_equals = True
         values = {self._abox.value(literal) for literal in literals} - {None}
         for term, node in list(self._store.numbers.items()) if values else ():
             if is_literal(term) and not self._store.is_bare(node) and self._abox.value(node) in values:
-                self.meet(node)
+                self.merge_spellings(node)
 
     def _check_joinable(self, one: int, other: int, claims: tuple[Claim, ...]) -> None:
         terms = self._store.terms
@@ -68,18 +68,18 @@ class Equality:
                 raise Clash(*claims, *self._different(one, other))
         elif self._abox.is_literal(one) or self._abox.is_literal(other):
             raise NotCompilable(f"an individual is the same as a value: {terms[one]} and {terms[other]}")
-        elif self._abox.schema.speaks_of(terms[one]) or self._abox.schema.speaks_of(terms[other]):
+        elif self._abox.schema.is_used(terms[one]) or self._abox.schema.is_used(terms[other]):
             raise NotCompilable(
                 f"a class or property is the same as another: {terms[one]} and {terms[other]}"
             )
 
     def _different(self, one: int, other: int) -> Iterator[Claim]:
-        """The literals known to be the same as two, among which are two values."""
+        """Yield the equality claims of two literals that have different values."""
         for node in (one, other):
             yield from (Same(node, member) for member in self._abox.members(node) if member != node)
 
-    def limit(self, edge: int, owner: int, value: int, limit: Limit) -> None:
-        """At most one value: this one and any other are the same (prp-fp, prp-ifp, cls-maxc2, cls-maxqc*)."""
+    def apply_limit(self, edge: int, owner: int, value: int, limit: Limit) -> None:
+        """Equate a value with any other if there may be only one (prp-fp, prp-ifp, cls-maxc2, cls-maxqc*)."""
         group = self._steps.group(limit.role)
         if (
             not group.into
@@ -101,11 +101,11 @@ class Equality:
             claims += [*member(value, limit.filler), *member(found, limit.filler)]
             if end != owner:
                 claims.append(Same(owner, end))
-            self.join(value, found, *claims)
+            self.merge(value, found, *claims)
             return
 
-    def identify(self, node: int, key: Key) -> None:
-        """Somebody else of the class who has a value in common for every property of the key (prp-key)."""
+    def apply_key(self, node: int, key: Key) -> None:
+        """Equate a node with other members that share a value of every key property (prp-key)."""
         onward = self._steps.group((key.properties[0], False))
         back = self._steps.group((key.properties[0], True))
         for first, end, value in list(self._abox.related(node, onward)):
@@ -121,10 +121,10 @@ class Equality:
                         break
                     claims += agreed
                 else:
-                    self.join(node, other, *claims, Member(node, key.owner), Member(other, key.owner))
+                    self.merge(node, other, *claims, Member(node, key.owner), Member(other, key.owner))
 
     def _agreement(self, one: int, other: int, role: Role) -> list[Claim] | None:
-        """Two edges that lead from two nodes to the same value, or None."""
+        """Return the claims that two nodes have a common value of a role, or None."""
         group = self._steps.group(role)
         for first, here, value in self._abox.related(one, group):
             for second, there, found in self._abox.related(other, group):

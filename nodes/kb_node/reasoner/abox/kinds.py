@@ -1,4 +1,4 @@
-"""What individuals can be: each set of classes is worked out once, however many individuals share it."""
+"""Kinds: the sets of classes of individuals. Each is computed once, however many individuals share it."""
 
 from __future__ import annotations
 
@@ -17,40 +17,40 @@ _NUMBER = re.compile(
     + "|".join(f"({re.escape(datatype)})" for datatype in _FLOATING)
     + ")"
 )
-"""How programs write a floating-point number; the group says of which datatype."""
+"""The usual spelling of a floating-point number. The group is its datatype."""
 _TEXT = re.compile(r'"[ !#-\[\]-~]*"')
-"""The plainest texts; any other is looked at more closely."""
+"""The simplest texts. Others are parsed."""
 
 
 class Kind:
-    """The classes of an individual or literal: those it was given, and with all that follow a mask.
+    """The classes of an individual or literal: the given classes, and a mask of all that follow.
 
-    Kinds are interned: two individuals of one kind share the object. `nodes` lists who is of the kind.
+    Kinds are interned: individuals of one kind share the object. `nodes` lists the individuals of the kind.
     """
 
     __slots__ = ("base", "clash", "excluded", "given", "mask", "names", "nodes", "value_terms", "values")
 
     base: Kind
-    """The kind that the given classes alone would make; itself when nothing was added."""
+    """The kind of the given classes alone; the same object if nothing was added."""
 
     def __init__(self, given: frozenset[int], mask: int, excluded: int | None) -> None:
         self.given = given
         self.mask = mask
         self.excluded = excluded
-        """For a literal the datatypes that do not hold its value; None for an individual."""
+        """For a literal: the datatypes that do not contain its value. None for an individual."""
         self.clash: tuple[int, int] | None = None
-        """Two classes that exclude each other; for a literal the second may be the first, a datatype."""
+        """Two disjoint classes. For a literal both may be the same datatype."""
         self.values: tuple[tuple[int, Term], ...] = ()
-        """Properties and values that come with the classes (cls-hv1)."""
+        """The properties and values implied by the classes (cls-hv1)."""
         self.value_terms: frozenset[Term] = frozenset()
-        """These values."""
+        """The values in `values`."""
         self.names: frozenset[Term] = frozenset()
         """The named classes."""
         self.nodes = array("i")
 
 
 class Kinds:
-    """The kinds met so far, and how they follow from one another."""
+    """All kinds that occurred, and the operations on them."""
 
     def __init__(self, schema: Schema) -> None:
         self._schema = schema
@@ -63,25 +63,27 @@ class Kinds:
         self.ill_typed.base, self.ill_typed.clash = self.ill_typed, (ILL_TYPED, ILL_TYPED)
 
         self._numbers = [] if schema.literals else [self._literal(f'"1"^^{name}') for name in _FLOATING]
-        """The kinds of all numbers, unless the schema speaks of single ones."""
-        is_text_one = not schema.literals and not any(map(datatypes.tells_texts_apart, schema.datatypes))
-        self._text = self._literal('""') if is_text_one else None
-        """The kind of all plain texts, unless the schema tells some from others."""
+        """The kinds of all numbers, unless the schema mentions single literals."""
+        has_one_text_kind = not schema.literals and not any(
+            map(datatypes.distinguishes_strings, schema.datatypes)
+        )
+        self._text = self._literal('""') if has_one_text_kind else None
+        """The kind of all plain texts, unless the schema distinguishes them."""
 
     def __iter__(self) -> Iterator[Kind]:
         return iter(self._kinds.values())
 
     def of(self, given: frozenset[int]) -> Kind:
-        """The kind of an individual that was given some classes, before anything else is known."""
+        """Return the kind of an individual from its given classes only."""
         return self._kind(given, self.close(mask_of(given)), None)
 
     def individual(self, term: Term) -> Kind:
-        """The kind of a new individual: nothing, or its nominal when the schema speaks of it."""
+        """Return the kind of a new individual: empty, or its nominal if the schema mentions it."""
         nominal = self._schema.nominals.get(term)
         return self.nothing if nominal is None else self.of(frozenset((nominal,)))
 
     def literal(self, term: Term) -> Kind:
-        """The kind of a literal: the datatypes that hold its value, and its nominal."""
+        """Return the kind of a literal: the datatypes that contain its value, and its nominal."""
         if term[-1] == '"' and self._text is not None and _TEXT.fullmatch(term):
             return self._text
         number = _NUMBER.fullmatch(term) if self._numbers else None
@@ -99,13 +101,13 @@ class Kinds:
         return self._kind(frozenset(given), self.close(mask_of(given)), mask_of(excluded))
 
     def widen(self, kind: Kind, mask: int) -> Kind:
-        """The kind with more classes."""
+        """Return the kind with more classes."""
         if mask | kind.mask == kind.mask or kind is self.ill_typed:
             return kind
         return self._kind(kind.given, self.close(kind.mask | mask), kind.excluded)
 
-    def give(self, kind: Kind, cls: int) -> Kind:
-        """The kind with one given class more, and all that follows."""
+    def add_given(self, kind: Kind, cls: int) -> Kind:
+        """Return the kind with one more given class, and all that follows."""
         found = self._given_more.get((kind, cls))
         if found is None:
             given = kind.given | {cls}
@@ -113,16 +115,16 @@ class Kinds:
             found = self._given_more[kind, cls] = self._kind(given, mask, kind.excluded)
         return found
 
-    def like(self, given: frozenset[int], mask: int, excluded: int | None) -> Kind:
-        """The kind that has these."""
+    def find_or_create(self, given: frozenset[int], mask: int, excluded: int | None) -> Kind:
+        """Return the kind with these classes, creating it if necessary."""
         return self._kind(given, mask, excluded)
 
     def without(self, kind: Kind, cls: int) -> Kind:
-        """The kind with one given class less and all that followed still there."""
+        """Return the kind without one given class. The classes that followed from it are kept."""
         return self._kind(kind.given - {cls}, kind.mask, kind.excluded)
 
     def close(self, mask: int) -> int:
-        """All classes that follow from some (cax-*, cls-int1, cls-uni, cls-oo)."""
+        """Return all classes that follow from a mask (cax-*, cls-int1, cls-uni, cls-oo)."""
         closed = self._closed.get(mask)
         if closed is None:
             closed = mask
@@ -137,7 +139,7 @@ class Kinds:
         return closed
 
     def given(self, kind: Kind) -> Iterator[int]:
-        """The classes that were asserted, nominals and datatypes of literals left out."""
+        """Return the asserted classes, without nominals and the datatypes of literals."""
         return iter(()) if kind.excluded is not None else (n for n in kind.given if n not in self._nominals)
 
     def _kind(self, given: frozenset[int], mask: int, excluded: int | None) -> Kind:
@@ -146,10 +148,10 @@ class Kinds:
             kind = self._kinds[given, mask, excluded] = Kind(given, mask, excluded)
             base = self.close(mask_of(given))
             kind.base = kind if base == mask else self._kind(given, base, excluded)
-            self._work_out(kind)
+            self._compute(kind)
         return kind
 
-    def _work_out(self, kind: Kind) -> None:
+    def _compute(self, kind: Kind) -> None:
         schema = self._schema
         numbers = list(bits(kind.mask))
         for number in numbers:
@@ -167,11 +169,11 @@ class Kinds:
 
 
 ILL_TYPED = -2
-"""In the place of a class: what a literal is that has no value."""
+"""The pseudo class of a literal without a value."""
 
 
 def bits(mask: int) -> Iterator[int]:
-    """The numbers of the bits that are set, lowest first."""
+    """Yield the numbers of the bits that are set, lowest first."""
     while mask:
         low = mask & -mask
         yield low.bit_length() - 1
@@ -179,5 +181,5 @@ def bits(mask: int) -> Iterator[int]:
 
 
 def mask_of(numbers: Iterable[int]) -> int:
-    """A set of classes as a mask."""
+    """Return the mask of a set of classes."""
     return sum(1 << number for number in numbers)

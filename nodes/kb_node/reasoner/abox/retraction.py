@@ -1,8 +1,8 @@
-"""Deletion: exactly what would be there had the deleted triples never been.
+"""Deletion. The result is exactly the state without the deleted triples.
 
-What was concluded from a deleted edge is dropped, whatever else it may rest on. A node whose kind is not
-borne out by what was asserted of it and of its neighbours is reset to what it was given, and its neighbours
-are asked in turn. Then everything that was reset runs forward again, as if it were new.
+Conclusions from a deleted edge are dropped, even if they have other reasons. A node is reset to its given
+classes if the assertions about it and its neighbours do not support its kind. Then its neighbours are
+checked. Finally the rules run forward for everything that was reset.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 
 class Retraction:
-    """One batch of deletions; `run` of the saturation draws the conclusions anew."""
+    """One batch of deletions. Afterwards `Saturation.run` draws the conclusions again."""
 
     def __init__(self, abox: ABox, saturation: Saturation) -> None:
         self._abox = abox
@@ -29,34 +29,34 @@ class Retraction:
         self._store = abox.store
         self._suspects: dict[int, None] = {}
         self._reset: set[int] = set()
-        self._loosened: set[int] = set()
+        self._separated: set[int] = set()
         self._dropped: list[tuple[int, int, int]] = []
         self.touched: set[int] = set()
-        """Nodes that lost something: an asserted class, an edge."""
+        """The nodes that lost an asserted class or an edge."""
 
     def delete(
         self, triples: Sequence[Triple], computed: Sequence[Triple] = ()
     ) -> tuple[list[Triple], list[Triple]]:
-        """Take triples back, and what rests on them; those that were there, asserted and computed."""
-        types = [triple for triple in triples if triple[1] == TYPE and self._take_type(*triple)]
-        edges = [triple for triple in triples if triple[1] != TYPE and self._take_edge(*triple, ASSERTED)]
-        others = [triple for triple in computed if self._take_edge(*triple, COMPUTED)]
+        """Delete asserted and computed triples with their conclusions; return those that were present."""
+        types = [triple for triple in triples if triple[1] == TYPE and self._remove_type(*triple)]
+        edges = [triple for triple in triples if triple[1] != TYPE and self._remove_edge(*triple, ASSERTED)]
+        others = [triple for triple in computed if self._remove_edge(*triple, COMPUTED)]
         while self._suspects:
             node, _ = self._suspects.popitem()
             kind = self._store.kind[node]
-            if kind.base is not kind and node not in self._reset and not self._is_borne_out(node):
+            if kind.base is not kind and node not in self._reset and not self._is_supported(node):
                 self._reset_all(node)
         if self._abox.spellings:
             self._forget_spellings()
-        for node in self._loosened:
+        for node in self._separated:
             self._abox.fresh += self._store.out.all(node)
             self._abox.fresh += self._store.into.all(node)
         for edge in self._dropped:
-            self._derive_anew(*edge)
+            self._rederive(*edge)
         return types + edges, others
 
     def release(self) -> None:
-        """Forget the nodes that nothing is said of any more."""
+        """Remove the nodes without facts."""
         for node in self.touched:
             self._store.release(node)
 
@@ -67,19 +67,19 @@ class Retraction:
                 if equals := self._abox.equals.get(node):
                     self._dissolve(equals)
 
-    # What goes
+    # Removal
 
-    def _take_type(self, s: Term, _: Term, o: Term) -> bool:
+    def _remove_type(self, s: Term, _: Term, o: Term) -> bool:
         store = self._store
         subject, cls = store.find(s), self._abox.schema.find_class(o)
         if subject is None or cls is None or cls not in store.kind[subject].given:
             return False
-        self._abox.set(subject, self._abox.kinds.without(store.kind[subject], cls))
+        self._abox.set_kind(subject, self._abox.kinds.without(store.kind[subject], cls))
         self.touched.add(subject)
         self._suspects[subject] = None
         return True
 
-    def _take_edge(self, s: Term, p: Term, o: Term, source: int) -> bool:
+    def _remove_edge(self, s: Term, p: Term, o: Term, source: int) -> bool:
         store, numbers = self._store, self._store.numbers
         subject, object_, predicate = numbers.get(s), numbers.get(o), self._abox.schema.find_property(p)
         if subject is None or object_ is None or predicate is None:
@@ -91,24 +91,24 @@ class Retraction:
         return True
 
     def _drop(self, edge: int) -> None:
-        """Remove an edge and what rests on it."""
+        """Remove an edge and the conclusions that depend on it."""
         store = self._store
         edge_was = store.subject[edge], store.predicate[edge], store.object[edge]
         ends = edge_was[0], edge_was[2]
         self._dropped.append(edge_was)
         store.remove(edge)
         self.touched.update(ends)
-        self._suspects.update(dict.fromkeys(self._whose_classes(edge_was)))
+        self._suspects.update(dict.fromkeys(self._affected_ends(edge_was)))
         if reason := self._abox.reasons.pop(edge, None):
             reason.alive = False
-        for reason in self._abox.rest_on_edge.pop(edge, ()):
+        for reason in self._abox.reasons_by_edge.pop(edge, ()):
             self._cancel(reason)
 
-    def _whose_classes(self, edge: tuple[int, int, int]) -> Iterator[int]:
-        """The ends of an edge that may have classes because of it, beyond those that they were given.
+    def _affected_ends(self, edge: tuple[int, int, int]) -> Iterator[int]:
+        """Yield the ends of a removed edge that may have inferred classes because of it.
 
-        So a room that loses a cup need not be asked about all else that is in it. Of ends that were reset
-        nobody knows any more what they had said of each other.
+        This avoids visiting all other edges, for example of a room that loses a cup. If an end was reset, its
+        earlier kind is unknown, and both ends are returned.
         """
         s, p, o = edge
         subject, object_ = self._store.kind[s], self._store.kind[o]
@@ -116,17 +116,19 @@ class Retraction:
             yield from (s, o)
             return
         step, store = self._abox.steps.step, self._store
-        said = step(p, subject.base, object_).subject
-        if said is not subject.base and not self._says(store.out.first(s, p), said, at_subject=True):
+        implied = step(p, subject.base, object_).subject
+        if implied is not subject.base and not self._implies(store.out.first(s, p), implied, at_subject=True):
             yield s
-        said = step(p, subject, object_.base).object
-        if said is not object_.base and not self._says(store.into.first(o, p), said, at_subject=False):
+        implied = step(p, subject, object_.base).object
+        if implied is not object_.base and not self._implies(
+            store.into.first(o, p), implied, at_subject=False
+        ):
             yield o
 
-    def _says(self, edge: int, kind: Kind, *, at_subject: bool) -> bool:
-        """Whether an edge, if there is one, makes its end of a kind by what was given to both ends alone.
+    def _implies(self, edge: int, kind: Kind, *, at_subject: bool) -> bool:
+        """Return whether an edge, if there is one, implies a kind by the given classes of both ends alone.
 
-        Then that need not be asked about another edge that said the same: nothing goes in a circle.
+        Then the kind of the end is supported without circular reasoning.
         """
         store = self._store
         if edge == NONE or store.source[edge] not in GIVEN:
@@ -145,21 +147,21 @@ class Retraction:
             self._dissolve(equals)
 
     def _dissolve(self, equals: Equals) -> None:
-        """Members are individuals of their own again, until the links that are left say otherwise."""
+        """Separate equal nodes. The remaining links may equate them again."""
         for link in equals.links:
             link.alive = False
         for member in equals.members:
             del self._abox.equals[member]
         for member in equals.members:
-            self._loosened.add(member)
+            self._separated.add(member)
             self._reset_one(member)
 
-    # What stays
+    # Support
 
-    def _is_borne_out(self, node: int) -> bool:
-        """Whether assertions about a node and its neighbours make all of its kind.
+    def _is_supported(self, node: int) -> bool:
+        """Return whether the assertions about a node and its neighbours imply all of its kind.
 
-        Nodes that are the same do not count: what made them the same may rest on this node's kind.
+        Equal nodes are not considered, because their equality may depend on this node's kind.
         """
         close, store = self._abox.kinds.close, self._store
         wanted = store.kind[node].mask
@@ -168,23 +170,23 @@ class Retraction:
             return True
         for side in (store.out, store.into):
             for edge in side.all(node):
-                found |= self._share(edge, node)
+                found |= self._classes_from(edge, node)
                 if found == wanted:
                     return True
         return close(found) == wanted
 
-    def _share(self, edge: int, node: int) -> int:
-        """What an edge alone says of a node, if the edge is given or comes with an asserted class."""
+    def _classes_from(self, edge: int, node: int) -> int:
+        """Return the classes that an edge alone implies, if it is given or implied by an asserted class."""
         store = self._store
         s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
         subject, object_ = store.kind[s].base, store.kind[o].base
         source = store.source[edge]
-        if source not in GIVEN and not (source == VALUE and self._comes_with(edge)):
+        if source not in GIVEN and not (source == VALUE and self._is_value_of_class(edge)):
             return 0
         step = self._abox.steps.step(p, subject, object_)
         return step.subject.mask if node == s else step.object.mask
 
-    def _comes_with(self, edge: int) -> bool:
+    def _is_value_of_class(self, edge: int) -> bool:
         store = self._store
         value = (store.predicate[edge], store.terms[store.object[edge]])
         return value in store.kind[store.subject[edge]].base.values
@@ -197,14 +199,14 @@ class Retraction:
             self._reset_one(node)
 
     def _reset_one(self, node: int) -> None:
-        """Back to the given classes: what rests on the others goes, and the neighbours become suspects."""
+        """Reset a node to its given classes, drop what depends on the others, and suspect its neighbours."""
         if node in self._reset:
             return
         self._reset.add(node)
         abox, store = self._abox, self._store
-        abox.set(node, store.kind[node].base)
+        abox.set_kind(node, store.kind[node].base)
         abox.dirty[node] = None
-        for reason in abox.rest_on_node.pop(node, ()):
+        for reason in abox.reasons_by_node.pop(node, ()):
             self._cancel(reason)
         for edge in list(store.out.all(node)):
             if store.source[edge] == VALUE:
@@ -214,36 +216,36 @@ class Retraction:
         for edge in store.into.all(node):
             self._suspects[store.subject[edge]] = None
 
-    # What comes back
+    # Derivation
 
-    def _derive_anew(self, subject: int, predicate: int, object_: int) -> None:
-        """What a dropped edge implied may follow from others: by a chain, or with a class."""
+    def _rederive(self, subject: int, predicate: int, object_: int) -> None:
+        """Derive what a dropped edge implied from other facts: by a chain, or by a class."""
         abox = self._abox
         for node, other in ((subject, object_), (object_, subject)):
             if self._may_have_been_a_value(node, other):
                 self._saturation.add_values(node)
         steps = abox.steps
-        if not (made_by := steps.made_by(predicate)):
+        if not (producing_chains := steps.producing_chains(predicate)):
             return
         begins = [
             abox.has_any(node, group)
-            for node, group in zip((subject, object_), steps.beginnings(predicate), strict=True)
+            for node, group in zip((subject, object_), steps.chain_starts(predicate), strict=True)
         ]
-        for backwards, chain in made_by:
+        for backwards, chain in producing_chains:
             if begins[backwards]:
                 self._look_for_middle(*((object_, subject) if backwards else (subject, object_)), chain)
 
     def _may_have_been_a_value(self, node: int, other: int) -> bool:
-        """Whether a node's classes come with values of which another, which it lost, may have been one."""
+        """Return whether a lost neighbour may have been a value implied by the node's classes."""
         values = self._store.kind[node].value_terms
         if not values:
             return False
         is_one = self._store.terms[other] in values
-        # or it stood for one that is the same
-        return is_one or bool(self._abox.equals or self._loosened) or self._abox.is_literal(other)
+        # or it was equal to such a value
+        return is_one or bool(self._abox.equals or self._separated) or self._abox.is_literal(other)
 
     def _look_for_middle(self, x: int, z: int, chain: Chain) -> None:
-        """An individual between two that a chain goes through, sought from the end with fewer edges."""
+        """Find an individual in the middle of a chain, searching from the end with fewer edges."""
         abox = self._abox
         onward: Role = (chain.second, False)
         back: Role = (chain.first, True)
@@ -253,5 +255,5 @@ class Retraction:
             second, first = abox.find(after, onward, z), abox.find(before, back, x)
             for pair in ((one, second), (first, other)):
                 if NONE not in pair:
-                    self._saturation.make_chain(chain, x, z, *pair, *abox.bridges(pair, x, z))
+                    self._saturation.make_chain(chain, x, z, *pair, *abox.equality_claims(pair, x, z))
                     return

@@ -1,4 +1,4 @@
-"""Saturation: forward from what was inserted until nothing more follows or something clashes."""
+"""Saturation: forward chaining from new facts until nothing more follows or a contradiction is found."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 
 class Saturation:
-    """The rules at work on an ABox: `insert` asserts, `run` concludes.
+    """Applies the rules to an ABox: `insert` adds facts, `run` draws conclusions.
 
-    A Clash leaves the agenda as it was, so that the caller can undo its changes and `run` again.
+    A Clash leaves the agenda unchanged, so that the caller can undo its changes and call `run` again.
     """
 
     def __init__(self, abox: ABox) -> None:
@@ -28,9 +28,9 @@ class Saturation:
         self._steps = abox.steps
 
     def insert(self, triple: Triple, source: int = ASSERTED) -> bool:
-        """Assert a triple, or have it as computed; whether it is new. Conclusions come with `run`.
+        """Insert an asserted or computed triple; return whether it is new. `run` draws the conclusions.
 
-        What is asserted is not computed besides.
+        An asserted triple is not also computed.
         """
         s, p, o = triple
         store, schema = self._store, self._abox.schema
@@ -69,10 +69,10 @@ class Saturation:
                 node = edge = NONE
                 if dirty:
                     node, _ = dirty.popitem()
-                    self._spread(node)
+                    self._propagate(node)
                 else:
                     edge = fresh.pop()
-                    self._look_at(edge)
+                    self._process_edge(edge)
         except (Clash, NotCompilable):
             if node == NONE:
                 fresh.append(edge)
@@ -81,7 +81,7 @@ class Saturation:
             raise
 
     def _first_use(self, term: Term, number: Callable[[Term], int]) -> int:
-        """A class or property that the schema does not mention."""
+        """Return a new number for a class or property that the schema does not mention."""
         node = self._store.find(term)
         if node is not None and node in self._abox.equals:
             raise NotCompilable(f"{term} is the same as another class or property")
@@ -91,16 +91,16 @@ class Saturation:
         kind = self._store.kind[node]
         if cls in kind.given:
             return False
-        wider = self._abox.kinds.give(kind, cls)
-        self._abox.set(node, wider)
+        wider = self._abox.kinds.add_given(kind, cls)
+        self._abox.set_kind(node, wider)
         if wider.mask != kind.mask:
             self._abox.widen(node, wider.mask)
             if wider.clash or wider.values or not self._store.is_bare(node):
                 self._abox.dirty[node] = None
         return True
 
-    def _spread(self, node: int) -> None:
-        """A node's kind grew: what that says of the node itself and of its neighbours."""
+    def _propagate(self, node: int) -> None:
+        """Apply the rules to a node whose kind grew, and to its neighbours."""
         kind = self._store.kind[node]
         if kind.clash and not (self._abox.is_literal(node) and self._store.is_bare(node)):
             one, other = kind.clash
@@ -112,30 +112,32 @@ class Saturation:
                     self._step(edge)
 
     def add_values(self, node: int) -> None:
-        """Add the edges that a node's classes come with (cls-hv1)."""
+        """Add the edges that are implied by a node's classes (cls-hv1)."""
         is_new = self._store.is_bare(node) and node not in self._abox.equals
         for predicate, term in self._store.kind[node].values:
             value = self._store.node(term)
             if is_new or self._abox.find(node, (predicate, False), value) == NONE:
                 self._abox.fresh.append(self._store.add(node, predicate, value, VALUE))
 
-    def _look_at(self, edge: int) -> None:
-        """A new edge: all rules that it may take part in."""
+    def _process_edge(self, edge: int) -> None:
+        """Apply all rules that a new edge may match."""
         store = self._store
         s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
         if p == NONE:
             return
         if p == SAME:
-            self._equality.join(s, o, Edge(edge))
+            self._equality.merge(s, o, Edge(edge))
             return
         if p == DIFFERENT:
             if self._abox.is_same(s, o):
                 raise Clash(Edge(edge), Same(s, o))
             return
-        if self._abox.is_mixed and self._abox.is_literal(o):
-            self._equality.meet(o)
+        if self._abox.has_unknown_equals and self._abox.is_literal(o):
+            self._equality.merge_spellings(o)
         rules = self._step(edge).rules
-        if rules is None or (rules.of_values and s not in self._abox.equals and store.out.is_alone(edge)):
+        if rules is None or (
+            rules.only_uniqueness and s not in self._abox.equals and store.out.is_alone(edge)
+        ):
             return
         self._apply(rules, edge, s, o)
 
@@ -148,12 +150,14 @@ class Saturation:
             self._abox.widen(s, step.subject.mask)
         if step.object is not object_:
             self._abox.widen(o, step.object.mask)
-        if step.special and not (step.of_values and s not in self._abox.equals and store.out.is_alone(edge)):
+        if step.special and not (
+            step.only_uniqueness and s not in self._abox.equals and store.out.is_alone(edge)
+        ):
             self._check(step, edge, s, o)
         return step
 
     def _check(self, step: Step, edge: int, s: int, o: int) -> None:
-        """The parts of a step that are about more than one edge, or that clash."""
+        """Apply the parts of a step that concern several edges or that clash."""
         if self._store.kind[o].clash and self._abox.is_literal(o):
             self._clash_of_literal(edge, o)
         if step.clash:
@@ -161,9 +165,9 @@ class Saturation:
             x, y = (o, s) if role[1] else (s, o)
             raise Clash(Edge(edge, role), *member(x, owner), *member(y, filler))
         for at_subject, limit in step.limits:
-            self._equality.limit(edge, *((s, o) if at_subject else (o, s)), limit)
+            self._equality.apply_limit(edge, *((s, o) if at_subject else (o, s)), limit)
         for at_subject, key in step.keys:
-            self._equality.identify(s if at_subject else o, key)
+            self._equality.apply_key(s if at_subject else o, key)
 
     def _clash_of_literal(self, edge: int, node: int) -> None:
         one, other = self._store.kind[node].clash or (0, 0)
@@ -173,41 +177,43 @@ class Saturation:
 
     def _apply(self, rules: EdgeRules, edge: int, s: int, o: int) -> None:
         if rules.by_value and self._abox.is_literal(o):
-            self._equality.meet(o)
+            self._equality.merge_spellings(o)
         if rules.irreflexive and self._abox.is_same(s, o):
             raise Clash(Edge(edge, rules.irreflexive), Same(s, o))
         for at_subject, limit in rules.limits:
-            self._equality.limit(edge, *((s, o) if at_subject else (o, s)), limit)
+            self._equality.apply_limit(edge, *((s, o) if at_subject else (o, s)), limit)
         has_any = self._abox.has_any
-        if rules.exclusive and has_any(s, rules.beside):
+        if rules.exclusive and has_any(s, rules.exclusive_group):
             for role, other in rules.exclusive:
                 found = self._abox.find(s, other, o)
                 if found != NONE:
-                    raise Clash(Edge(edge, role), Edge(found, other), *self._abox.bridges((edge, found)))
+                    raise Clash(
+                        Edge(edge, role), Edge(found, other), *self._abox.equality_claims((edge, found))
+                    )
         if rules.heads or rules.tails:
-            goes_on = has_any(s, rules.beyond[0]), has_any(o, rules.beyond[1])
+            continues = has_any(s, rules.beyond[0]), has_any(o, rules.beyond[1])
             for forwards, chain in rules.heads:
-                if goes_on[forwards]:
-                    self._continue(edge, *((s, o) if forwards else (o, s)), chain)
+                if continues[forwards]:
+                    self._chain_forwards(edge, *((s, o) if forwards else (o, s)), chain)
             for forwards, chain in rules.tails:
-                if goes_on[not forwards]:
-                    self._begin(edge, *((s, o) if forwards else (o, s)), chain)
+                if continues[not forwards]:
+                    self._chain_backwards(edge, *((s, o) if forwards else (o, s)), chain)
 
-    def _continue(self, edge: int, x: int, y: int, chain: Chain) -> None:
+    def _chain_forwards(self, edge: int, x: int, y: int, chain: Chain) -> None:
         for other, end, z in list(self._abox.related(y, self._steps.group((chain.second, False)))):
             self.make_chain(chain, x, z, edge, other, *_same(y, end))
 
-    def _begin(self, edge: int, y: int, z: int, chain: Chain) -> None:
+    def _chain_backwards(self, edge: int, y: int, z: int, chain: Chain) -> None:
         for other, end, x in list(self._abox.related(y, self._steps.group((chain.first, True)))):
             self.make_chain(chain, x, z, other, edge, *_same(y, end))
 
     def make_chain(self, chain: Chain, x: int, z: int, first: int, second: int, *same: Claim) -> None:
-        """Two edges, and what makes them meet, add a third (prp-spo2, prp-trp)."""
+        """Derive an edge from two edges that meet (prp-spo2, prp-trp)."""
         edges = Edge(first, (chain.first, False)), Edge(second, (chain.second, False))
         self._derive(x, chain.result, z, *edges, *same)
 
     def _derive(self, subject: int, predicate: int, object_: int, *claims: Claim) -> None:
-        """Add an edge that a rule makes, unless another one implies it."""
+        """Add a derived edge unless another edge implies it."""
         if self._abox.is_literal(subject) or self._abox.find(subject, (predicate, False), object_) != NONE:
             return
         edge = self._store.add(subject, predicate, object_, DERIVED)

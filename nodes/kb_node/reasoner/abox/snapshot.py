@@ -1,4 +1,4 @@
-"""Columns of an ABox as it stands, and an ABox filled from columns without working anything out."""
+"""Conversion of an ABox to columns, and back without applying rules."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from semmap.nodes.kb_node.reasoner.terms import is_named
 
 
 def columns_of(abox: ABox, *, schema: bytes, size: int) -> Columns | None:
-    """Those of an ABox, which may change afterwards; None where some nodes are the same.
+    """Return the columns of an ABox, which may change afterwards; None if it has equal nodes.
 
-    `schema` identifies what it was worked out by, `size` is how many triples are asserted.
+    `schema` is the digest of the schema, `size` the number of asserted triples.
     """
     if not _is_plain(abox):
         return None
@@ -27,9 +27,9 @@ def columns_of(abox: ABox, *, schema: bytes, size: int) -> Columns | None:
         size=size,
         classes=list(abox.schema.classes),
         properties=[axioms.term for axioms in abox.schema.axioms],
-        kinds=[_said(abox, kind) for kind in kinds],
+        kinds=[_encode_kind(abox, kind) for kind in kinds],
         reasons=[
-            (edge, [_claimed(claim) for claim in reason.claims])
+            (edge, [_encode_claim(claim) for claim in reason.claims])
             for edge, reason in sorted(abox.reasons.items(), key=lambda item: item[1].order)
         ],
         terms=list(store.terms),
@@ -45,40 +45,40 @@ def columns_of(abox: ABox, *, schema: bytes, size: int) -> Columns | None:
 
 
 def fill(abox: ABox, columns: Columns) -> bool:
-    """Let an ABox that holds no more than its schema says be the one that the columns are of.
+    """Load columns into an ABox that has only the conclusions of its schema.
 
-    False, with nothing done, if they speak of what only another schema has.
+    Returns False and changes nothing if the columns mention classes or properties of another schema.
     """
     schema, store = abox.schema, abox.store
     unknown = [term for term in columns.classes if schema.find_class(term) is None]
     unknown += [term for term in columns.properties if schema.find_property(term) is None]
     if not _is_plain(abox) or not all(map(is_named, unknown)):
-        return False  # what has no IRI is made by the schema alone
+        return False  # only the schema creates names that are not IRIs
     classes = [schema.cls(term) for term in columns.classes]
     properties = [schema.property(term) for term in columns.properties]
-    kinds = [_kind(abox, said, classes) for said in columns.kinds]
+    kinds = [_decode_kind(abox, kind, classes) for kind in columns.kinds]
     for kind in abox.kinds:
         del kind.nodes[:]
     store.fill(columns, [*map(kinds.__getitem__, columns.kind)], properties)
     abox.reasons.clear()
-    abox.rest_on_edge.clear()
-    abox.rest_on_node.clear()
+    abox.reasons_by_edge.clear()
+    abox.reasons_by_node.clear()
     for edge, claims in columns.reasons:
-        said = tuple(_claim(claimed, classes, properties) for claimed in claims)
-        abox.reasons[edge] = abox.conclude(said, edge=edge)
+        decoded = tuple(_decode_claim(claim, classes, properties) for claim in claims)
+        abox.reasons[edge] = abox.conclude(decoded, edge=edge)
     return True
 
 
 def _is_plain(abox: ABox) -> bool:
-    is_pending = abox.moved or abox.fresh or abox.dirty
-    return not (abox.equals or abox.spellings or abox.is_mixed or is_pending)
+    is_pending = abox.changed_kinds or abox.fresh or abox.dirty
+    return not (abox.equals or abox.spellings or abox.has_unknown_equals or is_pending)
 
 
 def _links(side: Adjacency) -> tuple[array[int], ...]:
     return side.heads[:], side.after[:], side.before[:], side.group[:]
 
 
-def _said(abox: ABox, kind: Kind) -> KindSaid:
+def _encode_kind(abox: ABox, kind: Kind) -> KindSaid:
     return KindSaid(
         given=sorted(kind.given),
         classes=list(bits(kind.mask)),
@@ -88,15 +88,15 @@ def _said(abox: ABox, kind: Kind) -> KindSaid:
     )
 
 
-def _kind(abox: ABox, said: KindSaid, classes: Sequence[int]) -> Kind:
-    if said.ill_typed:
+def _decode_kind(abox: ABox, encoded: KindSaid, classes: Sequence[int]) -> Kind:
+    if encoded.ill_typed:
         return abox.kinds.ill_typed
-    given, mask = (map(classes.__getitem__, numbers) for numbers in (said.given, said.classes))
-    excluded = None if said.excluded is None else mask_of(map(classes.__getitem__, said.excluded))
-    return abox.kinds.like(frozenset(given), mask_of(mask), excluded)
+    given, mask = (map(classes.__getitem__, numbers) for numbers in (encoded.given, encoded.classes))
+    excluded = None if encoded.excluded is None else mask_of(map(classes.__getitem__, encoded.excluded))
+    return abox.kinds.find_or_create(frozenset(given), mask_of(mask), excluded)
 
 
-def _claimed(claim: Claim) -> Claimed:
+def _encode_claim(claim: Claim) -> Claimed:
     match claim:
         case Member(node, cls):
             return node, cls
@@ -104,11 +104,11 @@ def _claimed(claim: Claim) -> Claimed:
             return (edge,)
         case Edge(edge, (prop, backwards)):
             return edge, prop, int(backwards)
-    raise AssertionError("nothing is the same as something else in columns")
+    raise AssertionError("columns do not support equal nodes")
 
 
-def _claim(claimed: Claimed, classes: Sequence[int], properties: Sequence[int]) -> Claim:
-    if len(claimed) == 2:
-        return Member(claimed[0], classes[claimed[1]])
-    edge, *role = claimed
+def _decode_claim(claim: Claimed, classes: Sequence[int], properties: Sequence[int]) -> Claim:
+    if len(claim) == 2:
+        return Member(claim[0], classes[claim[1]])
+    edge, *role = claim
     return Edge(edge, (properties[role[0]], bool(role[1])) if role else None)

@@ -1,4 +1,4 @@
-"""What one edge says of the two individuals that it joins, worked out once for each pair of kinds."""
+"""The effect of an edge on its two individuals, computed once for each pair of kinds."""
 
 from __future__ import annotations
 
@@ -12,79 +12,79 @@ from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 
 @dataclass(frozen=True, slots=True)
 class EdgeRules:
-    """What a property's new edges are checked for whatever the kinds are."""
+    """The rules for new edges of a property that do not depend on kinds."""
 
     irreflexive: Role | None
     limits: tuple[tuple[bool, Limit], ...]
-    """Limits that everybody has (prp-fp, prp-ifp), and whether the owner is the subject."""
+    """Limits for all individuals (prp-fp, prp-ifp), and whether the owner is the subject."""
     exclusive: tuple[tuple[Role, Role], ...]
-    """(implied role, role that must not hold beside it)."""
-    beside: Group
-    """Along which edges of the subject any of those roles leads."""
+    """(implied role, role that must not hold at the same time)."""
+    exclusive_group: Group
+    """The edges of the subject along which the excluded roles lead."""
     heads: tuple[tuple[bool, Chain], ...]
-    """Chains that the edge may begin, and whether it is read forwards."""
+    """Chains that the edge may start, and whether it is read forwards."""
     tails: tuple[tuple[bool, Chain], ...]
     """Chains that the edge may end."""
     beyond: tuple[Group, Group]
-    """Along which edges of the subject, and of the object, these chains go on."""
+    """The edges of the subject, and of the object, along which these chains continue."""
     by_value: bool
-    """Whether it matters that two literals are spellings of one value."""
-    of_values: bool
-    """Whether all there is to check is that the subject has no other edge with the predicate."""
+    """Whether literals must be compared by value."""
+    only_uniqueness: bool
+    """Whether the only check is that the subject has no other edge with the predicate."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """The kinds of subject and object afterwards, and what else must be looked at."""
+    """The resulting kinds of subject and object, and further checks."""
 
     subject: Kind
     object: Kind
     clash: tuple[Role, int, int] | None
-    """A role, an owner and a filler (or ANY) that it must not lead to (cls-maxc1, cls-maxqc1)."""
+    """A forbidden combination of role, owner and filler (or ANY) (cls-maxc1, cls-maxqc1)."""
     limits: tuple[tuple[bool, Limit], ...]
-    """Limits that the edge now counts for, and whether their owner is the subject."""
+    """Limits that apply to the edge, and whether their owner is the subject."""
     keys: tuple[tuple[bool, Key], ...]
-    """Keys that now identify the subject (or else the object)."""
+    """Keys that apply to the subject (or else the object)."""
     special: bool
-    """Whether there is anything beyond the kinds."""
-    of_values: bool
-    """Whether there is not after all, when the subject has no other edge with the predicate."""
+    """Whether there are further checks."""
+    only_uniqueness: bool
+    """Whether no check is needed if the subject has no other edge with the predicate."""
     rules: EdgeRules | None
-    """What a new edge of the property is checked for besides; None for nothing."""
+    """The rules for a new edge that do not depend on kinds; None if there are none."""
 
 
 class Steps:
-    """The memo of steps, and the rules of each property."""
+    """The cache of steps, and the rules of each property."""
 
     LIMIT = 50_000
-    """Steps kept; beyond that the memo starts anew (a home has about fifty)."""
+    """Maximum number of cached steps, after which the cache is cleared (a home has about 50)."""
 
     def __init__(self, schema: Schema, kinds: Kinds) -> None:
         self._schema = schema
         self._kinds = kinds
         self.known: dict[tuple[int, Kind, Kind], Step] = {}
         self._concerned: dict[int, tuple[int, int]] = {}
-        self._made_by: dict[int, tuple[tuple[bool, Chain], ...]] = {}
-        self._beginnings: dict[int, tuple[Group, Group]] = {}
+        self._producing_chains: dict[int, tuple[tuple[bool, Chain], ...]] = {}
+        self._chain_starts: dict[int, tuple[Group, Group]] = {}
         self._rules: dict[int, EdgeRules | None] = {}
 
     def step(self, prop: int, subject: Kind, object_: Kind) -> Step:
-        """What an edge of a property makes of two kinds."""
+        """Return the effect of an edge of a property on two kinds."""
         found = self.known.get((prop, subject, object_))
         if found is None:
             if len(self.known) >= self.LIMIT:
                 self.known.clear()
-            found = self.known[prop, subject, object_] = self._work_out(prop, subject, object_)
+            found = self.known[prop, subject, object_] = self._compute(prop, subject, object_)
         return found
 
     def rules(self, prop: int) -> EdgeRules | None:
-        """What new edges of a property are checked for whatever the kinds are; None for nothing."""
+        """Return the rules for new edges of a property that do not depend on kinds, or None."""
         if prop not in self._rules:
             self._rules[prop] = self._edge_rules(prop)
         return self._rules[prop]
 
-    def concerned(self, prop: int) -> tuple[int, int]:
-        """The classes of the subject, and those of the object, that a step of a property depends on."""
+    def relevant_classes(self, prop: int) -> tuple[int, int]:
+        """Return the classes of the subject and of the object that affect the steps of a property."""
         found = self._concerned.get(prop)
         if found is None:
             masks = [0, 0]
@@ -99,11 +99,11 @@ class Steps:
             found = self._concerned[prop] = masks[0], masks[1]
         return found
 
-    def made_by(self, prop: int) -> tuple[tuple[bool, Chain], ...]:
-        """The chains that may make what an edge of a property implies, and whether that is backwards."""
-        found = self._made_by.get(prop)
+    def producing_chains(self, prop: int) -> tuple[tuple[bool, Chain], ...]:
+        """Return the chains that may imply the same as an edge of a property, and whether backwards."""
+        found = self._producing_chains.get(prop)
         if found is None:
-            found = self._made_by[prop] = tuple(
+            found = self._producing_chains[prop] = tuple(
                 (backwards, chain)
                 for q, backwards in self._schema.roles(prop)
                 for chain in self._schema.chains
@@ -111,22 +111,22 @@ class Steps:
             )
         return found
 
-    def beginnings(self, prop: int) -> tuple[Group, Group]:
-        """Along which edges the chains of `made_by` begin: at a subject, and at an object if backwards."""
-        found = self._beginnings.get(prop)
+    def chain_starts(self, prop: int) -> tuple[Group, Group]:
+        """Return where `producing_chains` start: the groups of a subject, and backwards of an object."""
+        found = self._chain_starts.get(prop)
         if found is None:
             groups: tuple[list[Group], list[Group]] = [], []
-            for backwards, chain in self.made_by(prop):
+            for backwards, chain in self.producing_chains(prop):
                 groups[backwards].append(self.group((chain.first, False)))
-            found = self._beginnings[prop] = _together(groups[False]), _together(groups[True])
+            found = self._chain_starts[prop] = _union(groups[False]), _union(groups[True])
         return found
 
     def group(self, role: Role) -> Group:
-        """Along which edges a role leads."""
+        """Return the edges along which a role leads."""
         return self._schema.group(role)
 
-    def _work_out(self, prop: int, subject: Kind, object_: Kind) -> Step:
-        wider_subject, wider_object = self._added(prop, subject, object_)
+    def _compute(self, prop: int, subject: Kind, object_: Kind) -> Step:
+        wider_subject, wider_object = self._widened(prop, subject, object_)
         if wider_subject is not subject or wider_object is not object_:
             return self.step(prop, wider_subject, wider_object)
         clash, keys = None, []
@@ -148,19 +148,26 @@ class Steps:
             ]
             keys += [(not backwards, key) for key in axioms.keys if _in(key.owner, owner)]
         others = bool(clash or keys or object_.clash)
-        of_values = not others and self._are_of_values(prop, limits)
+        only_uniqueness = not others and self._only_check_uniqueness(prop, limits)
         rules = self.rules(prop)
         return Step(
-            subject, object_, clash, tuple(limits), tuple(keys), others or bool(limits), of_values, rules
+            subject,
+            object_,
+            clash,
+            tuple(limits),
+            tuple(keys),
+            others or bool(limits),
+            only_uniqueness,
+            rules,
         )
 
-    def _are_of_values(self, prop: int, limits: list[tuple[bool, Limit]]) -> bool:
-        """Whether limits are kept if the subject has no other edge with the predicate."""
+    def _only_check_uniqueness(self, prop: int, limits: list[tuple[bool, Limit]]) -> bool:
+        """Return whether limits are met if the subject has no other edge with the predicate."""
         alone = Group((prop,), ())
         return all(at_subject and self.group(limit.role) == alone for at_subject, limit in limits)
 
-    def _added(self, prop: int, subject: Kind, object_: Kind) -> tuple[Kind, Kind]:
-        """The kinds with what domains, ranges and restrictions add at once."""
+    def _widened(self, prop: int, subject: Kind, object_: Kind) -> tuple[Kind, Kind]:
+        """Return the kinds after domains, ranges and restrictions are applied once."""
         to_subject = to_object = 0
         for q, backwards in self._schema.roles(prop):
             axioms = self._schema.axioms[q]
@@ -211,17 +218,17 @@ class Steps:
             irreflexive=irreflexive,
             limits=tuple(limits),
             exclusive=tuple(exclusive),
-            beside=_together(self.group(other) for _, other in exclusive),
+            exclusive_group=_union(self.group(other) for _, other in exclusive),
             heads=tuple(heads),
             tails=tuple(tails),
-            beyond=(_together(beyond[False]), _together(beyond[True])),
+            beyond=(_union(beyond[False]), _union(beyond[True])),
             by_value=by_value,
-            of_values=not others and self._are_of_values(prop, limits),
+            only_uniqueness=not others and self._only_check_uniqueness(prop, limits),
         )
 
 
-def _together(groups: Iterable[Group]) -> Group:
-    """What any of some leads along."""
+def _union(groups: Iterable[Group]) -> Group:
+    """Return the union of groups."""
     out, into = dict[int, None](), dict[int, None]()
     for group in groups:
         out.update(dict.fromkeys(group.out))

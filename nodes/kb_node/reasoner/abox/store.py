@@ -1,7 +1,7 @@
-"""The ABox in columns: terms by number, edges as linked lists, nothing that can be worked out.
+"""The ABox in columns: terms by number, and edges as linked lists.
 
-A *node* is the number of an individual or literal. An *edge* is the number of a row subject, predicate,
-object. Freed numbers are used again.
+A *node* is the number of an individual or literal. An *edge* is the number of a row of subject, predicate and
+object. Freed numbers are reused.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from semmap.nodes.kb_node.reasoner.fastpaths.layout import Layout
 from semmap.nodes.kb_node.reasoner.terms import is_literal
 
 BLOCK: Final = 256
-"""Nodes or edges that room is made for at once."""
+"""Number of rows that are allocated together."""
 VALUE, DERIVED, COMPUTED = 1, 2, 3
-"""Where an edge comes from if it is not ASSERTED: a class that has a value (cls-hv1), another rule, or no
-rule at all. A computed one is given like an asserted one, and was not said."""
+"""The source of an edge that is not ASSERTED: a value of a class (cls-hv1), another rule, or an external
+computation. A computed edge holds without inference, like an asserted one."""
 GIVEN: Final = frozenset((ASSERTED, COMPUTED))
-"""Edges that rest on no other."""
+"""The sources of edges that do not depend on other edges."""
 
 
 Terms = tuple[Term, ...]
@@ -47,20 +47,20 @@ class Store:
         self.into = Adjacency(self.predicate)
         self.numbers: dict[Term, int] = {}
         self.places = array("i")
-        """Where an individual is among those of its kind; `NONE` for one that is listed nowhere."""
+        """The position of an individual in the list of its kind; `NONE` if it is in no list."""
         self.log: list[tuple[int, int, int]] | None = None
-        """While somebody wants to know: the edges that were added or removed."""
+        """The edges that were added or removed, while they are recorded; else None."""
         self._free_nodes: list[int] = []
         self._free_edges: list[int] = []
 
     # Nodes
 
     def find(self, term: Term) -> int | None:
-        """The node of a term, or None."""
+        """Return the node of a term, or None."""
         return self.numbers.get(term)
 
     def node(self, term: Term) -> int:
-        """The node of a term; a new one if it is not there."""
+        """Return the node of a term. Creates the node if it does not exist."""
         found = self.numbers.get(term)
         if found is not None:
             return found
@@ -69,18 +69,18 @@ class Store:
         node = self._free_nodes_for(1).pop()
         self.terms[node], self.kind[node], self.numbers[term] = term, kind, node
         if kind.mask and kind.excluded is None:
-            self.file(node, kind, kind)
+            self.list_under_kind(node, kind, kind)
         return node
 
     def _free_nodes_for(self, count: int) -> list[int]:
-        """At least so many free numbers to pop; such nodes are bare and filed nowhere."""
+        """Return at least `count` free node numbers. These nodes have no edges and are in no list."""
         free = self._free_nodes
         while len(free) < count:
             free.extend(reversed(self._more_nodes(BLOCK)))
         return free
 
     def _more_nodes(self, count: int) -> range:
-        """Make room for so many nodes."""
+        """Allocate rows for nodes."""
         first, room = len(self.terms), array("i", [NONE]) * count
         self.terms.extend([""] * count)
         self.kind.extend([self._kinds.nothing] * count)
@@ -89,27 +89,27 @@ class Store:
         return range(first, first + count)
 
     def is_bare(self, node: int) -> bool:
-        """Whether a node has no edges."""
+        """Return whether a node has no edges."""
         return self.out.heads[node] == NONE and self.into.heads[node] == NONE
 
     def release(self, node: int) -> bool:
-        """Forget a node without edges or asserted classes; returns whether it was forgotten."""
+        """Remove a node if it has no edges and no asserted classes; return whether it was removed."""
         kind = self.kind[node]
-        told = kind.excluded is None and kind.given
-        if told or not self.is_bare(node):
+        is_asserted = kind.excluded is None and kind.given
+        if is_asserted or not self.is_bare(node):
             return False
         self._forget(node)
         return True
 
     def _forget(self, node: int) -> None:
         if self.places[node] != NONE:
-            self.file(node, self.kind[node], None)
+            self.list_under_kind(node, self.kind[node], None)
         del self.numbers[self.terms[node]]
         self.terms[node] = ""
         self._free_nodes.append(node)
 
-    def file(self, node: int, old: Kind, new: Kind | None) -> None:
-        """List an individual under its new kind instead of its old one; with None no more."""
+    def list_under_kind(self, node: int, old: Kind, new: Kind | None) -> None:
+        """Move an individual from the list of its old kind to that of its new kind; None removes it."""
         place = self.places[node]
         if place != NONE:
             nodes = old.nodes
@@ -125,8 +125,8 @@ class Store:
     # Edges
 
     @property
-    def holes(self) -> int:
-        """For how many nodes or edges, whichever is more, there is room between others."""
+    def free_rows(self) -> int:
+        """The number of free node rows or edge rows, whichever is larger."""
         return max(len(self._free_nodes), len(self._free_edges))
 
     def add(self, subject: int, predicate: int, object_: int, source: int) -> int:
@@ -142,9 +142,9 @@ class Store:
         return edge
 
     def write(self, layout: Layout, individuals: Terms, others: Terms) -> None:
-        """Add new individuals with their edges, all of which leave from them.
+        """Add new individuals with their edges, all of which start at them.
 
-        What is zipped is of one length by the layout; to make sure of it takes a thirtieth of an add.
+        The layout guarantees equal lengths in `zip`. `strict` would cost 3 % of an add.
         """
         terms, kinds, numbers, places = self.terms, self.kind, self.numbers, self.places
         free = self._free_nodes_for(len(individuals) + len(others))
@@ -186,15 +186,15 @@ class Store:
             self.source[edges[at]] = VALUE
 
     def append(self, layout: Layout, individuals: Sequence[Terms], others: Sequence[list[int]]) -> None:
-        """Like `write` for many, in new rows side by side; the other objects are there, and told as nodes.
+        """Do `write` for many runs, in consecutive new rows. The other objects are existing nodes.
 
-        `individuals` and `others` are column by column.
+        `individuals` and `others` are columns.
         """
         count, width, length = len(individuals[0]), len(layout.kinds), len(layout.edges)
         rows, edges = self._more_nodes(count * width), self._more_edges(count * length)
         _put(self.kind, rows, layout.kinds * count)
         _put(self.predicate, edges, [p for _, p, _ in layout.edges] * count)
-        nodes: list[list[int]] = []  # of the same objects wherever a number stands, for memory's sake
+        nodes: list[list[int]] = []  # reuses the same int objects to save memory
         for place, (terms, kind) in enumerate(zip(individuals, layout.kinds, strict=True)):
             here = rows[place::width]
             nodes.append(list(here))
@@ -209,7 +209,7 @@ class Store:
             here = edges[at::length]
             _put(self.subject, here, nodes[s])
             _put(self.object, here, nodes[o])
-            if o < width and o not in entered:  # nothing leads to a new individual yet
+            if o < width and o not in entered:  # a new individual has no incoming edges yet
                 _put(self.into.heads, rows[o::width], here)
             else:
                 self.into.link_each(nodes[o], here, p)
@@ -233,7 +233,7 @@ class Store:
         *,
         is_first: bool = False,
     ) -> Sequence[int]:
-        """Like `add` for many new edges of one predicate; `is_first` if each is its subject's only one."""
+        """Do `add` for many edges of one predicate. `is_first`: each is its subject's only edge of it."""
         count = len(subjects)
         if count == 0 or len(self._free_edges) >= count:
             ends = zip(subjects, objects, strict=True)
@@ -254,7 +254,7 @@ class Store:
         return edges
 
     def add_literals(self, kinds: Mapping[Term, Kind]) -> dict[Term, int]:
-        """The nodes of literals, of known kinds, that edges will enter; room is made for new ones."""
+        """Return the nodes of literals with known kinds. Creates the nodes that do not exist."""
         nodes = dict(zip(kinds, map(self.numbers.get, kinds), strict=True))
         new = [term for term, node in nodes.items() if node is None]
         rows = self._more_nodes(len(new))
@@ -265,14 +265,14 @@ class Store:
         return {term: made[term] if node is None else node for term, node in nodes.items()}
 
     def _free_edges_for(self, count: int) -> list[int]:
-        """At least so many free numbers to pop; such edges are in no list, and asserted."""
+        """Return at least `count` free edge numbers, of edges in no list with the source ASSERTED."""
         free = self._free_edges
         while len(free) < count:
             free.extend(reversed(self._more_edges(BLOCK)))
         return free
 
     def _more_edges(self, count: int) -> range:
-        """Make room for so many edges."""
+        """Allocate rows for edges."""
         first, room = len(self.subject), array("i", [NONE]) * count
         for row in (self.subject, self.predicate, self.object):
             row.extend(room)
@@ -283,7 +283,7 @@ class Store:
         return range(first, first + count)
 
     def remove(self, edge: int) -> None:
-        """Forget an edge."""
+        """Remove an edge."""
         if self.log is not None:
             self.log.append((self.subject[edge], self.predicate[edge], self.object[edge]))
         self.out.unlink(self.subject[edge], edge)
@@ -296,8 +296,8 @@ class Store:
             self.source[edge] = ASSERTED
         self._free_edges.append(edge)
 
-    def turn(self, edge: int, term: Term) -> None:
-        """Let an edge lead to another literal, and forget the old one if nobody has it any more."""
+    def replace_literal(self, edge: int, term: Term) -> None:
+        """Change the object of an edge to another literal. Removes the old literal if it is unused."""
         old = self.object[edge]
         self.into.unlink(old, edge)
         if self.into.heads[old] == NONE:
@@ -306,9 +306,9 @@ class Store:
         self.into.link(node, edge, self.predicate[edge])
 
     def fill(self, columns: Columns, kinds: Iterable[Kind], properties: Sequence[int]) -> None:
-        """Be what columns say instead, with these kinds of the nodes, and these numbers of the properties."""
+        """Load columns, with the given kinds of nodes and numbers of properties."""
         terms, number = columns.terms, list(range(max(len(columns.terms), len(columns.subject)))).__getitem__
-        self.terms[:] = terms  # and the numbers are the same objects wherever they stand, for memory's sake
+        self.terms[:] = terms  # `number` returns shared int objects to save memory
         self.kind[:] = kinds
         self.subject[:] = [number(node) for node in columns.subject]
         self.object[:] = [number(node) for node in columns.object]
@@ -329,13 +329,15 @@ class Store:
             self.kind[node].nodes[place] = node
 
     def erase(self, nodes: Set[int], edges: Sequence[int]) -> None:
-        """Forget individuals and all edges that leave from them, where no other enters."""
+        """Remove individuals and all their outgoing edges. No other edges may lead to them."""
         object_, predicate, source = self.object, self.predicate, self.source
         into, heads, into_after, into_group = self.into, self.into.heads, self.into.after, self.into.group
         after, before, group = self.out.after, self.out.before, self.out.group
-        for edge in edges:  # `clear` and `remove` written out: robots remove things all day
+        for edge in edges:  # `clear` and `remove` inlined: removals are frequent
             node = object_[edge]
-            if heads[node] == edge and into_after[edge] == NONE and into_group[edge] == NONE:  # as most are
+            if (
+                heads[node] == edge and into_after[edge] == NONE and into_group[edge] == NONE
+            ):  # the common case
                 heads[node] = NONE
                 if node not in nodes:
                     self.release(node)
@@ -358,14 +360,14 @@ class Store:
             self._forget(node)
 
     def edge(self, subject: int, predicate: int, object_: int) -> int:
-        """The edge of a triple, or NONE. Costs as much as the shorter of the two lists it is in."""
+        """Return the edge of a triple, or NONE. The time depends on the shorter of its two lists."""
         leaving = self.out.first(subject, predicate)
         if leaving == NONE:
             return NONE
         return self._edge(subject, object_, leaving, self.into.first(object_, predicate))
 
     def edge_of(self, subject: int, predicates: tuple[int, ...], object_: int) -> int:
-        """The first edge of two with one of some predicates, or NONE."""
+        """Return the first edge between two nodes with one of some predicates, or NONE."""
         if not predicates or self.out.heads[subject] == NONE or self.into.heads[object_] == NONE:
             return NONE
         for leaving in self.out.firsts(subject, predicates):
@@ -377,7 +379,7 @@ class Store:
         return NONE
 
     def _edge(self, subject: int, object_: int, leaving: int, entering: int) -> int:
-        """The one among the edges that leave and that enter, from two of one predicate on."""
+        """Find an edge by walking the outgoing and incoming lists of one predicate in parallel."""
         subjects, objects, after, before = self.subject, self.object, self.out.after, self.into.after
         while leaving != NONE and entering != NONE:
             if objects[leaving] == object_:
@@ -389,7 +391,7 @@ class Store:
 
 
 def _put(column: MutableSequence[Any], rows: range, values: Iterable[Any]) -> None:
-    """Write values into rows at equal distances."""
+    """Write values into evenly spaced rows."""
     if isinstance(column, array):
         values = array("i", values)
     column[rows.start : rows.stop : rows.step] = values

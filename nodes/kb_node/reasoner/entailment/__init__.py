@@ -1,4 +1,4 @@
-"""What follows although no rule derives it: by refutation, generic individuals and names for what exists."""
+"""Entailment beyond the rules: by refutation, generic individuals, and names for existing values."""
 
 from semmap.nodes.kb_node.reasoner.entailment.conclusions import contradictory, entails
 

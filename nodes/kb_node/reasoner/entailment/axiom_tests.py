@@ -1,4 +1,4 @@
-"""Whether axioms of the TBox follow: each is tried on individuals that nothing is said of."""
+"""Entailment of axioms: each axiom is tested on fresh individuals."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, TYPE, iri
 
 
-class Axioms:
-    """Proves axioms; `reader` reads the graph that states them.
+class AxiomProver:
+    """Proves axioms. `reader` reads the graph that states them.
 
-    An axiom follows if its instance for fresh individuals does: nothing is said of those, so
-    the proof is one for any others, too (generalisation).
+    An axiom follows if its instance for fresh individuals follows. The graph has no facts about these, so the
+    proof applies to all individuals (generalisation).
     """
 
     def __init__(self, prover: Prover, reader: Reader) -> None:
@@ -29,7 +29,7 @@ class Axioms:
             iri("owl:disjointUnionOf"): self._disjoint_union,
             iri("rdfs:subPropertyOf"): lambda p, q: self.sub_property(self._role(p), self._role(q)),
             iri("owl:equivalentProperty"): lambda p, q: self.same_property(self._role(p), self._role(q)),
-            iri("owl:inverseOf"): lambda p, q: self.same_property(self._role(p), _turned(self._role(q))),
+            iri("owl:inverseOf"): lambda p, q: self.same_property(self._role(p), _inverse(self._role(q))),
             iri("owl:propertyDisjointWith"): lambda p, q: self.disjoint_properties(
                 [self._role(p), self._role(q)]
             ),
@@ -37,19 +37,19 @@ class Axioms:
                 list(map(self._role, self._reader.members(head))), self._role(p)
             ),
             iri("rdfs:domain"): lambda p, c: self.domain(self._role(p), self._class(c)),
-            iri("rdfs:range"): lambda p, c: self.domain(_turned(self._role(p)), self._class(c)),
+            iri("rdfs:range"): lambda p, c: self.domain(_inverse(self._role(p)), self._class(c)),
             iri("owl:hasKey"): lambda c, head: self.key(
                 self._class(c), list(map(self._role, self._reader.members(head)))
             ),
         }
-        """What a predicate says of its subject and object. They raise Unreadable."""
+        """The test of an axiom by its predicate. The tests raise Unreadable."""
         self.characteristics: Final[dict[Term, Callable[[Role], bool]]] = {
             iri("owl:FunctionalProperty"): self.functional,
-            iri("owl:InverseFunctionalProperty"): lambda p: self.functional(_turned(p)),
+            iri("owl:InverseFunctionalProperty"): lambda p: self.functional(_inverse(p)),
             iri("owl:ReflexiveProperty"): self.reflexive,
             iri("owl:IrreflexiveProperty"): self.irreflexive,
-            iri("owl:SymmetricProperty"): lambda p: self.sub_property(p, _turned(p)),
-            iri("owl:AsymmetricProperty"): lambda p: self.disjoint_properties([p, _turned(p)]),
+            iri("owl:SymmetricProperty"): lambda p: self.sub_property(p, _inverse(p)),
+            iri("owl:AsymmetricProperty"): lambda p: self.disjoint_properties([p, _inverse(p)]),
             iri("owl:TransitiveProperty"): lambda p: self.chain([p, p], p),
         }
 
@@ -62,25 +62,25 @@ class Axioms:
     # Classes
 
     def sub_class(self, narrow: Expression, wide: Expression) -> bool:
-        """Whatever is in one is in the other: a fresh member of the one is in the other."""
+        """Return whether a fresh member of one class is in the other."""
         x = self._prover.fresh()
         return self._prover.follows_from_each(
-            self._prover.given(x, narrow), lambda: self._prover.member(x, wide)
+            self._prover.membership_alternatives(x, narrow), lambda: self._prover.member(x, wide)
         )
 
     def same_class(self, one: Expression, other: Expression) -> bool:
-        """Each is a subclass of the other."""
+        """Return whether each class is a subclass of the other."""
         return self.sub_class(one, other) and self.sub_class(other, one)
 
     def disjoint_classes(self, classes: Sequence[Expression]) -> bool:
-        """Nothing is in two of them: a fresh member of two is a contradiction."""
+        """Return whether a fresh member of any two of the classes is a contradiction."""
         return all(self._never_both(one, other) for one, other in combinations(classes, 2))
 
     def _never_both(self, one: Expression, other: Expression) -> bool:
         x, prover = self._prover.fresh(), self._prover
         return prover.follows_from_each(
-            prover.given(x, one),
-            lambda: prover.follows_from_each(prover.given(x, other), lambda: False),
+            prover.membership_alternatives(x, one),
+            lambda: prover.follows_from_each(prover.membership_alternatives(x, other), lambda: False),
         )
 
     def _disjoint_union(self, whole: Term, head: Term) -> bool:
@@ -88,27 +88,31 @@ class Axioms:
         return self.disjoint_classes(parts) and self.same_class(Named(whole), Or(tuple(parts)))
 
     def key(self, cls: Expression, roles: Sequence[Role]) -> bool:
-        """Two fresh members with a common value of each property are the same."""
+        """Return whether two fresh members with a common value of each property are the same."""
         x, y, prover = self._prover.fresh(), self._prover.fresh(), self._prover
-        edges = [role.edge(who, value) for role in roles for value in [prover.fresh()] for who in (x, y)]
+        edges = [
+            role.edge(member, value) for role in roles for value in [prover.fresh()] for member in (x, y)
+        ]
         alternatives = [
-            [*edges, *one, *other] for one in prover.given(x, cls) for other in prover.given(y, cls)
+            [*edges, *one, *other]
+            for one in prover.membership_alternatives(x, cls)
+            for other in prover.membership_alternatives(y, cls)
         ]
         return prover.follows_from_each(alternatives, lambda: prover.refutes((x, DIFFERENT_FROM, y)))
 
     # Properties
 
     def sub_property(self, narrow: Role, wide: Role) -> bool:
-        """A fresh pair related by the one is related by the other."""
+        """Return whether a fresh pair that is related by one property is related by the other."""
         x, y = self._prover.fresh(), self._prover.fresh()
         return self._prover.follows([narrow.edge(x, y)], lambda: self._prover.fact(wide.edge(x, y)))
 
     def same_property(self, one: Role, other: Role) -> bool:
-        """Each is below the other."""
+        """Return whether each property is a subproperty of the other."""
         return self.sub_property(one, other) and self.sub_property(other, one)
 
     def disjoint_properties(self, roles: Sequence[Role]) -> bool:
-        """A fresh pair related by two of them is a contradiction."""
+        """Return whether a fresh pair that is related by any two of the properties is a contradiction."""
         return all(
             self._prover.refutes(one.edge(x, y), other.edge(x, y))
             for one, other in combinations(roles, 2)
@@ -116,43 +120,43 @@ class Axioms:
         )
 
     def chain(self, links: Sequence[Role], result: Role) -> bool:
-        """Fresh individuals linked one to the next are related by the result, first to last."""
+        """Return whether the ends of a chain of fresh individuals are related by the result."""
         stops = [self._prover.fresh() for _ in range(len(links) + 1)]
         edges = [link.edge(stops[i], stops[i + 1]) for i, link in enumerate(links)]
         return self._prover.follows(edges, lambda: self._prover.fact(result.edge(stops[0], stops[-1])))
 
     def domain(self, role: Role, cls: Expression) -> bool:
-        """The beginning of a fresh edge is in the class."""
+        """Return whether the subject of a fresh edge is in the class."""
         x, y = self._prover.fresh(), self._prover.fresh()
         return self._prover.follows([role.edge(x, y)], lambda: self._prover.member(x, cls))
 
     def functional(self, role: Role) -> bool:
-        """Two different values of a fresh individual are a contradiction."""
+        """Return whether two different values of a fresh individual are a contradiction."""
         x, y, z = (self._prover.fresh() for _ in range(3))
         return self._prover.refutes(role.edge(x, y), role.edge(x, z), (y, DIFFERENT_FROM, z))
 
     def reflexive(self, role: Role) -> bool:
-        """A fresh individual is related to itself."""
+        """Return whether a fresh individual is related to itself."""
         x = self._prover.fresh()
         return self._prover.fact(role.edge(x, x))
 
     def irreflexive(self, role: Role) -> bool:
-        """A fresh edge from an individual to itself is a contradiction."""
+        """Return whether a fresh edge from an individual to itself is a contradiction."""
         x = self._prover.fresh()
         return self._prover.refutes(role.edge(x, x))
 
     # Individuals
 
     def all_different(self, members: Sequence[Term]) -> bool:
-        """Each two of them are different."""
+        """Return whether all members are pairwise different."""
         return all(self._prover.different(one, other) for one, other in combinations(members, 2))
 
     def never(self, edge: Triple) -> bool:
-        """A negative property assertion: the edge is a contradiction."""
+        """Return whether an edge is a contradiction (negative property assertion)."""
         return self._prover.refutes(edge)
 
     def is_used_as(self, term: Term, kind: Term) -> bool:
-        """Whether the graph uses a term as a class or as a property: by the RDF-Based Semantics it is one."""
+        """Return whether the graph uses a term as a class or property (RDF-Based Semantics)."""
         asserted = self._prover.asserted
         subject, object_ = _USES.get(kind, ((), ()))
         return (
@@ -163,7 +167,7 @@ class Axioms:
         )
 
 
-def _turned(role: Role) -> Role:
+def _inverse(role: Role) -> Role:
     return Role(role.property, not role.backwards)
 
 
@@ -197,7 +201,7 @@ _NARROWER = {
     iri("owl:ObjectProperty"): _OBJECT,
     iri("rdf:Property"): f"{_OBJECT} owl:DatatypeProperty owl:AnnotationProperty owl:FunctionalProperty",
 }
-"""Classes whose members are of another, of those by which terms are declared."""
+"""Subclasses of the classes by which terms are declared."""
 _CLASSES = {iri("owl:Class"), iri("rdfs:Class")}
 _PROPERTIES = {iri("rdf:Property"), iri("owl:ObjectProperty")}
 _USES = dict.fromkeys(_CLASSES, _AS_CLASS) | dict.fromkeys(_PROPERTIES, _AS_PROPERTY)

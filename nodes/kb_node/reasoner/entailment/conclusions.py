@@ -1,11 +1,11 @@
-"""Whether a graph of facts and axioms follows; its blank nodes stand for something that there is."""
+"""Entailment of a graph of facts and axioms. Its blank nodes are existential variables."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 
-from semmap.nodes.kb_node.reasoner.entailment.axiom_tests import Axioms
+from semmap.nodes.kb_node.reasoner.entailment.axiom_tests import AxiomProver
 from semmap.nodes.kb_node.reasoner.entailment.effort import Effort
 from semmap.nodes.kb_node.reasoner.entailment.expressions import Reader, Unreadable
 from semmap.nodes.kb_node.reasoner.entailment.prover import Prover
@@ -32,74 +32,78 @@ _PARTS = frozenset(
 )
 """Predicates that make a node a class expression."""
 _DEFINING = frozenset(iris("owl:intersectionOf owl:unionOf owl:oneOf owl:complementOf"))
-"""Predicates that say of a class with a name what it is."""
+"""Predicates that define a named class."""
 _STATED_BY = {
     iri("owl:AllDifferent"): "different",
     iri("owl:AllDisjointClasses"): "classes",
     iri("owl:AllDisjointProperties"): "properties",
     iri("owl:NegativePropertyAssertion"): "never",
 }
-"""Axioms that have a node of their own."""
+"""Axioms that are represented by a node."""
 _CANDIDATES = 200
-"""Individuals tried for a blank node."""
+"""Maximum number of individuals that are tried for a blank node."""
 
 Choice = dict[Term, Term]
-"""What blank nodes stand for."""
+"""The terms assigned to blank nodes."""
 
 
 def entails(reasoner: Reasoner, graph: Iterable[Triple], effort: Effort | None = None) -> bool:
-    """Whether all of a graph follows from what a reasoner holds; False when no proof is found.
+    """Return whether a graph follows from the facts of a reasoner; False if no proof is found.
 
-    Tried are, in this order: to find the graph in what the rules derive; to prove its facts and axioms one by
-    one; the same with names for what must exist. The reasoner is the same before and after. An `effort`
-    bounds the search, and may trace it: then the first way, which leaves no trace, is left out.
+    Three methods are tried in this order: match the graph with the conclusions of the rules; prove its facts
+    and axioms one by one; do so with names for values that must exist. The reasoner is restored afterwards.
+    An `effort` bounds the search, and may trace it. The first method cannot be traced and is then left out.
     """
-    graph = [(_apart(s), p, _apart(o)) for s, p, o in dict.fromkeys(graph)]
+    graph = [(_rename_blank_node(s), p, _rename_blank_node(o)) for s, p, o in dict.fromkeys(graph)]
     is_traced = effort is not None and effort.is_traced
     if not is_traced and _Search(reasoner, graph).matches(graph):
         return True
-    stated = _Stated(reasoner, graph, effort)
+    goal = _GoalGraph(reasoner, graph, effort)
     try:
-        if stated.follows():
+        if goal.follows():
             return True
-        if effort is not None and not effort.anew:  # names for all that must exist are too many to try
+        if (
+            effort is not None and not effort.allow_recompute
+        ):  # too expensive with names for all values that must exist
             return False
-        return stated.prover.with_witnesses(stated.individuals(), stated.follows)
+        return goal.prover.with_witnesses(goal.individuals(), goal.follows)
     except Unreadable:
         return False
 
 
-def _apart(term: Term) -> Term:
-    """A blank node's label is its graph's own: the same one in the reasoner is another node's."""
+def _rename_blank_node(term: Term) -> Term:
+    """Rename a blank node, because its label may be that of another node in the reasoner."""
     return f"_:wanted.{term[2:]}" if term.startswith("_:") else term
 
 
 def contradictory(reasoner: Reasoner) -> bool:
-    """Whether names for what must exist show a contradiction in a graph in which the rules find none."""
+    """Return whether naming the values that must exist leads to a contradiction the rules do not find."""
     return Prover(reasoner).with_witnesses((), lambda: False)
 
 
-class _Stated:
-    """A graph read as axioms and facts."""
+class _GoalGraph:
+    """The graph to prove, read as axioms and facts."""
 
     def __init__(self, reasoner: Reasoner, graph: Sequence[Triple], effort: Effort | None) -> None:
         self.prover = Prover(reasoner, effort)
         self._facts = Facts(dict.fromkeys(graph))
         self._reader = Reader(self._facts.match)
-        self._axioms = Axioms(self.prover, self._reader)
+        self._axioms = AxiomProver(self.prover, self._reader)
         self._search = _Search(reasoner, graph, self.prover, self._reader)
         self._reasoner = reasoner
 
     def follows(self) -> bool:
-        """Whether all of it is proved. Raises Unreadable."""
+        """Return whether the whole graph is proved. Raises Unreadable."""
         for s, p, _ in self._facts.facts:
             if p in _PARTS and not is_named(s):
-                self._reader.expression(s)  # what cannot be read must not pass for something that there is
+                self._reader.expression(
+                    s
+                )  # raises for invalid expressions, which must not count as existing nodes
         search: list[Triple] = []
-        says_more = any(not self._is_declaration(triple) for triple in self._facts.facts)
+        has_axioms = any(not self._is_declaration(triple) for triple in self._facts.facts)
         for triple in self._facts.facts:
             if self._is_part(triple) or (
-                self._is_declaration(triple) and self._is_declared(triple, says_more)
+                self._is_declaration(triple) and self._is_declared(triple, has_axioms)
             ):
                 continue
             proved = self._axiom(triple)
@@ -110,7 +114,7 @@ class _Stated:
         return self._search.matches(search)
 
     def individuals(self) -> list[Term]:
-        """The named individuals that the graph speaks of."""
+        """Return the named individuals of the graph."""
         facts = [triple for triple in self._facts.facts if not is_schema(triple)]
         terms = dict.fromkeys(term for s, p, o in facts for term in ((s,) if p == TYPE else (s, o)))
         return [term for term in terms if is_named(term)]
@@ -118,15 +122,15 @@ class _Stated:
     def _is_declaration(self, triple: Triple) -> bool:
         return triple[1] == TYPE and triple[2] in _DECLARED
 
-    def _is_declared(self, triple: Triple, says_more: bool) -> bool:
-        """A declaration says nothing (Direct Semantics); by itself, without axioms, it must be true."""
+    def _is_declared(self, triple: Triple, has_axioms: bool) -> bool:
+        """Return whether a declaration holds. With other axioms it is always true (Direct Semantics)."""
         s, _, o = triple
         if o == iri("owl:Ontology") or (self._is_structure(s) and self._is_used(s)):
             return True
-        return says_more or self._reasoner.holds(triple) or self._axioms.is_used_as(s, o)
+        return has_axioms or self._reasoner.holds(triple) or self._axioms.is_used_as(s, o)
 
     def _is_part(self, triple: Triple) -> bool:
-        """Whether a triple is told with the axiom or expression that it is a part of."""
+        """Return whether a triple is part of an axiom or expression."""
         s, p, _ = triple
         if p in (FIRST, REST):
             return self._is_structure(s)
@@ -138,7 +142,7 @@ class _Stated:
         return is_part and self._is_structure(s) and self._is_used(s)
 
     def _is_used(self, node: Term) -> bool:
-        """Whether an expression is a part of anything; that such a class exists is another claim."""
+        """Return whether an expression is used. Otherwise the graph states that such a class exists."""
         if next(iter(self._facts.match(None, None, node)), None) is not None:
             return True
         return any(
@@ -146,7 +150,7 @@ class _Stated:
         )
 
     def _is_structure(self, node: Term) -> bool:
-        """Whether a blank node is an expression, a list or an axiom, not an individual."""
+        """Return whether a blank node is an expression, list or axiom, and not an individual."""
         if is_named(node) or is_literal(node):
             return False
         predicates = {p for _, p, _ in self._facts.match(node)}
@@ -158,11 +162,11 @@ class _Stated:
         return (s, p, o) in self._facts.facts
 
     def _axiom(self, triple: Triple) -> bool | None:
-        """Whether an axiom is proved; None if the triple is none. Raises Unreadable."""
+        """Return whether an axiom is proved; None if the triple is not an axiom. Raises Unreadable."""
         s, p, o = triple
         axioms = self._axioms
         if p == TYPE and o in _STATED_BY and not is_named(s):
-            return self._stated(s, _STATED_BY[o])
+            return self._node_axiom(s, _STATED_BY[o])
         is_open = not is_named(s) and not self._is_structure(s)
         if is_open or (p != TYPE and self._reasoner.holds(triple)):
             return None
@@ -174,7 +178,7 @@ class _Stated:
             return self.prover.holds(triple) or axioms.characteristics[o](self._reader.role(s))
         return None
 
-    def _stated(self, node: Term, kind: str) -> bool:
+    def _node_axiom(self, node: Term, kind: str) -> bool:
         if kind == "never":
             source = self._one(node, "owl:sourceIndividual")
             prop = self._one(node, "owl:assertionProperty")
@@ -201,7 +205,7 @@ class _Stated:
 
 
 class _Search:
-    """Looks for what the blank nodes of a graph may stand for."""
+    """Searches terms for the blank nodes of a graph."""
 
     def __init__(
         self,
@@ -215,11 +219,11 @@ class _Search:
         self._reader = reader
 
     def matches(self, wanted: Sequence[Triple]) -> bool:
-        """Whether all of some triples hold for one choice."""
+        """Return whether all of some triples hold for one choice."""
         return self._from({}, list(wanted))
 
     def _from(self, chosen: Choice, wanted: list[Triple]) -> bool:
-        """The triples with the fewest blank nodes still open come first."""
+        """Search the remaining triples, starting with those that have the fewest open blank nodes."""
         if not wanted:
             return True
         at = min(range(len(wanted)), key=lambda i: (self._open(wanted[i], chosen), wanted[i][1] == TYPE))
@@ -251,27 +255,27 @@ class _Search:
         for triple in self._candidates(s, p, o):
             found = True
             extended = dict(chosen)
-            pairs = ((word, term) for word, term in zip(wanted, triple, strict=True))
+            pairs = zip(wanted, triple, strict=True)
             if all(
-                extended.setdefault(word, term) == term for word, term in pairs if self._is_open(word, chosen)
+                extended.setdefault(node, term) == term for node, term in pairs if self._is_open(node, chosen)
             ):
                 yield extended
         if not found and self._prover is not None and (s is None) != (o is None) and p is not None:
             yield from self._guesses(wanted, chosen)
 
     def _candidates(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        """Triples of a pattern by the rules; as a list, because proofs change the reasoner meanwhile."""
+        """Return the triples of a pattern. They are copied because proofs change the reasoner."""
         both = chain(self._reasoner.asserted(s, p, o), self._reasoner.inferred(s, p, o))
         return iter(list(both) if self._prover is None else list(islice(both, _CANDIDATES)))
 
     def _guesses(self, wanted: Triple, chosen: Choice) -> Iterator[Choice]:
-        """Every individual in the place of the one open node, each to be proved."""
+        """Try every individual for the only open node."""
         s, p, o = (chosen.get(term, term) for term in wanted)
-        word = s if self._is_open(s, chosen) else o
+        node = s if self._is_open(s, chosen) else o
         for term in list(islice(self._individuals(), _CANDIDATES)):
-            triple = (term, p, o) if word == s else (s, p, term)
+            triple = (term, p, o) if node == s else (s, p, term)
             if self._holds(triple):
-                yield {**chosen, word: term}
+                yield {**chosen, node: term}
 
     def _individuals(self) -> Iterator[Term]:
         return iter(dict.fromkeys(s for s, _, _ in self._reasoner.asserted() if is_named(s)))

@@ -1,4 +1,4 @@
-"""How much is tried for a proof, and what it looked at on the way."""
+"""The limits of a search for a proof, and its trace."""
 
 from __future__ import annotations
 
@@ -10,52 +10,54 @@ from semmap.nodes.kb_node.reasoner.explanations import Triple
 from semmap.nodes.kb_node.reasoner.reasoner import Reasoner
 
 _MOST = 1000
-"""Suppositions in one proof."""
+"""Maximum number of assumptions in one proof."""
 
 
 class Effort:
-    """Bounds a search for a proof; one that is `traced` also keeps what the proof may rest on.
+    """Limits a search for a proof. If `traced`, it also records the facts that the proof may depend on.
 
-    Its seconds are of this thread's clock, so that what is found does not depend on who else is at work.
+    Time is the CPU time of this thread, so that results do not depend on the load of the machine.
     """
 
-    def __init__(self, patience_s: float = inf, *, traced: bool = False, anew: bool = True) -> None:
-        """Unless `anew`, nothing is supposed for which everything would have to be worked out anew."""
-        self.anew = anew
+    def __init__(
+        self, patience_s: float = inf, *, traced: bool = False, allow_recompute: bool = True
+    ) -> None:
+        """Without `allow_recompute`, assumptions that would recompute everything are not tried."""
+        self.allow_recompute = allow_recompute
         self._until_s = time.thread_time() + patience_s
         self._left = _MOST
         self._seen: dict[Triple, None] | None = {} if traced else None
 
-    def begin(self) -> None:
-        """Another proof is looked for, with as many suppositions again."""
+    def reset(self) -> None:
+        """Reset the number of assumptions for another proof."""
         self._left = _MOST
 
     @property
     def is_traced(self) -> bool:
-        """Whether it keeps what it looks at."""
+        """Whether facts are recorded."""
         return self._seen is not None
 
     @property
     def is_over(self) -> bool:
-        """Whether the time is up."""
+        """Whether the time limit is reached."""
         return time.thread_time() >= self._until_s
 
-    def may_suppose(self) -> bool:
-        """Whether one more supposition is allowed."""
+    def may_assume(self) -> bool:
+        """Count one more assumption and return whether it is allowed."""
         self._left -= 1
         return self._left >= 0 and not self.is_over
 
     def note(self, triples: Iterable[Triple]) -> None:
-        """Asserted triples that a proof may rest on."""
+        """Record asserted triples that a proof may depend on."""
         if self._seen is not None:
             self._seen.update(dict.fromkeys(triples))
 
     def note_conclusion(self, reasoner: Reasoner, triple: Triple) -> None:
-        """A conclusion of the rules that a proof may rest on."""
+        """Record the support of a conclusion that a proof may depend on."""
         if self._seen is not None and (found := reasoner.explain(triple)) is not None:
             self.note(found.support)
 
     @property
     def seen(self) -> list[Triple]:
-        """All that was noted, in that order; nothing unless it is traced."""
+        """All recorded triples in order; empty if not traced."""
         return list(self._seen or ())

@@ -1,4 +1,4 @@
-"""Why something follows, or cannot be, where no rule says so: the asserted triples that are enough for it."""
+"""Proofs beyond the rules: why a statement is entailed or excluded, as a set of asserted triples."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from functools import partial
 from semmap.nodes.kb_node.reasoner.entailment.conclusions import entails
 from semmap.nodes.kb_node.reasoner.entailment.effort import Effort
 from semmap.nodes.kb_node.reasoner.entailment.prover import Prover
-from semmap.nodes.kb_node.reasoner.explain.sentences import denial, following
+from semmap.nodes.kb_node.reasoner.explain.sentences import entailment_sentence, refutation_sentence
 from semmap.nodes.kb_node.reasoner.explain.words import Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from semmap.nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
@@ -18,21 +18,21 @@ from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS
 
 _LABEL, _SUB_CLASS_OF = iri("rdfs:label"), iri("rdfs:subClassOf")
 _DENIED = "_:denied"
-"""A node for what is said not to hold."""
+"""The blank node of a negated statement."""
 _NEAR = 2
-"""Steps from what a question names to the facts that may matter."""
+"""Number of steps from the terms of a query to the facts that are used."""
 _FACTS = 2000
-"""Facts that are looked at, at most; with fewer a proof may be missed, but none is wrong."""
+"""Maximum number of facts. With fewer facts proofs may be missed, but no proof is wrong."""
 _SMALL = 5000
-"""Triples that can be worked out anew in a second, for suppositions of the schema."""
+"""Maximum number of triples for assumptions about the schema: recomputing them takes about a second."""
 PATIENCE_S = 2.0
-"""How long a proof is looked for, and then again how long it is made smaller, in time of the processor."""
+"""CPU time limit for the search for a proof, and again for reducing it [s]."""
 
 
 def nearby(reasoner: Reasoner, terms: Sequence[Term]) -> list[Triple]:
-    """The schema with its labels, and the facts within a few steps of some individuals.
+    """Return the schema with its labels, and the facts within a few steps of some individuals.
 
-    Whatever follows from these follows from all.
+    All conclusions from these triples also follow from the whole map.
     """
     schema = [triple for triple in reasoner.asserted() if triple[1] == _LABEL or is_schema(triple)]
     facts: dict[Triple, None] = {}
@@ -55,26 +55,26 @@ def nearby(reasoner: Reasoner, terms: Sequence[Term]) -> list[Triple]:
 def why_entailed(
     reasoner: Reasoner, triple: Triple, *, words: Words | None = None, patience_s: float = PATIENCE_S
 ) -> Explanation | None:
-    """Why a triple follows that no rule derives; None if no proof is found in time. `words` tell of it.
+    """Return why a triple follows that no rule derives; None if no proof is found in time.
 
-    The proof is by refutation, generic individuals and names for what must exist, so it has no steps; its
-    support is minimal unless making it smaller takes too long.
+    The proof uses refutation, generic individuals, and names for values that must exist. So it has no steps.
+    Its support is minimal unless reducing it exceeds the time limit. `words` are used for its text.
     """
     support = _support(reasoner, [triple], patience_s)
     if support is None:
         return None
-    text = following(triple, support, words or reasoner.words)
+    text = entailment_sentence(triple, support, words or reasoner.words)
     return Explanation(conclusion=triple, support=support, steps=(), text=text)
 
 
 def why_excluded(
     reasoner: Reasoner, supposed: Triple, *, words: Words | None = None, patience_s: float = PATIENCE_S
 ) -> Explanation | None:
-    """Why a triple about individuals cannot hold although no rule contradicts it; None if no proof is found.
+    """Return why a triple about individuals cannot hold although no rule contradicts it; None without proof.
 
-    Its contrary is proved, as `why_entailed` proves; what comes back is as `refutation.refute` has it.
+    Proves its negation as `why_entailed` does. The result has the form of `refutation.refute`.
     """
-    support = None if is_schema(supposed) else _support(reasoner, _contrary(supposed), patience_s)
+    support = None if is_schema(supposed) else _support(reasoner, _negation(supposed), patience_s)
     if support is None:
         return None
     s, p, o = supposed
@@ -82,13 +82,13 @@ def why_excluded(
         conclusion=(s, DIFFERENT_FROM, o) if p == SAME_AS else None,
         support=support,
         steps=(),
-        text=denial(supposed, (*support, supposed), words or reasoner.words),
+        text=refutation_sentence(supposed, (*support, supposed), words or reasoner.words),
         supposed=supposed,
     )
 
 
-def _contrary(triple: Triple) -> list[Triple]:
-    """A graph that says that a triple about individuals does not hold."""
+def _negation(triple: Triple) -> list[Triple]:
+    """Return a graph that states the negation of a triple about individuals."""
     s, p, o = triple
     if p == TYPE:
         return [(s, TYPE, _DENIED), (_DENIED, iri("owl:complementOf"), o)]
@@ -103,12 +103,12 @@ def _contrary(triple: Triple) -> list[Triple]:
 
 
 def _support(reasoner: Reasoner, goal: Sequence[Triple], patience_s: float) -> tuple[Triple, ...] | None:
-    """The asserted triples from which a graph follows, as few as are found in time; None without a proof."""
-    anew = len(reasoner) <= _SMALL
-    if not entails(reasoner, goal, Effort(patience_s, anew=anew)):
+    """Return asserted triples that entail a graph, reduced within the time limit; None without a proof."""
+    allow_recompute = len(reasoner) <= _SMALL
+    if not entails(reasoner, goal, Effort(patience_s, allow_recompute=allow_recompute)):
         return None
     known = set(reasoner.asserted())
-    effort = Effort(patience_s, traced=True, anew=anew)
+    effort = Effort(patience_s, traced=True, allow_recompute=allow_recompute)
     entails(reasoner, goal, effort)
     support = [one for one in effort.seen if one in known]
     if not _suffice(support, goal):
@@ -117,30 +117,30 @@ def _support(reasoner: Reasoner, goal: Sequence[Triple], patience_s: float) -> t
 
 
 def empty_classes(reasoner: Reasoner, classes: Iterable[Term], patience_s: float) -> Iterator[Explanation]:
-    """Why nothing can be of some classes, although the rules allow it, because of what must exist for it.
+    """Yield why classes are unsatisfiable because of values that their members must have.
 
-    Each that is found, for so many seconds of the processor's time.
+    The rules do not find these. The search ends after `patience_s` seconds of CPU time.
     """
     until_s = time.process_time() + patience_s
     known = set(reasoner.asserted())
-    prover = Prover(reasoner, Effort(anew=False))
+    prover = Prover(reasoner, Effort(allow_recompute=False))
     for cls in classes:
         if time.process_time() > until_s:
             return
-        if not prover.nothing_can_be(cls):
+        if not prover.is_unsatisfiable(cls):
             continue
-        traced = Effort(traced=True, anew=False)
-        Prover(reasoner, traced).nothing_can_be(cls)
+        traced = Effort(traced=True, allow_recompute=False)
+        Prover(reasoner, traced).is_unsatisfiable(cls)
         support = [one for one in traced.seen if one in known]
         support = _shrunk(support, partial(_suffices_for_empty, cls), time.thread_time() + PATIENCE_S)
         goal = (cls, _SUB_CLASS_OF, NOTHING)
-        text = following(goal, support, reasoner.words)
+        text = entailment_sentence(goal, support, reasoner.words)
         yield Explanation(conclusion=goal, support=tuple(support), steps=(), text=text)
 
 
 def _suffices_for_empty(cls: Term, triples: Sequence[Triple]) -> bool:
     try:
-        return Prover(Reasoner(triples), Effort(anew=False)).nothing_can_be(cls)
+        return Prover(Reasoner(triples), Effort(allow_recompute=False)).is_unsatisfiable(cls)
     except Inconsistent:
         return False
 
@@ -155,9 +155,9 @@ def _suffice(triples: Sequence[Triple], goal: Sequence[Triple]) -> bool:
 def _shrunk(
     triples: list[Triple], suffice: Callable[[Sequence[Triple]], bool], until_s: float
 ) -> list[Triple]:
-    """Fewer triples that suffice, in their order: first large parts are left out, then single triples.
+    """Return fewer triples that suffice: first large parts are left out, then single triples.
 
-    `until_s` is a time of this thread's clock, so that what is told does not depend on who else is at work.
+    `until_s` is CPU time of this thread, so that results do not depend on the load of the machine.
     """
     size = len(triples)
     while size > 1 and time.thread_time() < until_s:

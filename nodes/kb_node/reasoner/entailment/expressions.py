@@ -1,4 +1,4 @@
-"""Class expressions as values: read from the RDF that says them, negated, and written as RDF again."""
+"""Class expressions as values: read from RDF, negated, and written as RDF."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.terms import FIRST, NIL, REST, THING, TYPE, iri, is_named, literal
 
 Match = Callable[[Term | None, Term | None, Term | None], Iterable[Triple]]
-"""The triples of a pattern, in which None is a wildcard."""
+"""Returns the triples that match a pattern, in which None is a wildcard."""
 
 
 @dataclass(frozen=True)
@@ -21,34 +21,34 @@ class Role:
     backwards: bool = False
 
     def edge(self, x: Term, y: Term) -> Triple:
-        """That the role leads from x to y."""
+        """Return the triple that states that the role leads from x to y."""
         return (y, self.property, x) if self.backwards else (x, self.property, y)
 
 
 @dataclass(frozen=True)
 class Named:
-    """A class or datatype by its name."""
+    """A named class or datatype."""
 
     term: Term
 
 
 @dataclass(frozen=True)
 class Not:
-    """What is not in a class."""
+    """The complement of a class."""
 
     part: Expression
 
 
 @dataclass(frozen=True)
 class And:
-    """What is in all of some classes."""
+    """The intersection of classes."""
 
     parts: tuple[Expression, ...]
 
 
 @dataclass(frozen=True)
 class Or:
-    """What is in at least one of some classes."""
+    """The union of classes."""
 
     parts: tuple[Expression, ...]
 
@@ -62,7 +62,7 @@ class OneOf:
 
 @dataclass(frozen=True)
 class Only:
-    """What a role leads from to members of a class only (allValuesFrom)."""
+    """The individuals whose values of a role are all in a class (allValuesFrom)."""
 
     role: Role
     filler: Expression
@@ -70,7 +70,7 @@ class Only:
 
 @dataclass(frozen=True)
 class AtLeast:
-    """What a role leads from to `number` members of a class or more; someValuesFrom is one or more."""
+    """The individuals with at least `number` values of a role in a class (someValuesFrom: 1)."""
 
     number: int
     role: Role
@@ -79,7 +79,7 @@ class AtLeast:
 
 @dataclass(frozen=True)
 class AtMost:
-    """What a role leads from to `number` members of a class or fewer."""
+    """The individuals with at most `number` values of a role in a class."""
 
     number: int
     role: Role
@@ -88,7 +88,7 @@ class AtMost:
 
 @dataclass(frozen=True)
 class Has:
-    """What a role leads from to one individual or literal (hasValue)."""
+    """The individuals with a given value of a role (hasValue)."""
 
     role: Role
     value: Term
@@ -96,7 +96,7 @@ class Has:
 
 @dataclass(frozen=True)
 class Self:
-    """What a role leads from to itself (hasSelf)."""
+    """The individuals that are related to themselves (hasSelf)."""
 
     role: Role
 
@@ -107,11 +107,11 @@ ANYTHING = Named(THING)
 
 
 class Unreadable(Exception):
-    """A node is no class expression of OWL 2, or one with facets of datatypes."""
+    """A node is not an OWL 2 class expression, or it restricts a datatype by facets."""
 
 
 def negated(expression: Expression) -> Expression:
-    """The complement, with the negation as far inside as it goes."""
+    """Return the complement in negation normal form."""
     match expression:
         case Not(part):
             return part
@@ -132,13 +132,13 @@ def negated(expression: Expression) -> Expression:
 
 
 class Reader:
-    """Reads expressions out of a graph."""
+    """Reads expressions from a graph."""
 
     def __init__(self, match: Match) -> None:
         self._match = match
 
     def expression(self, node: Term) -> Expression:
-        """What a node of the graph stands for. Raises Unreadable."""
+        """Return the expression of a node. Raises Unreadable."""
         if is_named(node):
             return Named(node)
         found = next(self.definitions(node), None)
@@ -147,7 +147,7 @@ class Reader:
         return found
 
     def definitions(self, node: Term) -> Iterator[Expression]:
-        """The expressions that a node, with a name or without, is defined as. Raises Unreadable."""
+        """Yield the expressions that define a named or anonymous node. Raises Unreadable."""
         for name, build in (("owl:intersectionOf", And), ("owl:unionOf", Or)):
             for head in self._objects(node, name):
                 yield build(tuple(map(self.expression, self.members(head))))
@@ -160,7 +160,7 @@ class Reader:
             yield from self._restrictions(node, self.role(prop))
 
     def role(self, node: Term) -> Role:
-        """A property or the inverse of one. Raises Unreadable."""
+        """Return a property or the inverse of one. Raises Unreadable."""
         if is_named(node):
             return Role(node)
         for inverse in self._objects(node, "owl:inverseOf"):
@@ -169,7 +169,7 @@ class Reader:
         raise Unreadable(node)
 
     def members(self, head: Term) -> list[Term]:
-        """The members of a list. Raises Unreadable for one that is cut off, branches or runs in a circle."""
+        """Return the members of a list. Raises Unreadable for an incomplete, branching or cyclic list."""
         found: list[Term] = []
         seen: set[Term] = set()
         while head != NIL:
@@ -225,17 +225,17 @@ def _number(term: Term) -> int:
 
 
 class Writer:
-    """Writes expressions as RDF, with nodes that no graph has."""
+    """Writes expressions as RDF with fresh blank nodes."""
 
     def __init__(self) -> None:
         self._numbers = count()
 
     def fresh(self) -> Term:
-        """A node that is nowhere yet."""
+        """Return a fresh blank node."""
         return f"_:supposed.{next(self._numbers)}"
 
     def write(self, expression: Expression, into: list[Triple]) -> Term:
-        """Add the triples of an expression; the node that stands for it. Raises Unreadable for hasSelf."""
+        """Append the triples of an expression and return its node. Raises Unreadable for hasSelf."""
         if isinstance(expression, Named):
             return expression.term
         node = self.fresh()

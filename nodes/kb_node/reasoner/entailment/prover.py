@@ -1,9 +1,11 @@
-"""Whether facts follow: by the rules first, then by refutation and by what generic individuals must be.
+"""Entailment of facts: by the rules first, then by refutation and with generic individuals.
 
-Every method answers True only for what holds in all models (OWL 2 RDF-Based Semantics), and False when it has
-found no proof. Three arguments carry all of it. *Refutation*: what contradicts the graph is false in all its
-models. *Generalisation*: what follows for an individual that is nowhere mentioned holds for every one.
-*Witnesses*: to name what must exist adds nothing but the name.
+Every method returns True only if the statement holds in all models (OWL 2 RDF-Based Semantics), and False if
+it found no proof. It uses three arguments:
+
+- *Refutation*: a statement that contradicts the graph is false in all its models.
+- *Generalisation*: a conclusion about a fresh individual holds for all individuals.
+- *Witnesses*: naming a value that must exist adds nothing but the name.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ from functools import cached_property
 from itertools import combinations, islice
 
 from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.entailment.assumptions import WIDEST, Alternatives, membership_alternatives
 from semmap.nodes.kb_node.reasoner.entailment.effort import Effort
 from semmap.nodes.kb_node.reasoner.entailment.expressions import (
     And,
@@ -33,7 +36,6 @@ from semmap.nodes.kb_node.reasoner.entailment.expressions import (
     Writer,
     negated,
 )
-from semmap.nodes.kb_node.reasoner.entailment.suppositions import WIDEST, Alternatives, given
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -51,15 +53,15 @@ from semmap.nodes.kb_node.reasoner.terms import (
 )
 
 _DEEPEST = 6
-"""Expressions, definitions and case distinctions one inside the other."""
+"""Maximum nesting of expressions, definitions and case distinctions."""
 _INDIVIDUALS = 300
-"""Individuals for whom witnesses are named."""
+"""Maximum number of individuals for which witnesses are named."""
 _TOPS = (iri("owl:topObjectProperty"), iri("owl:topDataProperty"))
 _BOTTOMS = (iri("owl:bottomObjectProperty"), iri("owl:bottomDataProperty"))
 
 
 class Prover:
-    """Proves facts about the graph of a reasoner, which is as before after every question."""
+    """Proves facts about the graph of a reasoner. Every method restores the reasoner."""
 
     def __init__(self, reasoner: Reasoner, effort: Effort | None = None) -> None:
         self._reasoner = reasoner
@@ -71,23 +73,23 @@ class Prover:
         self.reader = Reader(self.asserted)
         self.fresh = self._writer.fresh
 
-    # What is known
+    # Known facts
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> list[Triple]:
-        """The asserted triples of a pattern; as a list, because proofs change the reasoner meanwhile."""
+        """Return the asserted triples of a pattern. They are copied because proofs change the reasoner."""
         found = list(self._reasoner.asserted(s, p, o))
         self._effort.note(found)
         return found
 
     def holds(self, triple: Triple) -> bool:
-        """Whether a triple follows by the rules."""
+        """Return whether a triple follows by the rules."""
         if not self._reasoner.holds(triple):
             return False
         self._effort.note_conclusion(self._reasoner, triple)
         return True
 
     def _known(self, s: Term | None, p: Term | None, o: Term | None, most: int | None = None) -> list[Triple]:
-        """The triples of a pattern that are asserted or follow, of each at most so many."""
+        """Return the asserted and the inferred triples of a pattern, at most `most` of each."""
         asserted = list(islice(self._reasoner.asserted(s, p, o), most))
         inferred = list(islice(self._reasoner.inferred(s, p, o), most))
         self._effort.note(asserted)
@@ -95,45 +97,45 @@ class Prover:
             self._effort.note_conclusion(self._reasoner, triple)
         return asserted + inferred
 
-    # Suppositions
+    # Assumptions
 
-    def refutes(self, *supposed: Triple) -> bool:
-        """Whether some triples contradict the graph, so that not all of them can hold."""
-        return self.follows(supposed, lambda: False)
+    def refutes(self, *assumed: Triple) -> bool:
+        """Return whether some triples contradict the graph."""
+        return self.follows(assumed, lambda: False)
 
-    def follows(self, supposed: Iterable[Triple], goal: Callable[[], bool]) -> bool:
-        """Whether a goal is reached supposing some triples. From a contradiction everything follows."""
-        supposed = [triple for triple in supposed if not is_literal(triple[0])]  # to suppose less is sound
-        facts = [triple for triple in supposed if not is_schema(triple)]
+    def follows(self, assumed: Iterable[Triple], goal: Callable[[], bool]) -> bool:
+        """Return whether a goal is reached if triples are assumed. A contradiction entails every goal."""
+        assumed = [triple for triple in assumed if not is_literal(triple[0])]  # fewer assumptions are sound
+        facts = [triple for triple in assumed if not is_schema(triple)]
         ends = (term for s, p, o in facts for term in ((s,) if p == TYPE or is_literal(o) else (s, o)))
         things = dict.fromkeys(ends)
-        supposed += [(x, TYPE, THING) for x in things]
-        supposed += [(x, p, x) for p in self._reflexive() for x in things]
-        if any(p in _BOTTOMS for _, p, _ in supposed):
+        assumed += [(x, TYPE, THING) for x in things]
+        assumed += [(x, p, x) for p in self._reflexive() for x in things]
+        if any(p in _BOTTOMS for _, p, _ in assumed):
             return True
-        if not self._effort.may_suppose():
+        if not self._effort.may_assume():
             return False
         try:
-            with self._reasoner.supposing(supposed, anew=self._effort.anew):
+            with self._reasoner.assuming(assumed, allow_recompute=self._effort.allow_recompute):
                 return goal()
         except Inconsistent as found:
             self._effort.note(found.explanation.support)
             return True
-        except NotCompilable:  # and that is not wanted: no proof is found
+        except NotCompilable:  # `allow_recompute` is False: no proof is found
             return False
 
     def follows_from_each(self, alternatives: Alternatives, goal: Callable[[], bool]) -> bool:
-        """Whether a goal is reached whichever of the alternatives holds."""
-        return all(self.follows(supposed, goal) for supposed in alternatives)
+        """Return whether a goal is reached with each of the alternatives."""
+        return all(self.follows(assumed, goal) for assumed in alternatives)
 
-    def given(self, x: Term, expression: Expression) -> Alternatives:
-        """What it says of x to be a member of a class."""
-        return given(x, expression, self._writer)
+    def membership_alternatives(self, x: Term, expression: Expression) -> Alternatives:
+        """Return the alternatives that x is a member of a class."""
+        return membership_alternatives(x, expression, self._writer)
 
     # Facts
 
     def fact(self, triple: Triple) -> bool:
-        """Whether a triple about individuals follows."""
+        """Return whether a triple about individuals follows."""
         s, p, o = triple
         if self.holds(triple) or p in _TOPS:
             return True
@@ -149,7 +151,7 @@ class Prover:
         return s == o and self._is_reflexive(s, p)
 
     def different(self, x: Term, y: Term) -> bool:
-        """Whether two are different: literals of two values, or whose being the same is a contradiction."""
+        """Return whether two terms are different: literals by value, others also by refutation."""
         if is_literal(x) and is_literal(y):
             one, other = datatypes.value(x), datatypes.value(y)
             return one is not None and other is not None and one != other
@@ -158,7 +160,7 @@ class Prover:
         return self.holds((x, DIFFERENT_FROM, y)) or self.refutes((x, SAME_AS, y))
 
     def member(self, x: Term, expression: Expression) -> bool:
-        """Whether x is in a class."""
+        """Return whether x is in a class."""
         if self._depth >= _DEEPEST or self._effort.is_over:
             return False
         self._depth += 1
@@ -180,7 +182,9 @@ class Prover:
             case Or(parts):
                 if any(self.member(x, part) for part in parts):
                     return True
-                return self.follows_from_each(self.given(x, negated(expression)), lambda: False)
+                return self.follows_from_each(
+                    self.membership_alternatives(x, negated(expression)), lambda: False
+                )
             case OneOf(terms):
                 return any(self.holds((x, SAME_AS, term)) for term in terms)
             case Has(role, value):
@@ -188,15 +192,17 @@ class Prover:
             case Self(role):
                 return self._edge(role, x, x)
             case Only(role, filler):
-                y = self.fresh()  # generalisation: any value of x
+                y = self.fresh()  # generalisation: stands for any value of x
                 return self.follows([role.edge(x, y)], lambda: self.member(y, filler))
             case AtLeast(number, role, filler):
                 return self._has_values(x, number, role, filler)
             case Not() | AtMost():
-                return self.follows_from_each(self.given(x, negated(expression)), lambda: False)
+                return self.follows_from_each(
+                    self.membership_alternatives(x, negated(expression)), lambda: False
+                )
 
     def _in_named(self, x: Term, cls: Term) -> bool:
-        """By the rules, or by a definition that is a subclass: what is in that is in the class, too."""
+        """Return whether x is in a named class, by the rules or by a sufficient condition of the class."""
         if cls == THING or self.holds((x, TYPE, cls)):
             return True
         if datatypes.is_datatype(cls):
@@ -212,11 +218,11 @@ class Prover:
     def _has_datatype(self, x: Term, datatype: Term) -> bool:
         if is_literal(x):
             return datatypes.contains(datatype, x)
-        held = [known for known in datatypes.known() if self.holds((x, TYPE, known))]
-        return datatypes.includes_common(datatype, held)
+        inferred = [known for known in datatypes.known() if self.holds((x, TYPE, known))]
+        return datatypes.includes_common(datatype, inferred)
 
     def _sufficient(self, cls: Term) -> Iterator[Expression]:
-        """Expressions whose members are all in a class."""
+        """Yield expressions that are subclasses of a class."""
         nodes = {cls: None}
         for name in ("rdfs:subClassOf", "owl:equivalentClass"):
             nodes.update(dict.fromkeys(s for s, _, _ in self._known(None, iri(name), cls)))
@@ -231,7 +237,7 @@ class Prover:
                 continue
 
     def _has_values(self, x: Term, number: int, role: Role, filler: Expression) -> bool:
-        """So many values that are in a class and differ from one another, or at least one that must exist."""
+        """Return whether x has `number` different values in a class."""
         if number <= 0:
             return True
         found = [y for y in self.values(x, role) if self.member(y, filler)]
@@ -243,7 +249,7 @@ class Prover:
         )
 
     def values(self, x: Term, role: Role) -> list[Term]:
-        """The known values of a role at x, at most as many as are tried."""
+        """Return the known values of a role at x, up to a limit."""
         s, o = (None, x) if role.backwards else (x, None)
         found: dict[Term, None] = {}
         for triple in self._known(s, role.property, o, most=WIDEST):
@@ -255,7 +261,7 @@ class Prover:
         return not is_literal(edge[0]) and self.fact(edge)
 
     def _is_reflexive(self, x: Term, prop: Term) -> bool:
-        """Whether the property, or one below it, relates everything, or all of a class of x, to itself."""
+        """Return whether the property or a subproperty is reflexive, or a class of x implies the relation."""
         below = {prop}
         below.update(s for s, _, _ in self._known(None, iri("rdfs:subPropertyOf"), prop))
         reflexive = iri("owl:ReflexiveProperty")
@@ -270,16 +276,18 @@ class Prover:
     # Cases
 
     def _by_cases(self, x: Term, goal: Expression) -> bool:
-        """Whether x is in a class in each case of a union, or enumeration, that x is known to be in."""
+        """Return whether x is in a class in each case of a union or enumeration that contains x."""
         if self._depth > 2 or is_literal(x):
             return False
         for expression in self._disjunctions(x):
-            if self.follows_from_each(self.given(x, expression), lambda: self.member(x, goal)):
+            if self.follows_from_each(
+                self.membership_alternatives(x, expression), lambda: self.member(x, goal)
+            ):
                 return True
         return False
 
     def _disjunctions(self, x: Term) -> Iterator[Expression]:
-        """The unions and enumerations that x is in, without being known to be in one of their parts."""
+        """Yield the unions and enumerations that contain x, if it is not known which of their parts does."""
         for name in ("owl:unionOf", "owl:oneOf"):
             for node, _, head in self.asserted(None, iri(name), None):
                 if not self.holds((x, TYPE, node)):
@@ -295,7 +303,7 @@ class Prover:
     # Witnesses
 
     def _with_own_witnesses(self, x: Term, goal: Callable[[], bool]) -> bool:
-        """Whether a goal is reached when what must exist for x has names."""
+        """Return whether a goal is reached after naming the values that x must have."""
         if x in self._witnessed or is_literal(x):
             return False
         new = list(self._must_exist([x]))
@@ -308,7 +316,7 @@ class Prover:
             self._witnessed.remove(x)
 
     def with_witnesses(self, mentioned: Iterable[Term], goal: Callable[[], bool]) -> bool:
-        """Whether a goal is reached once what must exist, for two steps, has names."""
+        """Return whether a goal is reached after naming the values that must exist, in two steps."""
         with ExitStack() as stack:
             individuals = list(dict.fromkeys([*self._individuals(), *mentioned]))
             try:
@@ -316,7 +324,9 @@ class Prover:
                     if self._effort.is_over:
                         break
                     new = list(self._must_exist(individuals))
-                    stack.enter_context(self._reasoner.supposing(new, anew=self._effort.anew))
+                    stack.enter_context(
+                        self._reasoner.assuming(new, allow_recompute=self._effort.allow_recompute)
+                    )
                     individuals = [
                         term for term in {s: 0 for t in new for s in (t[0], t[2])} if term[0] != '"'
                     ][:_INDIVIDUALS]
@@ -327,9 +337,9 @@ class Prover:
                 return False
             return goal()
 
-    def nothing_can_be(self, cls: Term) -> bool:
-        """Whether a class is empty in all models: a member with what must exist for it is a contradiction."""
-        self._effort.begin()
+    def is_unsatisfiable(self, cls: Term) -> bool:
+        """Return whether a class is unsatisfiable: a member with its necessary values is a contradiction."""
+        self._effort.reset()
         x = self.fresh()
         return self.follows([(x, TYPE, cls)], lambda: self._has_impossible_witnesses([x], steps=2))
 
@@ -361,24 +371,24 @@ class Prover:
     def _must_exist(
         self, individuals: Sequence[Term], wanted: Sequence[tuple[Term, Expression]] | None = None
     ) -> Iterator[Triple]:
-        """Values of existential restrictions under fresh names, edges to itself, and that all are things."""
+        """Yield fresh values of existential restrictions, reflexive edges, and membership in owl:Thing."""
         wanted = list(self._existential()) if wanted is None else wanted
         reflexive = self._reflexive()
         for x in individuals:
-            if self._effort.is_over:  # fewer suppositions are sound, too
+            if self._effort.is_over:  # fewer assumptions are sound
                 return
             for node, expression in wanted:
                 if (node == THING or self.holds((x, TYPE, node))) and not self._is_met(x, expression):
-                    alternatives = self.given(x, expression)
+                    alternatives = self.membership_alternatives(x, expression)
                     if len(alternatives) == 1:
                         yield from alternatives[0]
             yield from ((x, p, x) for p in reflexive)
             yield (x, TYPE, THING)
 
     def _is_met(self, x: Term, expression: Expression) -> bool:
-        """Whether a known value of x meets a restriction, so that no other need have a name.
+        """Return whether a known value of x meets a restriction, so that no new value is named.
 
-        With another name for a value that is a literal, everything would have to be worked out anew.
+        A new name for a literal would require recomputing everything.
         """
         match expression:
             case AtLeast(1, role, Named(term)):

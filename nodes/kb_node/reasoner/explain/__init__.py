@@ -1,1 +1,1 @@
-"""Why something holds: reasons, a smallest set of asserted triples, and sentences."""
+"""Explanations: the reasons of conclusions, minimal sets of asserted triples, and sentences."""

@@ -1,11 +1,11 @@
-"""Axioms of the TBox as clauses, in words: "every beer is a drink", "nothing has more than one mass"."""
+"""Axioms of the TBox as English clauses: "every beer is a drink", "nothing has more than one mass"."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from semmap.nodes.kb_node.reasoner.explain.words import Verb, Words, article, is_uncountable
+from semmap.nodes.kb_node.reasoner.explain.words import VerbPhrase, Words, article, is_uncountable
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.terms import (
     FIRST,
@@ -26,24 +26,24 @@ _BOUNDS: Final = (
 )  # fmt: skip
 
 
-class Axioms:
-    """Says axioms; anonymous classes and lists are told by what some triples say of them."""
+class AxiomVerbalizer:
+    """Converts axioms to clauses. Anonymous classes and lists are read from the given triples."""
 
     def __init__(self, triples: Sequence[Triple], words: Words) -> None:
         self._words = words
         self._values: dict[tuple[Term, Term], Term] = {}
         for s, p, o in triples:
             self._values.setdefault((s, p), o)
-        told = [triple for triple in triples if triple[1] not in (FIRST, REST)]
-        self._mentioned = {term for s, _, o in told for term in (s, o)}
+        mentions = [triple for triple in triples if triple[1] not in (FIRST, REST)]
+        self._mentioned = {term for s, _, o in mentions for term in (s, o)}
         self._relations: Final[dict[Term, Callable[[Term, Term], str]]] = {
             iri("rdfs:subClassOf"): self._sub_class,
             iri("owl:equivalentClass"): self._same_class,
-            iri("owl:disjointWith"): lambda c, d: f"nothing is both {self.a(c)} and {self.a(d)}",
-            iri("owl:complementOf"): lambda c, d: f"{self.a(c)} is whatever {self._denied(d)}",
-            iri("owl:intersectionOf"): lambda c, head: f"{self.a(c)} is whatever {self._all_of(head)}",
-            iri("owl:unionOf"): lambda c, head: f"{self.a(c)} is whatever {self._one_of(head)}",
-            iri("owl:oneOf"): lambda c, head: f"{self.a(c)} is one of {self._names(head)}",
+            iri("owl:disjointWith"): self._disjoint,
+            iri("owl:complementOf"): lambda c, d: self._defined(c, self._negated(d)),
+            iri("owl:intersectionOf"): lambda c, head: self._defined(c, self._all_of(head)),
+            iri("owl:unionOf"): lambda c, head: self._defined(c, self._one_of(head)),
+            iri("owl:oneOf"): lambda c, head: f"{self.member_phrase(c)} is one of {self._names(head)}",
             iri("owl:hasKey"): self._key,
             iri("rdfs:subPropertyOf"): self._sub_property,
             iri("owl:equivalentProperty"): self._same_property,
@@ -56,48 +56,50 @@ class Axioms:
         self._kinds: Final[dict[Term, Callable[[Term], str]]] = {
             iri("owl:FunctionalProperty"): self._functional,
             iri("owl:InverseFunctionalProperty"): self._inverse_functional,
-            iri("owl:IrreflexiveProperty"): lambda p: f"nothing {self.verb(p).says_of('itself')}",
-            iri("owl:ReflexiveProperty"): lambda p: f"everything {self.verb(p).says_of('itself')}",
-            iri("owl:SymmetricProperty"): lambda p: self._turned(p, self.verb(p).says_of("it")),
+            iri("owl:IrreflexiveProperty"): lambda p: f"nothing {self.verb_phrase(p).with_pronoun('itself')}",
+            iri("owl:ReflexiveProperty"): lambda p: (
+                f"everything {self.verb_phrase(p).with_pronoun('itself')}"
+            ),
+            iri("owl:SymmetricProperty"): lambda p: self._reversed(p, self.verb_phrase(p).with_pronoun("it")),
             iri("owl:AsymmetricProperty"): self._asymmetric,
             iri("owl:TransitiveProperty"): lambda p: self._chained([p, p], p),
             iri("owl:AllDifferent"): self._all_different,
             iri("owl:AllDisjointClasses"): self._disjoint_classes,
             iri("owl:AllDisjointProperties"): lambda x: self._never_both(self.members(self._list(x))),
-            iri("owl:Class"): lambda c: f"{self.a(c)} is a class",
+            iri("owl:Class"): lambda c: f"{self.member_phrase(c)} is a class",
         }
 
-    def says(self, triple: Triple) -> str | None:
-        """An axiom as a clause; None for a triple that is no axiom."""
+    def axiom_clause(self, triple: Triple) -> str | None:
+        """Return an axiom as a clause; None if the triple is not an axiom."""
         s, p, o = triple
         if p == TYPE:
             return self._kinds[o](s) if o in self._kinds else None
         return self._relations[p](s, o) if p in self._relations else None
 
     def definition(self, cls: Term) -> str:
-        """What a class with a name is that is a restriction itself."""
-        return f"{self.a(cls)} is whatever {self._restricted(cls, self.get(cls, 'owl:onProperty') or cls)}"
+        """Return the clause that defines a named class which is itself a restriction."""
+        return self._defined(cls, self._restricted(cls, self.get(cls, "owl:onProperty") or cls))
 
     def is_axiom(self, triple: Triple) -> bool:
-        """Whether a triple is an axiom that has a clause."""
+        """Return whether a triple is an axiom that has a clause."""
         _, p, o = triple
         return p in self._relations or (p == TYPE and o in self._kinds)
 
     # Classes
 
-    def a(self, cls: Term) -> str:
-        """A member of a class: "a beer", "something that is on a table"."""
+    def member_phrase(self, cls: Term) -> str:
+        """Return a phrase for a member of a class: "a beer", "something that is on a table"."""
         if is_named(cls):
             special = {THING: "something", NOTHING: "a member of the empty class"}
             return special.get(cls) or article(self._words.cls(cls))
         if is_literal(cls):
             return self._words.name(cls)
-        return f"something that {self.clause(cls)}"
+        return f"something that {self.membership(cls)}"
 
-    def clause(self, cls: Term) -> str:
-        """What is said of a thing by its being in a class: "is a beer", "has affordance drinking"."""
+    def membership(self, cls: Term) -> str:
+        """Return the verb phrase for membership in a class: "is a beer", "has affordance drinking"."""
         if is_named(cls):
-            return f"is {self.a(cls)}"
+            return f"is {self.member_phrase(cls)}"
         if prop := self.get(cls, "owl:onProperty"):
             return self._restricted(cls, prop)
         if head := self.get(cls, "owl:intersectionOf"):
@@ -107,164 +109,172 @@ class Axioms:
         if head := self.get(cls, "owl:oneOf"):
             return f"is one of {self._names(head)}"
         if negated := self.get(cls, "owl:complementOf"):
-            return self._denied(negated)
-        return "is of a class without a name"
+            return self._negated(negated)
+        return "belongs to an anonymous class"
 
     def _restricted(self, cls: Term, prop: Term) -> str:
-        verb = self.verb(prop)
+        verb = self.verb_phrase(prop)
         if filler := self.get(cls, "owl:someValuesFrom"):
             return self._some(prop, filler)
         if filler := self.get(cls, "owl:allValuesFrom"):
-            only = f"only what {self.clause(filler)}"
-            return f"has {only} as {verb.rest}" if verb.kind == "has" else verb.says(only)
+            only = f"only something that {self.membership(filler)}"
+            return f"has {only} as {verb.rest}" if verb.kind == "has" else verb.with_object(only)
         if value := self.get(cls, "owl:hasValue"):
-            return self._words.says(prop, value)
+            return self._words.predicate_phrase(prop, value)
         for name in _BOUNDS:
             if number := self.get(cls, name):
                 kind = self.get(cls, "owl:onClass") or self.get(cls, "owl:onDataRange")
                 text = literal(number).text
                 least = "at least" if "min" in name else "at most"
                 bound = {"0": "no", "1": f"{least} one"}.get(text, f"{least} {text}")
-                return verb.counted(bound, self._noun(kind) if kind else "")
+                return verb.with_count(bound, self._noun(kind) if kind else "")
         return self._some(prop)
 
     def _noun(self, cls: Term) -> str:
-        return self._words.cls(cls) if is_named(cls) else f"thing that {self.clause(cls)}"
+        return self._words.cls(cls) if is_named(cls) else f"thing that {self.membership(cls)}"
 
-    def _denied(self, cls: Term) -> str:
-        return f"is not {self.a(cls)}"
+    def _negated(self, cls: Term) -> str:
+        return f"is not {self.member_phrase(cls)}"
 
     def _all_of(self, head: Term) -> str:
         members = self.members(head)
         if all(map(is_named, members)):
-            return f"is {_listed([self.a(member) for member in members], 'and')}"
-        return _listed([self.clause(member) for member in members], "and")
+            return f"is {_listed([self.member_phrase(member) for member in members], 'and')}"
+        return _listed([self.membership(member) for member in members], "and")
 
     def _one_of(self, head: Term) -> str:
         members = self.members(head)
         if all(map(is_named, members)):
-            return f"is {_listed([self.a(member) for member in members], 'or')}"
-        return _listed([self.clause(member) for member in members], "or")
+            return f"is {_listed([self.member_phrase(member) for member in members], 'or')}"
+        return _listed([self.membership(member) for member in members], "or")
 
     def _sub_class(self, narrow: Term, wide: Term) -> str:
         if wide == NOTHING:
-            return f"nothing is {self.a(narrow)}"
+            return f"nothing is {self.member_phrase(narrow)}"
         if is_named(narrow):
             noun = self._words.cls(narrow)
-            return f"{f'whatever is {noun}' if is_uncountable(noun) else f'every {noun}'} {self.clause(wide)}"
-        return f"whatever {self.clause(narrow)} {self.clause(wide)}"
+            subject = f"everything that is {noun}" if is_uncountable(noun) else f"every {noun}"
+            return f"{subject} {self.membership(wide)}"
+        return f"everything that {self.membership(narrow)} {self.membership(wide)}"
 
     def _same_class(self, one: Term, other: Term) -> str:
         if not is_named(one):
             one, other = other, one
         if is_named(other):
-            return f"{self._sub_class(one, other)}, and the other way round"
-        return f"{self.a(one)} is whatever {self.clause(other)}"
+            return f"{self._sub_class(one, other)}, and vice versa"
+        return self._defined(one, self.membership(other))
+
+    def _defined(self, cls: Term, predicate: str) -> str:
+        return f"{self.member_phrase(cls)} is by definition something that {predicate}"
+
+    def _disjoint(self, one: Term, other: Term) -> str:
+        return f"nothing is both {self.member_phrase(one)} and {self.member_phrase(other)}"
 
     def _disjoint_classes(self, axiom: Term) -> str:
-        members = [self.a(member) for member in self._concerned(axiom)]
-        return f"nothing is {'both' if len(members) == 2 else 'two of'} {_listed(members, 'and')}"
+        members = [self.member_phrase(member) for member in self._relevant_members(axiom)]
+        return f"nothing is {'both' if len(members) == 2 else 'more than one of'} {_listed(members, 'and')}"
 
     def _all_different(self, axiom: Term) -> str:
-        members = [self._words.name(member) for member in self._concerned(axiom)]
+        members = [self._words.name(member) for member in self._relevant_members(axiom)]
         return f"{_listed(members, 'and')} are {'' if len(members) == 2 else 'all '}different"
 
-    def _concerned(self, axiom: Term) -> list[Term]:
-        """The members of an axiom's list that the rest of the proof speaks of, or else all of them."""
+    def _relevant_members(self, axiom: Term) -> list[Term]:
+        """Return the members of an axiom's list that occur elsewhere in the proof, or else all members."""
         members = self.members(self._list(axiom))
-        concerned = [member for member in members if member in self._mentioned]
-        return concerned if len(concerned) > 1 else members
+        relevant = [member for member in members if member in self._mentioned]
+        return relevant if len(relevant) > 1 else members
 
     def _key(self, cls: Term, head: Term) -> str:
-        what = _listed([self._shared(prop) for prop in self.members(head)], "and")
-        noun = self._words.cls(cls) if is_named(cls) else self.a(cls)
-        return f"no two things that are each {article(noun)} {what}"
+        shared = _listed([self._shared(prop) for prop in self.members(head)], "and")
+        noun = self._words.cls(cls) if is_named(cls) else self.member_phrase(cls)
+        return f"no two things that are each {article(noun)} {shared}"
 
     # Properties
 
-    def verb(self, prop: Term) -> Verb:
-        """How a property is said."""
-        return self._words.verb(prop)
+    def verb_phrase(self, prop: Term) -> VerbPhrase:
+        """Return the verb phrase of a property."""
+        return self._words.verb_phrase(prop)
 
     def _some(self, prop: Term, filler: Term = THING) -> str:
-        """To have some value: "is on a table", "has a mass"."""
-        verb = self.verb(prop)
+        """Return the verb phrase for some value: "is on a table", "has a mass"."""
+        verb = self.verb_phrase(prop)
         if filler == THING:
-            return f"has {article(verb.rest)}" if verb.kind == "has" else verb.says("something")
+            return f"has {article(verb.rest)}" if verb.kind == "has" else verb.with_object("something")
         if verb.kind == "has":
-            return f"has {article(verb.rest)} that {self.clause(filler)}"
-        return verb.says(self.a(filler))
+            return f"has {article(verb.rest)} that {self.membership(filler)}"
+        return verb.with_object(self.member_phrase(filler))
 
     def _shared(self, prop: Term) -> str:
-        """Of two things: "have the same mass", "are part of the same thing"."""
-        verb = self.verb(prop)
+        """Return the plural phrase for a shared value: "have the same mass", "are part of the same thing"."""
+        verb = self.verb_phrase(prop)
         return f"have the same {verb.rest}" if verb.kind == "has" else f"{verb.plural} the same thing"
 
     def _functional(self, prop: Term) -> str:
-        verb = self.verb(prop)
+        verb = self.verb_phrase(prop)
         if verb.kind == "has":
             return f"nothing has more than one {verb.rest}"
         if self._words.is_data(prop):
-            return f"“{verb.kind} {verb.rest}” has one value at most"
-        return f"nothing {verb.says('more than one thing')}"
+            return f"“{verb.kind} {verb.rest}” has at most one value"
+        return f"nothing {verb.with_object('more than one thing')}"
 
     def _inverse_functional(self, prop: Term) -> str:
         return f"no two things {self._shared(prop)}"
 
     def _asymmetric(self, prop: Term) -> str:
-        verb = self.verb(prop)
+        verb = self.verb_phrase(prop)
         if verb.kind == "has":
-            return self._turned(prop, f"does not have it as {verb.rest}")
-        return self._turned(prop, verb.denies("it"))
+            return self._reversed(prop, f"does not have it as {verb.rest}")
+        return self._reversed(prop, verb.with_negation("it"))
 
-    def _turned(self, prop: Term, said: str) -> str:
-        return f"if one thing {self.verb(prop).says_of('another')}, the other {said}"
+    def _reversed(self, prop: Term, predicate: str) -> str:
+        return f"if one thing {self.verb_phrase(prop).with_pronoun('another')}, the other {predicate}"
 
     def _sub_property(self, narrow: Term, wide: Term) -> str:
-        return f"whatever {self.verb(narrow).says_of('something')} {self.verb(wide).says_of('it')}"
+        one, other = self.verb_phrase(narrow), self.verb_phrase(wide)
+        return f"everything that {one.with_pronoun('something')} {other.with_pronoun('it')}"
 
     def _same_property(self, one: Term, other: Term) -> str:
-        return f"{self._sub_property(one, other)}, and the other way round"
+        return f"{self._sub_property(one, other)}, and vice versa"
 
     def _inverse(self, one: Term, other: Term) -> str:
-        return self._turned(one, self.verb(other).says_of("it"))
+        return self._reversed(one, self.verb_phrase(other).with_pronoun("it"))
 
     def _never_both(self, props: Sequence[Term]) -> str:
         if len(props) == 2:
-            one, other = map(self.verb, props)
-            return f"nothing that {one.says_of('something')} {other.says_of('it')}"
-        ways = _listed([self.verb(prop).says_of("another") for prop in props], "or")
-        return f"one thing never {ways} in more than one of these ways"
+            one, other = map(self.verb_phrase, props)
+            return f"nothing that {one.with_pronoun('something')} {other.with_pronoun('it')}"
+        listed = _listed([self.verb_phrase(prop).with_pronoun("another") for prop in props], "or")
+        return f"one thing never relates to another in more than one of these ways: {listed}"
 
     def _chain(self, prop: Term, head: Term) -> str:
         return self._chained(self.members(head), prop)
 
     def _chained(self, links: Sequence[Term], result: Term) -> str:
-        said = " that ".join(self.verb(link).says_of("something") for link in links)
-        return f"whatever {said} {self.verb(result).says_of('the latter')}"
+        path = " that ".join(self.verb_phrase(link).with_pronoun("something") for link in links)
+        return f"everything that {path} {self.verb_phrase(result).with_pronoun('the latter')}"
 
     def _domain(self, prop: Term, cls: Term) -> str:
-        verb = self.verb(prop)
-        if verb.kind == "is" and self._words.is_data(prop):  # of what is not open, too
-            return f"whatever has a value for “is {verb.rest}” {self.clause(cls)}"
-        return f"whatever {self._some(prop)} {self.clause(cls)}"
+        verb = self.verb_phrase(prop)
+        if verb.kind == "is" and self._words.is_data(prop):  # also for things that are not open
+            return f"everything that has a value for “is {verb.rest}” {self.membership(cls)}"
+        return f"everything that {self._some(prop)} {self.membership(cls)}"
 
     def _range(self, prop: Term, cls: Term) -> str:
-        verb = self.verb(prop)
+        verb = self.verb_phrase(prop)
         if verb.kind == "has":
             same = is_named(cls) and self._words.cls(cls) == verb.rest
-            subject = f"whatever something has as {verb.rest}" if same else f"every {verb.rest}"
-            return f"{subject} {self.clause(cls)}"
-        return f"whatever something {verb.says('').strip()} {self.clause(cls)}"
+            subject = f"everything that something has as {verb.rest}" if same else f"every {verb.rest}"
+            return f"{subject} {self.membership(cls)}"
+        return f"everything that something {verb.with_object('').strip()} {self.membership(cls)}"
 
     # Lists
 
     def get(self, subject: Term, name: str) -> Term | None:
-        """The value of one property of a node."""
+        """Return the value of a property of a node."""
         return self._values.get((subject, iri(name)))
 
     def members(self, head: Term) -> list[Term]:
-        """The members of a list."""
+        """Return the members of an RDF list."""
         found: list[Term] = []
         while head != NIL and (head, FIRST) in self._values and len(found) <= len(self._values):
             found.append(self._values[head, FIRST])
@@ -278,6 +288,6 @@ class Axioms:
         return _listed(list(map(self._words.name, self.members(head))), "and")
 
 
-def _listed(parts: Sequence[str], last: str) -> str:
-    """Parts with commas and a last word between them."""
-    return f"{', '.join(parts[:-1])} {last} {parts[-1]}" if len(parts) > 1 else "".join(parts)
+def _listed(parts: Sequence[str], conjunction: str) -> str:
+    """Join parts with commas, and the last part with a conjunction."""
+    return f"{', '.join(parts[:-1])} {conjunction} {parts[-1]}" if len(parts) > 1 else "".join(parts)

@@ -1,7 +1,7 @@
-"""From triples that are enough for a conclusion to an explanation: a smallest set of them, and the steps.
+"""Explanations from triples that entail a conclusion: a minimal subset of them, and the steps.
 
-Finding it takes many small closures, so it is done once for each *shape*: the same triples with other
-individuals and other numbers in them have the same proof.
+This needs many small closures, so proofs are cached by *shape*: triples that differ only in individuals and
+numbers have the same proof.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from semmap.nodes.kb_node.reasoner import datatypes
-from semmap.nodes.kb_node.reasoner.explain.sentences import sentence
+from semmap.nodes.kb_node.reasoner.explain.sentences import proof_sentence
 from semmap.nodes.kb_node.reasoner.explain.words import Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Step, Term, Triple
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
@@ -18,28 +18,28 @@ from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.reasoner.terms import TYPE, iri, is_literal, is_named, literal
 
 _MOST = 2000
-"""Shapes remembered."""
+"""Number of cached shapes."""
 _FREE_DATATYPES = {iri(name)[1:-1] for name in ("xsd:float", "xsd:double")}
-"""Datatypes whose values differ in nothing but themselves, as far as the memo is concerned."""
+"""Datatypes whose values the cache treats as interchangeable."""
 _MARK = re.compile("\ue000(\\d+)\ue001")
-"""Stands for a term in a sentence that is to be filled in."""
+"""Placeholder for a term in the text of a proof."""
 
 
 class Proof:
-    """A proof, and the terms in it that another proof of the shape has others for."""
+    """A proof, and the terms that can be replaced for another proof of the same shape."""
 
     def __init__(self, explanation: Explanation, terms: tuple[Term, ...], words: Words) -> None:
         self.explanation = explanation
         self.terms = terms
         self._words = words
         self._pattern = _Pattern(explanation, terms)
-        self._text = _pieces(explanation.text, self._pattern, terms, words)
+        self._text = _template(explanation.text, self._pattern, terms, words)
 
     def about(self, terms: Sequence[Term]) -> Explanation:
-        """The same proof about other terms."""
+        """Return the same proof about other terms."""
         goal, support, steps = self._pattern.renamed(dict(zip(self.terms, terms, strict=True)))
         if self._text is None:
-            text = sentence(goal, support, steps, self._words)
+            text = proof_sentence(goal, support, steps, self._words)
         else:
             name = self._words.name
             text = "".join([name(terms[part]) if isinstance(part, int) else part for part in self._text])
@@ -47,32 +47,32 @@ class Proof:
 
 
 class Prover:
-    """Explains, and remembers the shapes it has explained."""
+    """Creates explanations and caches them by shape."""
 
     def __init__(self, words: Words) -> None:
-        """`words` are what terms are called."""
+        """`words` are the words for terms in sentences."""
         self.words = words
         self._proofs: dict[tuple[object, ...], Proof] = {}
 
     def prove(self, triples: Iterable[Triple], goal: Triple | None) -> Explanation:
-        """Explain why `goal` follows from `triples`, or with None why they are inconsistent.
+        """Explain why `goal` follows from `triples`, or if it is None, why they are inconsistent.
 
-        `support` is minimal: without any one of its triples the conclusion does not follow.
+        The support is minimal: if any of its triples is removed, the conclusion does not follow.
 
         Raises:
-            ValueError: it does not follow.
+            ValueError: `goal` does not follow.
         """
         proof, terms = self.proof(triples, goal)
         return proof.explanation if terms == proof.terms else proof.about(terms)
 
     def proof(self, triples: Iterable[Triple], goal: Triple | None) -> tuple[Proof, tuple[Term, ...]]:
-        """The proof of the shape, and the terms that it is now about."""
+        """Return the proof of the shape, and the terms to insert into it."""
         triples = list(triples)
         shape, terms = _shape(triples, goal)
         proof = self._proofs.get(shape)
         if proof is None:
             support, steps = _shrink(triples, goal)
-            text = sentence(goal, support, steps, self.words)
+            text = proof_sentence(goal, support, steps, self.words)
             explanation = Explanation(conclusion=goal, support=support, steps=steps, text=text)
             if len(self._proofs) >= _MOST:
                 self._proofs.clear()
@@ -81,7 +81,7 @@ class Prover:
 
 
 def _shape(triples: Sequence[Triple], goal: Triple | None) -> tuple[tuple[object, ...], tuple[Term, ...]]:
-    """Triples and goal with individuals by number, and the terms that were numbered."""
+    """Return triples and goal with numbers for individuals, and the numbered terms."""
     fixed = {triple[1] for triple in triples} | {o for _, p, o in triples if p == TYPE}
     fixed.update(term for triple in triples if is_schema(triple) for term in triple)
     fixed_values = {datatypes.value(term) for term in fixed if is_literal(term)}
@@ -99,7 +99,7 @@ def _shape(triples: Sequence[Triple], goal: Triple | None) -> tuple[tuple[object
 
 
 def _number(term: Term, numbers: dict[Term, object], fixed: set[datatypes.Value | None]) -> object:
-    """What a term is in a shape: for a literal also its datatype, and which other is of the same value."""
+    """Return the key of a term in a shape. For a literal it includes the datatype and equal literals."""
     if not is_literal(term):
         return len(numbers)
     datatype, value = literal(term).datatype, datatypes.value(term)
@@ -111,7 +111,7 @@ def _number(term: Term, numbers: dict[Term, object], fixed: set[datatypes.Value 
 
 
 class _Pattern:
-    """A proof of which some terms may be others: the facts in it, and which of them that concerns."""
+    """A proof in which some terms can be replaced: its facts, and which of them contain these terms."""
 
     def __init__(self, explanation: Explanation, terms: Iterable[Term]) -> None:
         number: dict[Triple, int] = {}
@@ -137,7 +137,7 @@ class _Pattern:
     def renamed(
         self, names: Mapping[Term, Term]
     ) -> tuple[Triple | None, tuple[Triple, ...], tuple[Step, ...]]:
-        """Goal, support and steps with other terms."""
+        """Return goal, support and steps with other terms."""
         facts, name = self._facts.copy(), names.get
         for i, s, p, o in self._varying:
             facts[i] = (name(s, s), p, name(o, o))
@@ -157,26 +157,26 @@ class _Pattern:
         return None if self._goal is None else facts[self._goal], support, steps
 
 
-def _pieces(text: str, pattern: _Pattern, terms: Sequence[Term], words: Words) -> list[str | int] | None:
-    """The sentence in pieces: text, and the numbers of the terms that are named in between.
+def _template(text: str, pattern: _Pattern, terms: Sequence[Term], words: Words) -> list[str | int] | None:
+    """Return the sentence as text pieces with the numbers of terms between them.
 
-    None when a mark is in the text as it is.
+    Returns None if the text contains a placeholder itself.
     """
     if _MARK.search(text):
         return None
     marks = {term: _mark(term, i) for i, term in enumerate(terms) if _is_free(term)}
-    pieces: list[str | int] = list(_MARK.split(sentence(*pattern.renamed(marks), words)))
+    pieces: list[str | int] = list(_MARK.split(proof_sentence(*pattern.renamed(marks), words)))
     pieces[1::2] = map(int, pieces[1::2])
     return pieces
 
 
 def _is_free(term: Term) -> bool:
-    """Whether another proof of the shape may have another term in its place."""
+    """Return whether a term can be replaced in another proof of the shape."""
     return not is_literal(term) or literal(term).datatype in _FREE_DATATYPES
 
 
 def _mark(term: Term, number: int) -> Term:
-    """A term of the same sort that is spoken as a number between marks."""
+    """Return a placeholder term of the same sort whose name is the number between marks."""
     text = f"\ue000{number}\ue001"
     if is_literal(term):
         return f'"{text}{term[term.rindex(chr(34)) :]}'
@@ -184,7 +184,7 @@ def _mark(term: Term, number: int) -> Term:
 
 
 def _shrink(triples: Sequence[Triple], goal: Triple | None) -> tuple[tuple[Triple, ...], tuple[Step, ...]]:
-    """A minimal set of the triples from which the goal follows, and the steps."""
+    """Return a minimal set of the triples from which the goal follows, and the steps."""
     closure = Closure(triples, mentions=goal or ())
     if not _reached(closure, goal):
         raise ValueError(f"{goal} does not follow")
@@ -203,7 +203,7 @@ def _reached(closure: Closure, goal: Triple | None) -> bool:
 
 
 def _steps(closure: Closure, goal: Triple | None) -> tuple[Step, ...]:
-    """The rule applications below a conclusion, premises first."""
+    """Return the rule applications that lead to a conclusion, premises first."""
     steps: dict[Triple | None, Step] = {}
     pending: list[tuple[Triple | None, bool]] = [(goal, False)]
     while pending:

@@ -1,4 +1,4 @@
-"""What a conclusion rests on, kept for the few conclusions that are stored: derived edges and equalities."""
+"""The reasons of stored conclusions, which are derived edges and equalities."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, Role
 
 
 class Edge(NamedTuple):
-    """An edge is there, and implies a role between its subject and object (None: its own property's)."""
+    """An edge exists and implies a role between its subject and object (None: its own property)."""
 
     edge: int
     role: Role | None = None
 
 
 class Member(NamedTuple):
-    """A node belongs to a class, by its number."""
+    """A node belongs to a class, given by its number."""
 
     node: int
     cls: int
@@ -32,12 +32,12 @@ Claim = Edge | Member | Same
 
 
 def member(node: int, cls: int) -> tuple[Claim, ...]:
-    """That a node belongs to a class, unless that says nothing."""
+    """Return the claim that a node belongs to a class; no claim for the class of everything."""
     return () if cls == ANY else (Member(node, cls),)
 
 
 class Reason:
-    """Claims that together made a derived edge, or a link between two nodes that are the same."""
+    """The claims that together entail a derived edge, or a link between two equal nodes."""
 
     __slots__ = ("alive", "claims", "edge", "link", "order")
 
@@ -49,7 +49,7 @@ class Reason:
         link: tuple[int, int] | None = None,
     ) -> None:
         self.order = order
-        """Later conclusions have greater numbers, and no conclusion rests on a later one."""
+        """Increases with each conclusion. A conclusion never depends on a later one."""
         self.claims = claims
         self.edge = edge
         self.link = link
@@ -57,7 +57,7 @@ class Reason:
 
 
 class Clash(Exception):
-    """A contradiction, and the claims that make it."""
+    """A contradiction, and the claims that cause it."""
 
     def __init__(self, *claims: Claim) -> None:
         super().__init__(claims)

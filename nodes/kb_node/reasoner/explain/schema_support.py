@@ -1,4 +1,4 @@
-"""The asserted triples behind what the schema says, worked out once for each question."""
+"""The asserted triples behind the facts of the schema, with a cache."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 from semmap.nodes.kb_node.reasoner.terms import TYPE, iri
 
 Found = dict[Triple, None]
-"""A set of triples that keeps its order, so that like explanations are found alike."""
+"""An ordered set of triples, so that results are reproducible."""
 _SUB_CLASS_OF = iri("rdfs:subClassOf")
 _K = TypeVar("_K")
 
 
 class SchemaSupport:
-    """Traces what a compiled schema says back to its triples."""
+    """Traces facts of a compiled schema back to its asserted triples."""
 
     def __init__(self, schema: Schema) -> None:
         self._schema = schema
         self._known: dict[tuple[object, ...], Found] = {}
 
     def facts(self, facts: Iterable[Triple]) -> Found:
-        """The asserted triples below facts of the schema's closure."""
-        return union(*(self._once(self._leaves, fact) for fact in facts))
+        """Return the asserted triples from which facts of the schema's closure follow."""
+        return union(*(self._cached(self._leaves, fact) for fact in facts))
 
     def below(self, narrow: int, wide: int) -> Found:
-        """Why one class is a subclass of another; for a nominal, the axiom that mentions it."""
+        """Return why a class is a subclass of another. For a nominal, return the axiom that mentions it."""
         if narrow == wide:
             return {}
         schema = self._schema
@@ -45,37 +45,37 @@ class SchemaSupport:
         return {}
 
     def axiom(self, subject: Term, *names: str) -> Found:
-        """All that the schema's closure says of a subject with some predicates, lists included."""
-        return self._once(self._axiom, (subject, *names))
+        """Return the closure's facts about a subject with the given predicates, including lists."""
+        return self._cached(self._axiom, (subject, *names))
 
     def restriction(self, cls: int) -> Found:
-        """What makes a class a restriction."""
+        """Return the triples that define a class as a restriction."""
         if passed := self._schema.passed_on.get(cls):
             return self.restriction(passed[0])
         return self.axiom(self._schema.classes[cls], *_RESTRICTION)
 
     def chains(self, result: Axioms) -> Found:
-        """The chains that lead to a property, itself twice among them."""
+        """Return the chains that imply a property, including transitivity."""
         transitive = (result.term, TYPE, iri("owl:TransitiveProperty"))
         return self.axiom(result.term, "owl:propertyChainAxiom") | self.facts([transitive])
 
     def transitive(self, prop: int) -> Found:
-        """That a property is transitive, in whichever way that is stated, and all that its steps imply."""
+        """Return the axioms that make a property transitive, and all that its steps imply."""
         implied = chain.from_iterable(self._schema.roles(prop).values())
         return self.chains(self._schema.axioms[prop]) | self.facts(implied)
 
     def about(self, term: Term) -> Found:
-        """The axioms that a class, property or individual may contradict another by."""
-        return self._once(self._about, term)
+        """Return the axioms by which a class, property or individual may contradict another."""
+        return self._cached(self._about, term)
 
     def about_class(self, cls: int) -> Found:
-        """The same for a class by its number, and what makes it a restriction."""
+        """Return `about` for a class by its number, and the triples that define it as a restriction."""
         name, negative = self._schema.classes[cls], self._schema.negatives.get(cls)
         if negative is not None:
             return self.axiom(negative, *_NEGATIVE)
         return self.about(name.strip("{}")) | self.restriction(cls)
 
-    def _once(self, find: Callable[[_K], Found], about: _K) -> Found:
+    def _cached(self, find: Callable[[_K], Found], about: _K) -> Found:
         key = (find.__name__, about)
         found = self._known.get(key)
         if found is None:
@@ -104,7 +104,7 @@ class SchemaSupport:
 
 
 def union(*parts: Found) -> Found:
-    """All triples of some sets."""
+    """Return the union of sets of triples."""
     return {triple: None for part in parts for triple in part}
 
 

@@ -1,8 +1,8 @@
-"""What terms are called in a sentence: classes by their labels, properties as verb phrases.
+"""The words for terms in a sentence: classes by their labels, properties as verb phrases.
 
-Labels are those without a language or in English. A property's label is a verb phrase ("is on", "supports",
-"has color") or a noun ("mass"), which is something that one has. Without a label its name is taken apart:
-`isOn`, `has_color`. Individuals and classes without labels are called by their local names.
+English labels and labels without a language are used. A property's label is a verb phrase ("is on",
+"supports", "has color") or a noun ("mass"), which is used with "has". The name of a property without a label
+is split into words: `isOn`, `has_color`. Individuals and classes without a label keep their local names.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ _HUMPS: Final = re.compile(r"[_\s.-]+|(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][
 _LINKS: Final = frozenset(
     {"of", "in", "on", "at", "to", "by", "from", "with", "for", "near", "inside", "under"}
 )
-"""Words at whose end a name without a verb wants an "is": partOf is "is part of"."""
+"""A name without a verb that ends in one of these words gets an "is": `partOf` is "is part of"."""
 _NO_VERB: Final = ("ss", "us", "is", "as", "os")
-"""Endings in s of words that are no verbs."""
+"""Endings in s of words that are not verbs."""
 _PLAIN_VALUES: Final = frozenset(
     term[1:-1]
     for term in iris(
@@ -32,9 +32,9 @@ _PLAIN_VALUES: Final = frozenset(
         "xsd:nonNegativeInteger xsd:positiveInteger xsd:unsignedInt xsd:unsignedByte xsd:unsignedShort"
     )
 )
-"""Datatypes whose values are told without quotation marks."""
+"""Datatypes whose values are written without quotation marks."""
 _LETTERS: Final = re.compile(r"(?!true$|false$|INF$|NaN$)[^\W\d]|$")
-"""What looks like no number, although its datatype says so."""
+"""Matches text that is not a number although its datatype is numeric."""
 _UNCOUNTABLE: Final = frozenset(
     (
         *("bread", "butter", "cheese", "clothing", "crockery", "cutlery", "equipment", "flour", "food"),
@@ -42,53 +42,53 @@ _UNCOUNTABLE: Final = frozenset(
         *("coordinates", "headphones", "scissors", "stairs", "trousers"),
     )
 )
-"""Nouns that take no article, also as the last word of a label; and so do all in -ware."""
+"""Nouns without an article, also as the last word of a label. All nouns in -ware are uncountable, too."""
 _BOOLEAN: Final = PREFIXES["xsd"] + "boolean"
 
 
-class Verb(NamedTuple):
-    """How a property is said of a subject and an object."""
+class VerbPhrase(NamedTuple):
+    """The verb phrase of a property."""
 
     kind: Literal["is", "has", "does"]
     rest: str
-    """What follows "is" or "has"; for another verb all of it, in the third person."""
+    """The words after "is" or "has". For other verbs the whole phrase, in the third person."""
 
-    def says(self, object_: str) -> str:
-        """What is said of the subject: "is on table1"."""
+    def with_object(self, object_: str) -> str:
+        """Return the phrase with an object: "is on table1"."""
         return f"{self.rest if self.kind == 'does' else f'{self.kind} {self.rest}'} {object_}"
 
-    def denies(self, object_: str) -> str:
-        """The contrary: "does not support table1"."""
+    def with_negation(self, object_: str) -> str:
+        """Return the negated phrase: "does not support table1"."""
         start = {"is": "is not", "has": "does not have", "does": "does not"}[self.kind]
         return f"{start} {base_form(self.rest) if self.kind == 'does' else self.rest} {object_}"
 
-    def says_of(self, object_: str) -> str:
-        """The same with the object as a person or thing, not as a name: "has another as part", "is on it"."""
-        return f"has {object_} as {self.rest}" if self.kind == "has" else self.says(object_)
+    def with_pronoun(self, object_: str) -> str:
+        """Return the phrase with a pronoun as object: "has another as part", "is on it"."""
+        return f"has {object_} as {self.rest}" if self.kind == "has" else self.with_object(object_)
 
-    def counted(self, number: str, kind: str = "") -> str:
-        """With so many objects: "is on at most one table", "has at most one color"."""
+    def with_count(self, number: str, kind: str = "") -> str:
+        """Return the phrase with a number: "is on at most one table", "has at most one color"."""
         if self.kind == "has":
             return f"has {number} {self.rest}" + (f" that is {article(kind)}" if kind else "")
-        return self.says("nothing" if (number, kind) == ("no", "") else f"{number} {kind or 'thing'}")
+        return self.with_object("nothing" if (number, kind) == ("no", "") else f"{number} {kind or 'thing'}")
 
     @property
     def plural(self) -> str:
-        """Of several subjects: "are on", "support", "have"."""
+        """The phrase for several subjects: "are on", "support", "have"."""
         return {"is": f"are {self.rest}", "has": f"have {self.rest}", "does": base_form(self.rest)}[self.kind]
 
 
 class Words:
-    """Labels of a graph, and names where there are none."""
+    """The labels of a graph, with names for terms without labels."""
 
     def __init__(self, labels: Mapping[Term, str], data_properties: frozenset[Term]) -> None:
         self._labels = dict(labels)
         self._data = data_properties
-        self._verbs: dict[Term, Verb] = {}
+        self._verbs: dict[Term, VerbPhrase] = {}
 
     @classmethod
     def of(cls, triples: Iterable[Triple]) -> Words:
-        """The words that a graph gives."""
+        """Read the labels of a graph."""
         labels: dict[Term, str] = {}
         data: set[Term] = set()
         for s, p, o in triples:
@@ -100,13 +100,13 @@ class Words:
                 data.add(s)
         return cls(labels, frozenset(data))
 
-    def tell_apart(self, names: Mapping[Term, str]) -> None:
-        """Call those of some classes that would be called alike by these names of theirs instead."""
-        alike = Counter(map(self.cls, names))
-        self._labels.update([(c, name) for c, name in names.items() if alike[self.cls(c)] > 1])
+    def disambiguate(self, names: Mapping[Term, str]) -> None:
+        """Use these names for classes whose labels are equal."""
+        counts = Counter(map(self.cls, names))
+        self._labels.update([(c, name) for c, name in names.items() if counts[self.cls(c)] > 1])
 
     def name(self, term: Term) -> str:
-        """An individual or a value."""
+        """Return the name of an individual, or a value."""
         if is_literal(term):
             text, datatype, _ = literal(term)
             is_plain = datatype in _PLAIN_VALUES and not _LETTERS.match(text)
@@ -114,41 +114,43 @@ class Words:
         return local_name(term) if is_named(term) else term[2:]
 
     def cls(self, term: Term) -> str:
-        """A class."""
+        """Return the label of a class, or its local name."""
         return self._labels.get(term) or local_name(term)
 
-    def verb(self, prop: Term) -> Verb:
-        """A property."""
+    def verb_phrase(self, prop: Term) -> VerbPhrase:
+        """Return the verb phrase of a property."""
         found = self._verbs.get(prop)
         if found is None:
             label = self._labels.get(prop)
-            found = self._verbs[prop] = _verb(label or _taken_apart(local_name(prop)), prop in self._data)
+            found = self._verbs[prop] = _verb(label or _split_name(local_name(prop)), prop in self._data)
         return found
 
-    def says(self, prop: Term, object_: Term, *, denied: bool = False, itself: bool = False) -> str:
-        """What a triple says of its subject: "is on table1"; true and false as yes and no: "is not open"."""
-        verb = self.verb(prop)
+    def predicate_phrase(
+        self, prop: Term, object_: Term, *, negated: bool = False, reflexive: bool = False
+    ) -> str:
+        """Return the predicate of a sentence: "is on table1", or for false "is not open"."""
+        verb = self.verb_phrase(prop)
         truth = _truth(object_)
         if truth is not None and verb.kind == "is":
-            return f"is {verb.rest}" if truth != denied else f"is not {verb.rest}"
-        if itself and not denied:
-            return verb.says_of("itself")
-        name = "itself" if itself else self.name(object_)
-        return verb.denies(name) if denied else verb.says(name)
+            return f"is {verb.rest}" if truth != negated else f"is not {verb.rest}"
+        if reflexive and not negated:
+            return verb.with_pronoun("itself")
+        name = "itself" if reflexive else self.name(object_)
+        return verb.with_negation(name) if negated else verb.with_object(name)
 
     def is_data(self, prop: Term) -> bool:
-        """Whether a property is declared to have values that are literals."""
+        """Return whether a property is declared as a data property."""
         return prop in self._data
 
 
 def is_uncountable(noun: str) -> bool:
-    """Whether a noun takes neither "a" nor "every"."""
+    """Return whether a noun takes neither "a" nor "every"."""
     last = noun.rpartition(" ")[2]
     return last in _UNCOUNTABLE or last.endswith("ware")
 
 
 def article(noun: str) -> str:
-    """A noun with "a" or "an"."""
+    """Return a noun with "a" or "an"."""
     if not noun[:1].isalnum() or noun.startswith(("something ", "a ", "an ", "one of ")):
         return noun
     if is_uncountable(noun):
@@ -158,7 +160,7 @@ def article(noun: str) -> str:
 
 @lru_cache(maxsize=4096)
 def local_name(term: Term) -> str:
-    """How an IRI is called: its last part."""
+    """Return the last part of an IRI."""
     return re.split(r"[#/]", term.strip("<>").rstrip("#/"))[-1] or term
 
 
@@ -168,27 +170,27 @@ def _truth(term: Term) -> bool | None:
     return {"true": True, "1": True, "false": False, "0": False}.get(literal(term).text)
 
 
-def _taken_apart(name: str) -> str:
-    """`isOn` is "is on"; what is all capitals stays."""
+def _split_name(name: str) -> str:
+    """Split a name into words: `isOn` is "is on". Words in capitals are kept."""
     words = filter(None, _HUMPS.split(name))
     return " ".join(word if word.isupper() and len(word) > 1 else word.lower() for word in words) or name
 
 
-def _verb(phrase: str, is_data: bool) -> Verb:
+def _verb(phrase: str, is_data: bool) -> VerbPhrase:
     first, _, rest = phrase.strip().partition(" ")
     if first in ("is", "has") and rest:
-        return Verb("is", rest) if first == "is" else Verb("has", rest)
+        return VerbPhrase("is", rest) if first == "is" else VerbPhrase("has", rest)
     last = phrase.rpartition(" ")[2]
     is_verb = first.endswith("s") and len(first) > 3 and not first.endswith(_NO_VERB)
     if is_verb and not is_data:
-        return Verb("does", phrase)
+        return VerbPhrase("does", phrase)
     if last in _LINKS:
-        return Verb("is", phrase)
-    return Verb("has", phrase)
+        return VerbPhrase("is", phrase)
+    return VerbPhrase("has", phrase)
 
 
 def base_form(phrase: str) -> str:
-    """A verb in the third person as it is after "does not"."""
+    """Return a third-person verb phrase as it follows "does not"."""
     verb, blank, rest = phrase.partition(" ")
     if verb.endswith("ies"):
         verb = verb[:-3] + "y"

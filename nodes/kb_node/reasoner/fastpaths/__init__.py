@@ -1,1 +1,1 @@
-"""Fast paths for changes that look like others whose consequences are known; none changes an answer."""
+"""Fast paths for changes whose consequences are known from similar changes. They do not affect results."""

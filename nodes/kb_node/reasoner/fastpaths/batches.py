@@ -1,7 +1,7 @@
-"""Many runs of known forms, one after the other, read together: column by column instead of run by run.
+"""Consecutive runs of known forms, read together: column by column instead of run by run.
 
-A load is ten thousand times much the same. What takes a dozen steps for each star is here one step for a
-column: for all that stands at one place of all runs of a form.
+A load has thousands of entities of the same form. Instead of a dozen steps for each entity, one step
+processes a column: the terms at one position of all runs of a form.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.fastpaths.runs import Form, Runs, Terms
 
 _MANY = 16
-"""Runs that are worth it."""
+"""Minimum number of runs for a batch."""
 _MOST = 2000
-"""Runs read together; all of them are read singly where one is not so plain."""
+"""Maximum number of runs in a batch. All of them are read singly if one of them is irregular."""
 
 
 class Batch(NamedTuple):
-    """Runs of one shape. A column is what one place holds, run by run."""
+    """Runs of one shape. A column has the terms at one position of each run."""
 
     form: Form
     kinds: tuple[Kind, ...]
@@ -30,11 +30,11 @@ class Batch(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many they are."""
+        """The number of runs."""
         return len(self.individuals[0])
 
-    def where(self, wanted: Sequence[bool]) -> Batch:
-        """Some of them."""
+    def select(self, wanted: Sequence[bool]) -> Batch:
+        """Return the runs selected by `wanted`."""
         individuals, others = (
             [tuple(compress(column, wanted)) for column in columns]
             for columns in (self.individuals, self.others)
@@ -43,17 +43,17 @@ class Batch(NamedTuple):
 
 
 class Batches(NamedTuple):
-    """Runs that follow one another, by shape."""
+    """Consecutive runs by shape."""
 
     of_shape: Sequence[Batch]
     kind_of: dict[Term, Kind]
-    """Of each of their other objects."""
+    """The kinds of their other objects."""
 
 
-def batches(runs: Runs, triples: Sequence[Triple], start: int) -> tuple[Batches | None, int]:
-    """The runs of known forms that begin there, and where they end.
+def read_batches(runs: Runs, triples: Sequence[Triple], start: int) -> tuple[Batches | None, int]:
+    """Return the consecutive runs of known forms from `start`, and the position of their end.
 
-    None where they are few, or one of them is about an individual that is known or in another of them.
+    Returns None instead of the runs if they are few, or if an individual is known or occurs in two runs.
     """
     found, end = _by_form(runs, triples, start)
     if sum(batch.size for batch in found) < _MANY:
@@ -68,14 +68,14 @@ def batches(runs: Runs, triples: Sequence[Triple], start: int) -> tuple[Batches 
 
 
 def _by_form(runs: Runs, triples: Sequence[Triple], start: int) -> tuple[list[Batch], int]:
-    """The runs of each form, of no kinds yet; none where one has another form than its predicates promise."""
+    """Return the runs of each form, without kinds; none if a run does not have the form of its predicates."""
     rows: dict[Form, list[Terms]] = {}
     end = start
     for _ in range(_MOST):
         if end == len(triples) or (guess := runs.guess(triples, end)) is None:
             break
-        form, said = guess
-        rows.setdefault(form, []).append(said)
+        form, terms = guess
+        rows.setdefault(form, []).append(terms)
         end += form.length
     found = []
     for form, row in rows.items():
@@ -95,4 +95,4 @@ def _by_shape(batch: Batch, kind_of: dict[Term, Kind]) -> Iterable[Batch]:
     shapes = dict.fromkeys(each)
     if len(shapes) == 1:
         return [batch._replace(kinds=each[0])]
-    return [batch.where([of == kinds for of in each])._replace(kinds=kinds) for kinds in shapes]
+    return [batch.select([of == kinds for of in each])._replace(kinds=kinds) for kinds in shapes]

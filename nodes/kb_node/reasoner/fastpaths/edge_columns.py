@@ -1,4 +1,4 @@
-"""Edges of one predicate as columns, and which nodes have edges of what predicates."""
+"""Edges of one predicate as columns, and the nodes that have edges of a predicate."""
 
 from __future__ import annotations
 
@@ -13,43 +13,43 @@ from semmap.nodes.kb_node.reasoner.tbox.axioms import Group
 
 
 class Column(NamedTuple):
-    """Edges of one predicate and source. A place counts the edges of a column."""
+    """Edges of one predicate and source. A place is the position of an edge in the column."""
 
     predicate: int
     source: int
     subjects: Sequence[int]
     objects: Sequence[int]
     triples: Sequence[Triple] = ()
-    """Of those that were given: what was said."""
+    """The triples, for edges that were inserted."""
     claims: Sequence[tuple[Edge, Edge]] = ()
-    """Of those that a chain makes: what each rests on."""
+    """The reasons, for edges derived by a chain."""
 
     def at(self, places: Sequence[int]) -> Column:
-        """The given ones at some places."""
+        """Return the inserted edges at some places."""
         subjects, objects = ([ends[place] for place in places] for ends in (self.subjects, self.objects))
         triples = [self.triples[place] for place in places]
         return self._replace(subjects=subjects, objects=objects, triples=triples)
 
 
 class Ends(NamedTuple):
-    """Which nodes are subjects of an edge with a predicate, and which are objects."""
+    """The nodes that are subjects or objects of an edge with a predicate."""
 
     subjects: dict[int, set[int]]
-    """By the predicate."""
+    """Nodes by predicate."""
     objects: dict[int, set[int]]
 
     @classmethod
     def of(cls, store: Store, nodes: Iterable[int], predicates: Set[int]) -> Ends:
-        """Of some nodes as the store is; of other predicates nothing is told."""
+        """Return the ends among some nodes in the store, for the given predicates only."""
         return cls(_having(store.out, nodes, predicates), _having(store.into, nodes, predicates))
 
     def along(self, group: Group) -> set[int]:
-        """The nodes from which edges of a group lead."""
+        """Return the nodes that have edges of a group."""
         found = set[int]().union(*(self.subjects.get(p, ()) for p in group.out))
         return found.union(*(self.objects.get(p, ()) for p in group.into))
 
     def with_columns(self, columns: Iterable[Column]) -> Ends:
-        """The same with the edges of columns."""
+        """Return the ends together with those of columns."""
         subjects, objects = self.subjects.copy(), self.objects.copy()
         for column in columns:
             subjects[column.predicate] = subjects.get(column.predicate, set()).union(column.subjects)
@@ -58,12 +58,12 @@ class Ends(NamedTuple):
 
 
 def ends_of(columns: Iterable[Column]) -> set[int]:
-    """The subjects and objects of columns."""
+    """Return the subjects and objects of columns."""
     return set[int]().union(*(ends for column in columns for ends in (column.subjects, column.objects)))
 
 
 def _having(side: Adjacency, nodes: Iterable[int], predicates: Set[int]) -> dict[int, set[int]]:
-    """The nodes that have an edge with a predicate, by that."""
+    """Return the nodes that have an edge of a predicate, by predicate."""
     found: dict[int, set[int]] = {}
     heads, group, column = side.heads, side.group, side.predicate
     for node in nodes:

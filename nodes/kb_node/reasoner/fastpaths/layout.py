@@ -1,4 +1,4 @@
-"""What new individuals of one shape leave in the store: worked out once, written down for each."""
+"""The stored form of new individuals of one shape: computed once, written for each run."""
 
 from __future__ import annotations
 
@@ -8,22 +8,23 @@ from semmap.nodes.kb_node.reasoner.abox.kinds import Kind
 
 
 class Layout(NamedTuple):
-    """New individuals and the edges that leave from them.
+    """New individuals and their outgoing edges.
 
-    A *place* counts the new individuals first, then the other objects. Edges are counted, too.
+    A *place* is the position of a term: first the new individuals, then the other objects. Edges are also
+    referred to by position.
     """
 
     kinds: tuple[Kind, ...]
-    """Those of the individuals."""
+    """The kinds of the individuals."""
     others: tuple[Kind, ...]
-    """Those of the other objects, which they have already if they are there."""
+    """The kinds of the other objects."""
     edges: tuple[tuple[int, int, int], ...]
-    """The place of the subject, the predicate, the place of the object."""
+    """(place of the subject, predicate, place of the object)"""
     values: tuple[int, ...]
-    """The edges that come with classes; the others are asserted."""
+    """The edges implied by classes. The others are asserted."""
     heads: tuple[tuple[int, int], ...]
-    """The place of an individual, its first edge."""
+    """(place of an individual, its first edge)"""
     groups: tuple[tuple[int, int], ...]
-    """The first edge of a group, that of the next group."""
+    """(first edge of a group, first edge of the next group)"""
     pairs: tuple[tuple[int, int], ...]
-    """An edge, the one after it in its group."""
+    """(edge, next edge of its group)"""

@@ -1,6 +1,6 @@
-"""Many edges at once: stored column by column, and looked at singly only where something may be wrong.
+"""Bulk insertion of edges: stored column by column, and processed singly only if a rule may be violated.
 
-From most edges little follows that is not there already: a cup is on a table, and both are in the kitchen.
+Most edges imply little that is new: a cup is on a table, and both are already in the kitchen.
 """
 
 from __future__ import annotations
@@ -11,32 +11,32 @@ from semmap.nodes.kb_node.reasoner.abox.abox import ABox
 from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
 from semmap.nodes.kb_node.reasoner.abox.store import Store
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.fastpaths.column_inference import ColumnInference, relevant_predicates
 from semmap.nodes.kb_node.reasoner.fastpaths.edge_columns import Column, Ends, ends_of
-from semmap.nodes.kb_node.reasoner.fastpaths.following import Following, looked_for
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT
 from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 
 class ManyEdges:
-    """Puts many edges into an ABox in which no nodes are the same."""
+    """Inserts many edges into an ABox without equal nodes."""
 
     def __init__(self, abox: ABox) -> None:
         self._abox = abox
 
     def insert(self, triples: Iterable[Triple], source: int) -> tuple[list[Triple], list[Triple]]:
-        """Store triples; those that were, and those that must be inserted one by one.
+        """Store triples; return those that were stored, and those that must be inserted one by one.
 
-        What follows from them is stored as well, or will be when the rules are run.
+        Their conclusions are stored, or will be when the rules run.
         """
         abox = self._abox
         columns: list[Column] = []
         others: list[Triple] = []
-        for term, said in _by_predicate(triples).items():
+        for term, group in _by_predicate(triples).items():
             predicate = abox.schema.find_property(term)
             if term == TYPE or predicate is None or predicate <= DIFFERENT:
-                others += said
+                others += group
             else:
-                columns.append(_column(abox.store, predicate, source, said))
+                columns.append(_column(abox.store, predicate, source, group))
         before = self._before(columns)
         for at, column in enumerate(columns):
             if known := self._known(column, before):
@@ -44,19 +44,19 @@ class ManyEdges:
                 columns[at] = column.at([place for place in range(len(column.triples)) if place not in known])
         stored = [triple for column in columns for triple in column.triples]
         while columns:
-            columns = self._put(columns, before)
+            columns = self._store_and_infer(columns, before)
             before = self._before(columns)
         return stored, others
 
-    def _put(self, columns: Sequence[Column], before: Ends) -> list[Column]:
-        """Store edges that are new; those that follow, and are to be put next."""
+    def _store_and_infer(self, columns: Sequence[Column], before: Ends) -> list[Column]:
+        """Store new edges; return the edges that follow and must be stored next."""
         abox = self._abox
         edges = [self._store(column, before) for column in columns]
-        following = Following(abox, columns, before)
+        inference = ColumnInference(abox, columns, before)
         for column, stored in zip(columns, edges, strict=True):
-            doubtful = following.take(column, stored)
+            doubtful = inference.apply_rules(column, stored)
             abox.fresh += [stored[place] for place in sorted(doubtful)]
-        return list(following.made())
+        return list(inference.conclusions())
 
     def _store(self, column: Column, before: Ends) -> Sequence[int]:
         abox, predicate, subjects = self._abox, column.predicate, column.subjects
@@ -73,11 +73,11 @@ class ManyEdges:
         return edges
 
     def _before(self, columns: Iterable[Column]) -> Ends:
-        """What the ends of columns have that matters, before the columns are stored."""
-        return Ends.of(self._abox.store, ends_of(columns), looked_for(self._abox, columns))
+        """Return the relevant edges of the ends of columns before the columns are stored."""
+        return Ends.of(self._abox.store, ends_of(columns), relevant_predicates(self._abox, columns))
 
     def _known(self, column: Column, before: Ends) -> set[int]:
-        """The places in a column of edges that are there already."""
+        """Return the places of edges that already exist."""
         predicate = column.predicate
         subjects, edge = before.subjects.get(predicate, ()), self._abox.store.edge
         if not subjects:
@@ -89,15 +89,15 @@ class ManyEdges:
 def _by_predicate(triples: Iterable[Triple]) -> dict[Term, list[Triple]]:
     found: dict[Term, list[Triple]] = {}
     for triple in triples:
-        if (said := found.get(triple[1])) is None:
+        if (group := found.get(triple[1])) is None:
             found[triple[1]] = [triple]
         else:
-            said.append(triple)
+            group.append(triple)
     return found
 
 
 def _column(store: Store, predicate: int, source: int, triples: list[Triple]) -> Column:
-    """Each triple once; nodes are made for new terms."""
+    """Return a column without duplicates. Creates nodes for new terms."""
     number = store.numbers.__getitem__
     try:
         subjects, objects = [number(s) for s, _, _ in triples], [number(o) for _, _, o in triples]

@@ -1,4 +1,4 @@
-"""The fast paths behind one interface, which can be switched off: then the rules work every change out."""
+"""The interface to the fast paths. They can be disabled; then the rules are applied to every change."""
 
 from __future__ import annotations
 
@@ -9,115 +9,129 @@ from semmap.nodes.kb_node.reasoner.abox.store import COMPUTED
 from semmap.nodes.kb_node.reasoner.explain.proof import Proof
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from semmap.nodes.kb_node.reasoner.fastpaths.many_edges import ManyEdges
-from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Alike, Contradiction, Shapes, Written
-from semmap.nodes.kb_node.reasoner.fastpaths.shortcuts import depart, depart_among, exchange
+from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Contradiction, KnownShape, Shapes, UniformRuns
+from semmap.nodes.kb_node.reasoner.fastpaths.shortcuts import (
+    remove_independent,
+    remove_individuals,
+    replace_literals,
+)
 
 MANY = 32
-"""Computed facts that are worth being taken together."""
-MANY_GO = 1000
-"""Triples that are deleted: of so many, those who go without concerning anybody are told apart first."""
-WorkOut = Callable[[Sequence[Triple]], None]
-"""Inserts triples and draws all conclusions, by the rules."""
+"""Number of computed facts from which they are inserted column by column."""
+MANY_DELETED = 1000
+"""Number of deleted triples from which independent individuals are removed first."""
+ApplyRules = Callable[[Sequence[Triple]], None]
+"""Inserts triples and draws all conclusions by the rules."""
 Insert = Callable[[Triple, int], bool]
-"""Inserts a triple from a source, and tells whether it is new; the rules are yet to be run."""
+"""Inserts a triple from a source and returns whether it is new. Does not run the rules."""
 
 
-class Known(Exception):
-    """Triples that contradict each other as others of their shape did."""
+class KnownContradiction(Exception):
+    """Triples of a shape that is known to be contradictory."""
 
     def __init__(self, explanation: Explanation) -> None:
         super().__init__(explanation.text)
         self.explanation = explanation
 
 
-class PlainPaths:
-    """No fast paths: every change is worked out."""
+class NoFastPaths:
+    """No fast paths: the rules are applied to every change."""
 
-    def change(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
-        """Make a change with deletions of which it is plain whom it concerns: who that is.
+    def apply_independent(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
+        """Apply a change with deletions that affects no other individuals; return the changed individuals.
 
-        None, with nothing done, where it is not plain.
+        Returns None and changes nothing if it may affect others.
         """
         return None
 
-    def depart(self, triples: Sequence[Triple]) -> list[Triple]:
-        """Delete those of many triples of which it is plain whom it concerns; they are returned."""
+    def remove_individuals(self, triples: Sequence[Triple]) -> list[Triple]:
+        """Delete those of many triples that affect no other individuals, and return them."""
         return []
 
-    def insert(self, triples: Sequence[Triple], work_out: WorkOut, added: list[Triple]) -> list[Alike]:
-        """Insert triples: what is known is written down, `added`, and returned; all else is worked out.
+    def insert(
+        self, triples: Sequence[Triple], apply_rules: ApplyRules, added: list[Triple]
+    ) -> list[UniformRuns]:
+        """Insert triples. Runs of known shapes are stored directly, appended to `added`, and returned.
+
+        `apply_rules` is called for the others.
 
         Raises:
-            Known: they are known to contradict each other; nothing was done.
+            KnownContradiction: the triples are known to contradict each other; nothing was changed.
         """
         if triples:
-            work_out(triples)
+            apply_rules(triples)
         return []
 
     def compute(self, triples: Sequence[Triple], insert: Insert, added: list[Triple]) -> None:
-        """Have triples as computed; those that are new are `added`. The rules are yet to be run."""
+        """Insert computed triples and append the new ones to `added`. Does not run the rules."""
         for triple in triples:
             if insert(triple, COMPUTED):
                 added.append(triple)
 
-    def refuse(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
-        """Take note of triples that were refused, by a proof that is about `terms`."""
+    def note_rejection(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
+        """Remember triples that were rejected, with their proof, in which `terms` can be replaced."""
 
 
-class FastPaths(PlainPaths):
-    """Shapes whose consequences are known, and changes that affect no other individual."""
+class FastPaths(NoFastPaths):
+    """Fast paths for known shapes, and for changes that affect no other individuals."""
 
     def __init__(self, abox: ABox) -> None:
         self._abox = abox
         self._edges = ManyEdges(abox)
         self.shapes = Shapes(abox)
 
-    def change(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
-        """See `PlainPaths`."""
-        return exchange(self._abox, delete, insert) if insert else depart(self._abox, delete)
+    def apply_independent(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
+        """See `NoFastPaths`."""
+        return (
+            replace_literals(self._abox, delete, insert) if insert else remove_individuals(self._abox, delete)
+        )
 
-    def depart(self, triples: Sequence[Triple]) -> list[Triple]:
-        """See `PlainPaths`."""
-        return depart_among(self._abox, triples) if len(triples) >= MANY_GO else []
+    def remove_individuals(self, triples: Sequence[Triple]) -> list[Triple]:
+        """See `NoFastPaths`."""
+        return remove_independent(self._abox, triples) if len(triples) >= MANY_DELETED else []
 
-    def insert(self, triples: Sequence[Triple], work_out: WorkOut, added: list[Triple]) -> list[Alike]:
-        """See `PlainPaths`. Run by run as far as what follows is known, and the others together."""
+    def insert(
+        self, triples: Sequence[Triple], apply_rules: ApplyRules, added: list[Triple]
+    ) -> list[UniformRuns]:
+        """See `NoFastPaths`. Known shapes are stored run by run, the other triples are inserted together."""
         shapes, at = self.shapes, 0
-        alike: list[Alike] = []
+        alike: list[UniformRuns] = []
         rest: list[Triple] = []
         while at < len(triples):
-            stars, end = ([], len(triples)) if self._abox.is_mixed else shapes.write_all(triples, at)
-            if stars:
+            stored, end = (
+                ([], len(triples)) if self._abox.has_unknown_equals else shapes.write_all(triples, at)
+            )
+            if stored:
                 added += triples[at:end]
-                alike += stars
+                alike += stored
                 at = end
                 continue
             for run in shapes.runs(triples, at, end):
                 at += len(run.triples)
-                is_mixed = self._abox.is_mixed
+                has_unknown_equals = self._abox.has_unknown_equals
                 form = run.form
-                known = None if is_mixed or form is None else shapes.known.get(run.shape, run)
-                if form is not None and isinstance(known, Written) and shapes.write(known, run):
+                known = None if has_unknown_equals or form is None else shapes.known.get(run.shape, run)
+                if form is not None and isinstance(known, KnownShape) and shapes.write(known, run):
                     added += run.triples
-                    alike.append(Alike(known, form, list(zip(run.individuals)), list(zip(run.others))))
+                    alike.append(UniformRuns(known, form, list(zip(run.individuals)), list(zip(run.others))))
                 elif known is run:
-                    work_out(run.triples)
+                    apply_rules(run.triples)
                     shapes.learn(run)
                 elif isinstance(known, Contradiction) and not added:
-                    raise Known(known.of(run))
+                    raise KnownContradiction(known.of(run))
                 else:
                     rest += run.triples
         if rest:
-            work_out(rest)
+            apply_rules(rest)
         return alike
 
     def compute(self, triples: Sequence[Triple], insert: Insert, added: list[Triple]) -> None:
-        """See `PlainPaths`. Many are stored column by column."""
-        if len(triples) >= MANY and not (self._abox.equals or self._abox.is_mixed):
+        """See `NoFastPaths`. Many triples are stored column by column."""
+        if len(triples) >= MANY and not (self._abox.equals or self._abox.has_unknown_equals):
             stored, triples = self._edges.insert(triples, COMPUTED)
             added += stored
         super().compute(triples, insert, added)
 
-    def refuse(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
-        """See `PlainPaths`."""
-        self.shapes.refuse(triples, proof, terms)
+    def note_rejection(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
+        """See `NoFastPaths`."""
+        self.shapes.note_rejection(triples, proof, terms)

@@ -1,8 +1,8 @@
-"""Triples cut into runs about new individuals, and recognised by their form.
+"""Triples split into runs about new individuals, and recognised by their form.
 
-Two runs have one *form* if they differ in nothing but the names of the new individuals, and in which other
-individuals and literals these are related to. A run of a form that was met before is recognised as a whole;
-any other is read word by word.
+Two runs have the same *form* if they differ only in the names of the new individuals, and in the other
+individuals and literals to which these are related. A run of a known form is recognised as a whole. Other
+runs are read term by term.
 """
 
 from __future__ import annotations
@@ -16,87 +16,87 @@ from semmap.nodes.kb_node.reasoner.abox.store import Store
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.terms import TYPE, is_literal
 
-Words = tuple[tuple[int, Term, int | Term | None], ...]
-"""A run without its names, triple by triple: an individual is its place, None is any other object."""
+Tokens = tuple[tuple[int, Term, int | Term | None], ...]
+"""A run without names, triple by triple: an individual is its place, any other object is None."""
 Terms = tuple[Term, ...]
 _T = TypeVar("_T")
 Parts = tuple[tuple[_T, ...], tuple[_T, ...]]
 _QUOTE, _FIRST = '"', itemgetter(0)
 _LONGEST = 64
-"""Triples of a run that has a form; a home's entities have about twenty."""
+"""Maximum number of triples of a run with a form. Entities of a home have about 20."""
 _MOST = 2000
-"""Forms remembered."""
+"""Number of cached forms."""
 _TRIED = 8
-"""Forms that a run is compared with, of those that begin like it."""
+"""Maximum number of forms with the same beginning to compare a run with."""
 
 
 class Form:
-    """What is the same in the triples of many runs. One object is one form."""
+    """The common structure of the triples of runs. There is one object for each form."""
 
     __slots__ = (
+        "_expected",
         "_fixed",
         "_individuals",
         "_others",
         "_predicates",
-        "_saying",
         "beginning",
         "classes",
         "length",
-        "words",
+        "tokens",
     )
 
-    def __init__(self, words: Words) -> None:
-        self.words = words
-        self.length = len(words)
-        self.beginning = _beginning(*words[0][1:])
-        self._predicates = tuple([p for _, p, _ in words])
-        said = [s for s, _, _ in words] + [o for _, _, o in words]
-        places = sorted({word for word in said if isinstance(word, int)})
-        self.classes = tuple(dict.fromkeys(word for word in said if isinstance(word, str)))
-        fixed = [at for at, word in enumerate(said) if word is not None]
+    def __init__(self, tokens: Tokens) -> None:
+        self.tokens = tokens
+        self.length = len(tokens)
+        self.beginning = _beginning(*tokens[0][1:])
+        self._predicates = tuple([p for _, p, _ in tokens])
+        terms = [s for s, _, _ in tokens] + [o for _, _, o in tokens]
+        places = sorted({word for word in terms if isinstance(word, int)})
+        self.classes = tuple(dict.fromkeys(word for word in terms if isinstance(word, str)))
+        fixed = [at for at, word in enumerate(terms) if word is not None]
         known = [*places, *self.classes]
-        self._individuals = _picker([said.index(place) for place in places])
+        self._individuals = _picker([terms.index(place) for place in places])
         self._fixed = _picker(fixed)
-        self._saying = _picker([known.index(said[at]) for at in fixed])
-        self._others = _picker([at for at, word in enumerate(said) if word is None])
+        self._expected = _picker([known.index(terms[at]) for at in fixed])
+        self._others = _picker([at for at, word in enumerate(terms) if word is None])
 
-    def said(self, triples: Sequence[Triple]) -> Terms | None:
-        """The subjects, then the objects; None if the predicates are others."""
+    def terms_of(self, triples: Sequence[Triple]) -> Terms | None:
+        """Return the subjects, then the objects; None if the predicates differ."""
         subjects, predicates, objects = zip(*triples)  # noqa: B905, it is quicker
         return subjects + objects if predicates == self._predicates else None
 
-    def parts(self, said: tuple[_T, ...], classes: tuple[_T, ...]) -> Parts[_T] | None:
-        """The individuals and the other objects of what is `said`; None if it has another form.
+    def parts(self, terms: tuple[_T, ...], classes: tuple[_T, ...]) -> Parts[_T] | None:
+        """Return the individuals and the other objects among `terms`; None if they have another form.
 
-        That is of one run, or of many by columns: then the classes are columns, too.
+        `terms` are those of one run, or columns for many runs. Then the classes are columns, too.
         """
-        individuals = self._individuals(said)
-        if self._saying(individuals + classes) != self._fixed(said):
+        individuals = self._individuals(terms)
+        if self._expected(individuals + classes) != self._fixed(terms):
             return None
-        return individuals, self._others(said)
+        return individuals, self._others(terms)
 
 
 class Run(NamedTuple):
-    """Consecutive triples; all but the first subject were mentioned before."""
+    """Consecutive triples. All subjects except the first are objects of earlier triples of the run."""
 
     form: Form | None
-    """None where a subject is no new individual, or the run is too long."""
+    """None if a subject is not a new individual, or if the run is too long."""
     triples: Sequence[Triple]
     individuals: Terms
     """The new individuals."""
     others: Terms
     """The other objects, triple by triple."""
     kinds: tuple[Kind, ...]
-    """Those of the other objects."""
+    """The kinds of the other objects."""
 
     @property
     def shape(self) -> Shape:
-        """The form with the kinds."""
+        """The form and the kinds."""
         return self.form, self.kinds
 
     @property
     def places(self) -> dict[Term, int]:
-        """The new individuals with their places."""
+        """The new individuals and their places."""
         return {term: place for place, term in enumerate(self.individuals)}
 
 
@@ -109,23 +109,23 @@ class Runs:
     def __init__(self, store: Store, kinds: Kinds) -> None:
         self._store = store
         self._kinds = kinds
-        self._known: dict[Words, Form] = {}
+        self._known: dict[Tokens, Form] = {}
         self._beginning: dict[Term, tuple[Form, ...]] = {}
 
     def of(self, triples: Sequence[Triple], start: int, stop: int) -> Iterator[Run]:
-        """The runs that begin there; each is read against the store as it is when the run is asked for."""
+        """Yield the runs from `start`. Each is read against the current state of the store."""
         while start < stop:
-            run = self._recognised(triples, start) or self._read(triples, start)
+            run = self._read_known_form(triples, start) or self._read(triples, start)
             yield run
             start += len(run.triples)
 
-    def _recognised(self, triples: Sequence[Triple], start: int) -> Run | None:
-        """The run that begins there, if it has a known form."""
-        for form in self._begun_by(triples[start]):
+    def _read_known_form(self, triples: Sequence[Triple], start: int) -> Run | None:
+        """Return the run at `start` if it has a known form."""
+        for form in self._candidate_forms(triples[start]):
             end = start + form.length
             here = triples[start:end]
-            said = form.said(here)
-            parts = None if said is None else form.parts(said, form.classes)
+            terms = form.terms_of(here)
+            parts = None if terms is None else form.parts(terms, form.classes)
             if parts is None or (end < len(triples) and triples[end][0] in parts[0]):
                 continue
             if self.are_new(parts[0]) and (kinds := self.kinds_of(parts[1])) is not None:
@@ -133,56 +133,56 @@ class Runs:
         return None
 
     def guess(self, triples: Sequence[Triple], start: int) -> tuple[Form, Terms] | None:
-        """The form that the run there has by its predicates, with what it says.
+        """Return the form of the run at `start` by its predicates, with its terms.
 
-        Of a form that is the beginning of another's there may be more; then it is the other one's run.
+        A form may be the beginning of a longer one. It only matches if the run does not continue.
         """
-        for form in self._begun_by(triples[start]):
+        for form in self._candidate_forms(triples[start]):
             end = start + form.length
-            said = form.said(triples[start:end])
-            if said is not None and (end >= len(triples) or triples[end][0] not in said):
-                return form, said
+            terms = form.terms_of(triples[start:end])
+            if terms is not None and (end >= len(triples) or triples[end][0] not in terms):
+                return form, terms
         return None
 
-    def _begun_by(self, triple: Triple) -> tuple[Form, ...]:
-        """The forms of runs that may begin with a triple, the likeliest first."""
+    def _candidate_forms(self, triple: Triple) -> tuple[Form, ...]:
+        """Return the forms of runs that may start with a triple, the most likely first."""
         s, p, o = triple
         return () if s in self._store.numbers else self._beginning.get(_beginning(p, o), ())
 
     def are_new(self, names: Sequence[Term]) -> bool:
-        """Whether they are different individuals, of whom nothing is known."""
+        """Return whether names are distinct new individuals."""
         is_known = not self._store.numbers.keys().isdisjoint(names)
         return not is_known and len(set(names)) == len(names) and _QUOTE not in set(map(_FIRST, names))
 
     def _read(self, triples: Sequence[Triple], start: int) -> Run:
-        """The run that begins there, word by word."""
+        """Read the run at `start` term by term."""
         numbers = self._store.numbers
         first = triples[start][0]
         places: dict[Term, int] = {first: 0}
         others: list[Term] = []
-        words: list[tuple[int, Term, int | Term | None]] = []
+        tokens: list[tuple[int, Term, int | Term | None]] = []
         for at in range(start, len(triples)):
             s, p, o = triples[at]
             subject = places.get(s)
             if subject is None:
                 break
             if p == TYPE:
-                words.append((subject, p, o))
+                tokens.append((subject, p, o))
             elif o in numbers or is_literal(o):
-                words.append((subject, p, None))
+                tokens.append((subject, p, None))
                 others.append(o)
             else:
-                words.append((subject, p, places.setdefault(o, len(places))))
-        run = triples[start : start + len(words)]
-        if first in numbers or len(words) > _LONGEST:
+                tokens.append((subject, p, places.setdefault(o, len(places))))
+        run = triples[start : start + len(tokens)]
+        if first in numbers or len(tokens) > _LONGEST:
             return Run(None, run, tuple(places), tuple(others), ())
         kinds = self.kinds_of(others)
         if kinds is None:
-            raise LookupError("a run mentions what is neither a literal nor known")
-        return Run(self._form(tuple(words)), run, tuple(places), tuple(others), kinds)
+            raise LookupError("an object of a run is neither a literal nor known")
+        return Run(self._form(tuple(tokens)), run, tuple(places), tuple(others), kinds)
 
     def kinds_of(self, terms: Iterable[Term]) -> tuple[Kind, ...] | None:
-        """The kinds of literals and of what is in the store; None if there is anything else."""
+        """Return the kinds of literals and stored individuals; None if there is any other term."""
         numbers, kind, literal = self._store.numbers, self._store.kind, self._kinds.literal
         kinds: list[Kind] = []
         for term in terms:
@@ -195,26 +195,26 @@ class Runs:
                 return None
         return tuple(kinds)
 
-    def _form(self, words: Words) -> Form:
-        """The form of a run; the first to be tried from now on."""
-        form = self._known.get(words)
+    def _form(self, tokens: Tokens) -> Form:
+        """Return the form of a run, and move it to the front of the candidates."""
+        form = self._known.get(tokens)
         if form is None:
             if len(self._known) >= _MOST:
                 self._known.clear()
                 self._beginning.clear()
-            form = self._known[words] = Form(words)
+            form = self._known[tokens] = Form(tokens)
         tried = self._beginning.get(form.beginning, ())
         self._beginning[form.beginning] = (form, *(other for other in tried if other is not form))[:_TRIED]
         return form
 
 
 def _beginning(predicate: Term, object_: int | Term | None) -> Term:
-    """What a run's first triple says of its subject, as far as that is the same in all of its form."""
+    """Return the class or predicate of a run's first triple, which is the same for all runs of a form."""
     return object_ if predicate == TYPE and isinstance(object_, str) else predicate
 
 
 def _picker(places: Sequence[int]) -> Callable[[tuple[_T, ...]], tuple[_T, ...]]:
-    """A function that picks what is at some places of a tuple, as a tuple."""
+    """Return a function that selects some positions of a tuple, as a tuple."""
     if len(places) > 1:
         return itemgetter(*places)
     first = places[0] if places else 0

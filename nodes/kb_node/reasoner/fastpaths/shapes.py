@@ -1,7 +1,7 @@
-"""What follows of new individuals, worked out once for each shape of what is said of them.
+"""The consequences of new individuals, computed once for each shape of their triples.
 
-Two runs have one *shape* if they have one form, and their other objects are of the same kinds. Where nothing
-follows but kinds, a run of a known shape is written down as it will stand, without looking at any rule.
+Two runs have the same *shape* if they have the same form, and their other objects are of the same kinds. If
+the rules imply only kinds, a run of a known shape is stored directly, without applying rules.
 """
 
 from __future__ import annotations
@@ -16,141 +16,142 @@ from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
 from semmap.nodes.kb_node.reasoner.abox.store import VALUE
 from semmap.nodes.kb_node.reasoner.explain.proof import Proof
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
-from semmap.nodes.kb_node.reasoner.fastpaths.batches import batches
+from semmap.nodes.kb_node.reasoner.fastpaths.batches import read_batches
 from semmap.nodes.kb_node.reasoner.fastpaths.layout import Layout
 from semmap.nodes.kb_node.reasoner.fastpaths.runs import Form, Run, Runs, Shape, Terms
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 _MOST = 2000
-"""Shapes remembered."""
+"""Number of cached shapes."""
 _FEW = 64
-"""Triples that are no more than a few runs."""
+"""Number of triples below which runs are not batched."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, weakref_slot=True)
-class Written:
-    """What a run of a known shape leaves. One object is one shape."""
+class KnownShape:
+    """The stored form of a run of a known shape. There is one object for each shape."""
 
     layout: Layout
     constants: tuple[Term, ...]
-    """The values that come with classes; they are the last of the layout's other objects."""
+    """The values implied by classes. They are the last of the layout's other objects."""
     touched: tuple[int, ...]
-    """The places of those that are subjects or have a named class."""
+    """The places of individuals that are subjects or have a named class."""
 
 
-class Alike(NamedTuple):
-    """Runs of one shape: their triples are in one order, and their objects of the same kinds.
+class UniformRuns(NamedTuple):
+    """Runs of one shape: the same order of triples, and objects of the same kinds.
 
-    A column is what one place holds, run by run: so many runs are few objects.
+    A column has the terms at one place of each run, so that many runs need few objects.
     """
 
-    shape: Written
+    shape: KnownShape
     form: Form
     individuals: Sequence[Terms]
     others: Sequence[Terms]
 
-    def stars(self) -> Iterator[tuple[Terms, Terms]]:
-        """Of each run the individuals, and the other objects."""
+    def rows(self) -> Iterator[tuple[Terms, Terms]]:
+        """Yield the individuals and the other objects of each run."""
         others = zip(*self.others, strict=True) if self.others else repeat(())
         return zip(zip(*self.individuals, strict=True), others, strict=False)
 
     @property
     def touched(self) -> set[Term]:
-        """Those of their individuals that are subjects or have a named class."""
+        """The individuals that are subjects or have a named class."""
         return set().union(*(self.individuals[place] for place in self.shape.touched))
 
 
 class Contradiction(NamedTuple):
-    """Why no run of a shape is accepted, whatever else is said."""
+    """The proof that every run of a shape is contradictory."""
 
     proof: Proof
     places: tuple[int, ...]
-    """The new individuals that stand for the terms of the proof."""
+    """The new individuals that replace the terms of the proof."""
 
     def of(self, run: Run) -> Explanation:
-        """The explanation with the names of a run."""
+        """Return the explanation with the names of a run."""
         return self.proof.about([run.individuals[place] for place in self.places])
 
 
 class Shapes:
-    """The shapes that are known. None stands for one that every run must be worked out of."""
+    """The known shapes. None marks a shape whose runs always need the rules."""
 
     def __init__(self, abox: ABox) -> None:
         self._abox = abox
         self._runs = Runs(abox.store, abox.kinds)
-        self.known: dict[Shape, Written | Contradiction | None] = {}
+        self.known: dict[Shape, KnownShape | Contradiction | None] = {}
 
     def runs(self, triples: Sequence[Triple], start: int = 0, stop: int | None = None) -> Iterator[Run]:
-        """The runs that begin there; each is read against the store as it is when the run is asked for."""
+        """Yield the runs from `start`. Each is read against the current state of the store."""
         return self._runs.of(triples, start, len(triples) if stop is None else stop)
 
-    def write_all(self, triples: Sequence[Triple], start: int) -> tuple[list[Alike], int]:
-        """Write down the runs of known shapes that begin there and follow one another; and where they end.
+    def write_all(self, triples: Sequence[Triple], start: int) -> tuple[list[UniformRuns], int]:
+        """Store the consecutive runs of known shapes from `start`; return them and the position of their end.
 
-        None, and nothing done, where they are few or not so plain, or holes in the store are to be filled.
+        Returns an empty list and changes nothing if there are few runs, if a rule may be needed, or if the
+        store has free rows to fill first.
         """
         store = self._abox.store
-        if len(triples) - start < _FEW or store.holes > len(triples) - start:
+        if len(triples) - start < _FEW or store.free_rows > len(triples) - start:
             return [], len(triples)
-        found, end = batches(self._runs, triples, start)
+        found, end = read_batches(self._runs, triples, start)
         end = max(end, start + 1)
         if found is None:
             return [], end
-        shapes: list[Written] = []
+        shapes: list[KnownShape] = []
         for batch in found.of_shape:
             shape = self.known.get((batch.form, batch.kinds))
-            if not isinstance(shape, Written) or not self._has_constants(shape):
+            if not isinstance(shape, KnownShape) or not self._has_constants(shape):
                 return [], end
             shapes.append(shape)
         node_of = store.add_literals(found.kind_of)
-        alike: list[Alike] = []
+        alike: list[UniformRuns] = []
         for shape, batch in zip(shapes, found.of_shape, strict=True):
             others = [list(map(node_of.__getitem__, terms)) for terms in batch.others]
             constants = [[store.numbers[term]] * batch.size for term in shape.constants]
             store.append(shape.layout, batch.individuals, others + constants)
-            alike.append(Alike(shape, batch.form, batch.individuals, batch.others))
+            alike.append(UniformRuns(shape, batch.form, batch.individuals, batch.others))
         return alike, end
 
-    def write(self, written: Written, run: Run) -> bool:
-        """Write down what a run of a known shape leaves; False, and nothing done, if it cannot be."""
-        if not self._has_constants(written):
+    def write(self, shape: KnownShape, run: Run) -> bool:
+        """Store a run of a known shape. Returns False and changes nothing if that is not possible."""
+        if not self._has_constants(shape):
             return False
-        self._abox.store.write(written.layout, run.individuals, run.others + written.constants)
+        self._abox.store.write(shape.layout, run.individuals, run.others + shape.constants)
         return True
 
-    def _has_constants(self, written: Written) -> bool:
-        """Whether the values that come with classes are as they were."""
-        store, constants = self._abox.store, written.constants
-        for term, kind in zip(constants, written.layout.others[-len(constants) :], strict=False):
+    def _has_constants(self, shape: KnownShape) -> bool:
+        """Return whether the values implied by classes are unchanged."""
+        store, constants = self._abox.store, shape.constants
+        for term, kind in zip(constants, shape.layout.others[-len(constants) :], strict=False):
             node = store.find(term)
             if node is None or store.kind[node] is not kind:
                 return False
         return True
 
     def learn(self, run: Run) -> None:
-        """Remember the shape of a run that was just worked out."""
+        """Cache the shape of a run to which the rules were just applied."""
         if run.form is not None:
-            self._remember(run, self._written(run))
+            self._remember(run, self._known_shape(run))
 
-    def refuse(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
-        """Remember the shape of triples that were refused, if `proof` about `terms` is of nothing else."""
+    def note_rejection(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
+        """Cache the shape of rejected triples, if their `proof` about `terms` depends only on them."""
         first = next(self.runs(triples))
         if first.form is None or len(first.triples) < len(triples):
             return
         there, places = set(triples), first.places
         support = [fact for fact in proof.about(terms).support if not is_schema(fact)]
-        is_of_itself = all(fact in there and (fact[1] == TYPE or fact[2] in places) for fact in support)
-        named = tuple([places.get(term, 0) for term in terms])  # any other term is not in the proof itself
-        self._remember(first, Contradiction(proof, named) if is_of_itself else None)
+        is_independent = all(fact in there and (fact[1] == TYPE or fact[2] in places) for fact in support)
+        named = tuple([places.get(term, 0) for term in terms])  # the proof does not contain other terms
+        self._remember(first, Contradiction(proof, named) if is_independent else None)
 
-    def _remember(self, run: Run, found: Written | Contradiction | None) -> None:
+    def _remember(self, run: Run, found: KnownShape | Contradiction | None) -> None:
         if len(self.known) >= _MOST:
             self.known.clear()
         self.known[run.shape] = found
 
-    def _written(self, run: Run) -> Written | None:
-        """What stands in the store of a run that was just worked out; None if it is more than kinds."""
+    def _known_shape(self, run: Run) -> KnownShape | None:
+        """Return the stored form of a run after the rules; None if they implied more than kinds."""
         abox, store = self._abox, self._abox.store
         places = run.places
         individuals = [store.numbers[term] for term in places]
@@ -174,18 +175,20 @@ class Shapes:
         if not all(map(abox.is_plain, edges)) or not abox.equals.keys().isdisjoint(individuals):
             return None
         known = [e for e, to in edges.items() if to >= len(places)]
-        said = [(store.subject[e], store.predicate[e]) for e in known if store.source[e] != VALUE]
-        come = {(store.subject[e], store.predicate[e]) for e in values}
-        if len(set(said)) < len(said) or not come.isdisjoint(said):
-            return None  # another run may have one object twice where this one has two of a kind
-        return Written(self._layout(individuals, others, edges), tuple(constants), tuple(self._touched(run)))
+        asserted = [(store.subject[e], store.predicate[e]) for e in known if store.source[e] != VALUE]
+        implied = {(store.subject[e], store.predicate[e]) for e in values}
+        if len(set(asserted)) < len(asserted) or not implied.isdisjoint(asserted):
+            return None  # another run may repeat an object where this one has two of the same kind
+        return KnownShape(
+            self._layout(individuals, others, edges), tuple(constants), tuple(self._touched(run))
+        )
 
     def _edge(self, triple: Triple) -> int:
         store, predicate = self._abox.store, self._abox.schema.property(triple[1])
         return store.edge(store.numbers[triple[0]], predicate, store.numbers[triple[2]])
 
     def _layout(self, individuals: list[int], others: list[int], edges: dict[int, int]) -> Layout:
-        """How individuals stand in the store, with the `edges` that leave from them and where these lead."""
+        """Return the layout of individuals in the store, with their outgoing `edges` and where these lead."""
         store, out = self._abox.store, self._abox.store.out
         place = {node: i for i, node in enumerate(individuals)}
         index = {edge: i for i, edge in enumerate(edges)}

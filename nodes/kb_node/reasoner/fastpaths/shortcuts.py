@@ -1,7 +1,7 @@
 """Fast paths for changes that affect no other individual.
 
-The two that robots ask for all day: a thing is removed with all that was said of it, and a number is
-replaced by another. Everything else is left to `retraction.Retraction`.
+The two most frequent ones: an object is removed with all its triples, and a number is replaced by another.
+All other deletions are left to `retraction.Retraction`.
 """
 
 from __future__ import annotations
@@ -15,74 +15,74 @@ from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 _MOST = 256
-"""Edges that are looked at besides those asked for: who has more, as values or computed, is no plain case."""
+"""Maximum number of edges beyond the deleted ones (values and computed edges) for a shortcut."""
 
 
-def depart(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
-    """Forget individuals of which these are all assertions.
+def remove_individuals(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
+    """Remove individuals whose assertions are exactly these triples; return the individuals.
 
-    Who they were; None, with nothing done, where it is not plain.
+    Returns None and changes nothing if other individuals may be affected.
     """
     store = abox.store
     wanted, subjects = set(triples), {triple[0] for triple in triples}
-    going = {store.numbers.get(subject, NONE) for subject in subjects}
-    is_doubtful = NONE in going or len(wanted) < len(triples)
-    edges = None if is_doubtful else _edges_of(abox, going, wanted)
-    if edges is None or not _concern_nobody(abox, going, edges):
+    removed = {store.numbers.get(subject, NONE) for subject in subjects}
+    is_doubtful = NONE in removed or len(wanted) < len(triples)
+    edges = None if is_doubtful else _edges_of(abox, removed, wanted)
+    if edges is None or not _are_independent(abox, removed, edges):
         return None
-    _forget_spellings(abox, going, edges)
-    store.erase(going, edges)
+    _forget_spellings(abox, removed, edges)
+    store.erase(removed, edges)
     return subjects
 
 
-def depart_among(abox: ABox, triples: Sequence[Triple]) -> list[Triple]:
-    """Forget those individuals of which it is plain, among very many: the triples that went with them.
+def remove_independent(abox: ABox, triples: Sequence[Triple]) -> list[Triple]:
+    """Remove the independent individuals among many, and return their triples.
 
-    Plain is who is described by these triples alone, concerns nobody who stays, and is not joined to
-    somebody of whom it is not plain.
+    An individual is independent if its assertions are all among the triples, if its removal does not affect
+    remaining individuals, and if it is not related to a removed individual that is not independent.
     """
     store, wanted = abox.store, set(triples)
-    going = {store.numbers.get(subject, NONE) for subject in {triple[0] for triple in triples}} - {NONE}
-    said: dict[int, list[Triple]] = {}
-    doubtful = [node for node in going if not _is_plain(abox, node, going, wanted, said)]
-    plain = going.difference(doubtful)
+    removed = {store.numbers.get(subject, NONE) for subject in {triple[0] for triple in triples}} - {NONE}
+    own: dict[int, list[Triple]] = {}
+    doubtful = [node for node in removed if not _is_independent(abox, node, removed, wanted, own)]
+    independent = removed.difference(doubtful)
     while doubtful:
         node = doubtful.pop()
         others = {store.object[edge] for edge in store.out.all(node)}
         others.update(store.subject[edge] for edge in store.into.all(node))
-        others &= plain
-        plain -= others
+        others &= independent
+        independent -= others
         doubtful += others
-    edges = store.out.gather(plain, len(store.predicate))
-    _forget_spellings(abox, plain, edges)
-    store.erase(plain, edges)
-    return [triple for node in plain for triple in said[node]]
+    edges = store.out.gather(independent, len(store.predicate))
+    _forget_spellings(abox, independent, edges)
+    store.erase(independent, edges)
+    return [triple for node in independent for triple in own[node]]
 
 
-def _is_plain(
-    abox: ABox, node: int, going: Set[int], wanted: set[Triple], said: dict[int, list[Triple]]
+def _is_independent(
+    abox: ABox, node: int, removed: Set[int], wanted: set[Triple], own: dict[int, list[Triple]]
 ) -> bool:
-    """Whether nobody who stays is otherwise without a node, all that is asserted of which is `said`, too."""
+    """Return whether removing a node affects no remaining node. Stores its assertions in `own`."""
     store, schema, kinds = abox.store, abox.schema, abox.store.kind
-    if node in abox.equals or node in abox.rest_on_node:
+    if node in abox.equals or node in abox.reasons_by_node:
         return False
     term = store.terms[node]
-    mine = said[node] = [(term, TYPE, schema.classes[cls]) for cls in kinds[node].given]
+    assertions = own[node] = [(term, TYPE, schema.classes[cls]) for cls in kinds[node].given]
     for edge in store.out.all(node):
         source, other = store.source[edge], store.object[edge]
-        if source == DERIVED or edge in abox.rest_on_edge:
+        if source == DERIVED or edge in abox.reasons_by_edge:
             return False
-        if other not in going and (kinds[other].base is not kinds[other] or other in abox.equals):
+        if other not in removed and (kinds[other].base is not kinds[other] or other in abox.equals):
             return False
         if source == ASSERTED:
-            mine.append((term, schema.axioms[store.predicate[edge]].term, store.terms[other]))
-    if not wanted.issuperset(mine):
+            assertions.append((term, schema.axioms[store.predicate[edge]].term, store.terms[other]))
+    if not wanted.issuperset(assertions):
         return False
-    return all(store.subject[edge] in going for edge in store.into.all(node))
+    return all(store.subject[edge] in removed for edge in store.into.all(node))
 
 
 def _edges_of(abox: ABox, nodes: Set[int], wanted: set[Triple]) -> list[int] | None:
-    """The edges that leave from nodes; None if what was asserted of these is not exactly what is wanted."""
+    """Return the outgoing edges of nodes; None if their assertions are not exactly `wanted`."""
     store, classes, axioms = abox.store, abox.schema.classes, abox.schema.axioms
     terms, subject, predicate, object_ = store.terms, store.subject, store.predicate, store.object
     asserted = 0
@@ -103,12 +103,12 @@ def _edges_of(abox: ABox, nodes: Set[int], wanted: set[Triple]) -> list[int] | N
     return edges if asserted == len(wanted) else None
 
 
-def _concern_nobody(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
-    """Whether nothing is otherwise for anybody else without nodes and the edges that leave from them."""
+def _are_independent(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
+    """Return whether removing nodes and their outgoing edges affects no other node."""
     store, kinds = abox.store, abox.store.kind
     if not abox.equals.keys().isdisjoint(nodes):
         return False
-    if not (abox.rest_on_node.keys().isdisjoint(nodes) and abox.rest_on_edge.keys().isdisjoint(edges)):
+    if not (abox.reasons_by_node.keys().isdisjoint(nodes) and abox.reasons_by_edge.keys().isdisjoint(edges)):
         return False
     entering = store.into.gather(nodes, len(edges))
     if not nodes >= {store.subject[edge] for edge in entering}:
@@ -122,7 +122,7 @@ def _concern_nobody(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
 
 
 def _forget_spellings(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> None:
-    """Of literals that only these nodes have, by these edges."""
+    """Remove the spellings of literals that only these nodes use, by these edges."""
     if not abox.spellings:
         return
     store = abox.store
@@ -131,12 +131,12 @@ def _forget_spellings(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> None
             abox.forget_spelling(literal)
 
 
-def exchange(abox: ABox, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
-    """Replace values by others of their kind, pair by pair.
+def replace_literals(abox: ABox, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
+    """Replace literals by others of the same kind, pair by pair; return their subjects.
 
-    Whose values they are; None, with nothing done, where it is not plain.
+    Returns None and changes nothing if the change is not that simple.
     """
-    if len(delete) != len(insert) or abox.is_mixed:
+    if len(delete) != len(insert) or abox.has_unknown_equals:
         return None
     store = abox.store
     found: dict[int, Term] = {}
@@ -151,12 +151,12 @@ def exchange(abox: ABox, delete: Sequence[Triple], insert: Sequence[Triple]) -> 
             return None
         found[edge] = new
     for edge, new in found.items():
-        store.turn(edge, new)
+        store.replace_literal(edge, new)
     return {triple[0] for triple in delete}
 
 
 def _only_edge(abox: ABox, s: Term, p: Term, o: Term) -> int:
-    """The edge of an asserted triple from which nothing follows and which has none beside it; or NONE."""
+    """Return the edge of an asserted triple if it implies nothing and is the only one of its predicate."""
     store = abox.store
     subject, predicate, literal = store.numbers.get(s), abox.schema.find_property(p), store.numbers.get(o)
     if subject is None or predicate is None or literal is None:
@@ -164,10 +164,10 @@ def _only_edge(abox: ABox, s: Term, p: Term, o: Term) -> int:
     edge = store.edge(subject, predicate, literal)
     if edge == NONE or store.source[edge] != ASSERTED or not store.out.is_alone(edge):
         return NONE
-    if subject in abox.equals or literal in abox.equals or edge in abox.rest_on_edge:
+    if subject in abox.equals or literal in abox.equals or edge in abox.reasons_by_edge:
         return NONE
     if abox.spellings and abox.value(literal) in abox.spellings:
         return NONE
     kind = store.kind[literal]
-    comes_back = store.kind[subject].values or abox.steps.made_by(predicate)
-    return NONE if kind.base is not kind or comes_back or not abox.is_plain(edge) else edge
+    may_reappear = store.kind[subject].values or abox.steps.producing_chains(predicate)
+    return NONE if kind.base is not kind or may_reappear or not abox.is_plain(edge) else edge

@@ -1,8 +1,8 @@
-"""The rule table applied to a graph as it stands: forward chaining, every fact stored with its reason.
+"""Forward chaining with the rule table on a graph. Every fact is stored with its reason.
 
-Exact and general, and slow beside `abox.py`: it closes the schema (a few thousand facts), carries graphs that
-use the vocabulary in ways the compiled engine does not know, proves what an explanation claims, and is what
-the compiled engine is tested against.
+It is exact and general, but slower than `abox.py`. It closes the schema (a few thousand facts), reasons on
+graphs that the compiled engine does not support, proves explanations, and is the reference in tests of the
+compiled engine.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, FIRST, REST, SAM
 
 
 class Closure(Facts):
-    """A graph and all that follows from it, until a contradiction is met."""
+    """A graph and all its conclusions, up to the first contradiction."""
 
     def __init__(
         self, triples: Iterable[Triple] = (), base: Closure | None = None, mentions: Iterable[Term] = ()
     ) -> None:
         """Close a graph.
 
-        `base` is a closure to start from, which stays as it is; `mentions` are terms that are asked about
-        and need not be in the graph.
+        `base` is a closure to start from; it is not changed. `mentions` are terms of later queries, which
+        need not be in the graph.
         """
         base = base or _empty()
         self.clash: Reason | None = base.clash
@@ -42,13 +42,13 @@ class Closure(Facts):
         self._compared: list[Term] = list(base._compared)
         self._agenda: deque[Triple] = deque()
         for term in mentions:
-            self._meet(term)
+            self._register(term)
         self.insert(triples)
 
     def insert(self, triples: Iterable[Triple]) -> None:
-        """Assert triples and draw all conclusions, or stop at the first clash (`clash` is set then).
+        """Assert triples and draw all conclusions. Stops at the first contradiction and sets `clash`.
 
-        Lists must be complete when the triple that owns them arrives, at the latest in the same call.
+        A list must be complete when the triple that refers to it is inserted, or in the same call.
         """
         for triple in sorted(triples, key=_cells_first):
             if triple not in self.facts:
@@ -66,17 +66,17 @@ class Closure(Facts):
         self.facts[fact] = reason
         self._agenda.append(fact)
         for term in fact:
-            self._meet(term)
+            self._register(term)
             if is_literal(term) and datatypes.is_ill_typed(term):
                 self._conclude("dt-not-type", (fact,), None)
         s, p, o = fact
         if p == TYPE and is_literal(s) and datatypes.is_datatype(o) and datatypes.excludes(o, s):
             self._conclude("dt-not-type", (fact,), None)
         if p == SAME_AS and is_literal(o) and s != o:
-            self._tell_apart(fact)
+            self._add_differences(fact)
 
-    def _meet(self, term: Term) -> None:
-        """Table 8, as far as the graph at hand can tell the difference, when a term is first seen."""
+    def _register(self, term: Term) -> None:
+        """Apply table 8 to a new term, as far as it matters for this graph."""
         if datatypes.is_datatype(term) and term not in self._datatypes:
             self._datatypes.append(term)
             for same in list(self._literals.values()):
@@ -95,8 +95,8 @@ class Closure(Facts):
             if datatypes.contains(datatype, literal):
                 self._add((literal, TYPE, datatype), Reason("dt-type2", ()))
 
-    def _tell_apart(self, fact: Triple) -> None:
-        """Literals that something is the same as get all their types, and their differences (dt-diff)."""
+    def _add_differences(self, fact: Triple) -> None:
+        """Add the types and differences of a literal that is in a sameAs fact (dt-diff)."""
         literal = fact[2]
         self._type(literal, datatypes.datatypes(literal))
         value = datatypes.value(literal)
@@ -111,7 +111,7 @@ class Closure(Facts):
     # Rules
 
     def _watch(self, rule: Rule) -> None:
-        """Put a rule to work: on the facts at hand, and on those to come."""
+        """Activate a rule for present and future facts."""
         if not rule.schema:
             self._start(rule)
             return
@@ -130,7 +130,7 @@ class Closure(Facts):
             self._watch(bind(rule, bindings, (fact,)))
 
     def _choices(self, atom: Atom) -> Iterator[tuple[dict[str, Term], tuple[Triple, ...]]]:
-        """The ways to choose members of a list."""
+        """Yield the choices of list members for an atom."""
         names, _, head = atom
         members, cells = self.members(head) or ([], ())
         variables = names.split(",")
@@ -138,7 +138,7 @@ class Closure(Facts):
             yield dict(zip(variables, choice, strict=True)), cells
 
     def _start(self, rule: Rule) -> None:
-        """Put a rule to work whose schema atoms are all matched."""
+        """Activate a rule whose schema atoms are all matched."""
         rule = self._without_lists(rule)
         data = tuple(atom for atom in rule.data if not (atom[1] == SAME_AS and atom[0] == atom[2]))
         for i, atom in enumerate(data):
@@ -147,7 +147,7 @@ class Closure(Facts):
         self._join(whole, 0, [""] * whole.variables, ())
 
     def _without_lists(self, rule: Rule) -> Rule:
-        """Write the list atoms `all`, `path`, `agree` out, member by member."""
+        """Expand the list atoms `all`, `path` and `agree` member by member."""
         data: list[Atom] = []
         premises = rule.premises
         for s, p, o in rule.data:
@@ -160,23 +160,23 @@ class Closure(Facts):
                 stops = [s, *(f"?{i}" for i in range(1, len(members))), o]
                 data += [(stops[i], member, stops[i + 1]) for i, member in enumerate(members)]
             elif kind == "agree":
-                data += [(who, member, f"?{i}") for i, member in enumerate(members) for who in (s, o)]
+                data += [(subject, member, f"?{i}") for i, member in enumerate(members) for subject in (s, o)]
             if not members:
-                data.append((s, p, o))  # no list atom, or no list: then nothing matches it
+                data.append((s, p, o))  # not a list atom, or not a list: then nothing matches it
         return rule._replace(data=tuple(data), premises=premises)
 
     def _fire(self, fact: Triple) -> None:
-        """Index a fact, and apply the rules to it and to the facts indexed before: each pair meets once."""
+        """Index a fact, and join it with the facts indexed before. Each pair is joined once."""
         self._note(fact)
         for key in patterns(fact):
             for found in list(self._triggers.get(key, ())):
-                self._take(found, 0, fact, [""] * found.variables, ())
+                self._match_atom(found, 0, fact, [""] * found.variables, ())
         for key in patterns(fact):
             for rule in list(self._watchers.get(key, ())):
                 self._specialise(rule, fact)
 
     def _join(self, found: Plan, at: int, known: list[Term], premises: tuple[Triple, ...]) -> None:
-        """Match the atoms of a rule from one on, and apply the rule to each match."""
+        """Match the atoms of a rule from a position on, and apply the rule to each match."""
         if at == len(found.accesses):
             self._apply(found, known, premises)
             return
@@ -187,17 +187,17 @@ class Closure(Facts):
             known[o] if isinstance(o, int) else o,
         )
         for fact in self.match(*key):
-            self._take(found, at, fact, known, premises)
+            self._match_atom(found, at, fact, known, premises)
 
-    def _take(
+    def _match_atom(
         self, found: Plan, at: int, fact: Triple, known: list[Term], premises: tuple[Triple, ...]
     ) -> None:
-        """A fact for one atom of a rule: settle its variables and go on with the next atom."""
+        """Match a fact with an atom, bind its variables, and continue with the next atom."""
         access = found.accesses[at]
         for one, other in access.repeats:
             if fact[one] != fact[other]:
                 return
-        for variable, place in access.takes:
+        for variable, place in access.binds:
             known[variable] = fact[place]
         if at + 1 == len(found.accesses):
             self._apply(found, known, (*premises, fact))
@@ -227,14 +227,14 @@ class Closure(Facts):
 
 
 class _Empty(Closure):
-    """The axiomatic triples, and all rules at work."""
+    """The axiomatic triples, with all rules active."""
 
     def __init__(self) -> None:
         self.clash, self.facts, self._agenda = None, {}, deque()
         self._index, self._triggers, self._watchers = {}, {}, {}
         self._literals, self._datatypes, self._compared = {}, [], []
         for number in NUMBERS:
-            self._meet(number)
+            self._register(number)
         for rule in RULES:
             self._watch(rule)
         for axiom, name in AXIOMS.items():

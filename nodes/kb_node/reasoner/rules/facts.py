@@ -1,4 +1,4 @@
-"""Facts with their reasons, closed under the rules: to be asked, not to be changed."""
+"""Read-only facts with their reasons, closed under the rules."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from semmap.nodes.kb_node.reasoner.terms import FIRST, NIL, REST, SAME_AS
 
 
 class Reason(NamedTuple):
-    """Why a fact holds: a rule and the facts it was applied to. Asserted facts have None instead."""
+    """The reason of a fact: a rule and its premises. Asserted facts have None instead."""
 
     rule: str
     premises: tuple[Triple, ...]
 
 
 class Facts:
-    """A graph and all that follows from it."""
+    """A graph and all its conclusions."""
 
     clash: Reason | None = None
-    """Why it is contradictory."""
+    """The reason of the contradiction, if there is one."""
 
     def __init__(self, facts: dict[Triple, Reason | None]) -> None:
-        """Facts that are closed, each with its reason, or None where it is asserted."""
+        """`facts` are closed under the rules, each with its reason, or None if it is asserted."""
         self.facts = facts
         self._index: dict[Pattern, dict[Triple, None]] = {}
         for fact in facts:
@@ -38,7 +38,7 @@ class Facts:
             self._index.setdefault(key, {})[fact] = None
 
     def match(self, s: Term | None = None, p: Term | None = None, o: Term | None = None) -> Iterable[Triple]:
-        """All facts of a pattern; None is a wildcard."""
+        """Return the facts that match a pattern, in which None is a wildcard."""
         if s is not None and p is not None and o is not None:
             return ((s, p, o),) if (s, p, o) in self.facts else ()
         if s is None and p is None and o is None:
@@ -48,12 +48,12 @@ class Facts:
         return self._index.get((s, p, o), ())
 
     def holds(self, triple: Triple) -> bool:
-        """Whether a triple follows. Everything is the same as itself (eq-ref)."""
+        """Return whether a triple follows. Everything is the same as itself (eq-ref)."""
         s, p, o = triple
         return triple in self.facts or triple in DECLARATIONS or (p == SAME_AS and s == o)
 
     def leaves(self, goal: Triple | None) -> list[Triple]:
-        """The asserted triples that a fact (None: the clash) was concluded from, in the proof's order."""
+        """Return the asserted triples behind a fact (None: the clash), in the order of the proof."""
         seen: set[Triple | None] = set()
         leaves: list[Triple] = []
         pending = [goal]
@@ -70,11 +70,11 @@ class Facts:
         return leaves
 
     def reason(self, fact: Triple | None) -> Reason | None:
-        """How a fact (or None: the clash) was concluded; None for what is asserted or not there."""
+        """Return the reason of a fact (None: the clash); None if it is asserted or absent."""
         return self.clash if fact is None else self.facts.get(fact)
 
     def members(self, head: Term) -> tuple[list[Term], tuple[Triple, ...]] | None:
-        """Members and cells of an asserted list; None when it is cut off, branches or runs in a circle."""
+        """Return members and cells of an asserted list; None if it is incomplete, branching or cyclic."""
         members: list[Term] = []
         cells: list[Triple] = []
         while head != NIL:
@@ -89,17 +89,17 @@ class Facts:
 
 
 class _Packed(Struct, array_like=True):
-    """Facts in numbers: terms by their place in `terms`, facts by theirs in `facts`."""
+    """Facts as numbers: positions in `terms` and `facts`."""
 
     terms: list[Term]
     facts: list[tuple[int, int, int]]
     rules: list[str]
-    """The rule that made each; empty for what is asserted."""
+    """The rule of each fact; empty for asserted facts."""
     premises: list[list[int]]
 
 
 def pack(facts: Facts) -> bytes:
-    """Facts that are consistent, to be kept; `unpack` gives them back."""
+    """Serialise consistent facts for `unpack`."""
     terms = {term: i for i, term in enumerate(dict.fromkeys(term for fact in facts.facts for term in fact))}
     places = {fact: i for i, fact in enumerate(facts.facts)}
     return msgpack.encode(
@@ -116,7 +116,7 @@ def pack(facts: Facts) -> bytes:
 
 
 def unpack(content: bytes) -> Facts:
-    """What `pack` was given."""
+    """Return the facts that were serialised by `pack`."""
     packed = msgpack.decode(content, type=_Packed)
     terms = packed.terms
     facts = [(terms[s], terms[p], terms[o]) for s, p, o in packed.facts]

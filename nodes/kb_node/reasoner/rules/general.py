@@ -1,6 +1,6 @@
-"""The engine for graphs that use the vocabulary freely (OWL Full): everything is materialised in one closure.
+"""The engine for OWL Full graphs: one closure in which everything is materialised.
 
-Exact for all rules; a change costs as much as the map is large.
+It applies all rules exactly. The cost of a change is proportional to the size of the map.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ from semmap.nodes.kb_node.reasoner.terms import TYPE, is_literal, is_named
 
 
 class GeneralEngine:
-    """A graph with its closure. Raises nothing: a clash is found in `contradiction`."""
+    """A graph with its closure. It does not raise on inconsistency: `contradiction` returns the proof."""
 
-    def __init__(self, triples: Iterable[Triple], why: str = "", computed: Iterable[Triple] = ()) -> None:
-        """Close a graph; `why` says what keeps it from being compiled. `computed` facts are not asserted."""
-        self.why = why
+    def __init__(self, triples: Iterable[Triple], reason: str = "", computed: Iterable[Triple] = ()) -> None:
+        """Close a graph. `reason` states why it cannot be compiled. `computed` facts are not asserted."""
+        self.reason = reason
         self._asserted = dict.fromkeys(triples)
         self._computed = dict.fromkeys(triple for triple in computed if triple not in self._asserted)
         self._closure = Closure({**self._asserted, **self._computed})
 
     @cached_property
     def words(self) -> Words:
-        """What terms are called in sentences."""
+        """The words for terms in sentences."""
         return Words.of(self._asserted)
 
     def __len__(self) -> int:
         return len(self._asserted)
 
     def contradiction(self) -> Explanation | None:
-        """Why the graph is inconsistent; None when it is not."""
+        """Return the proof that the graph is inconsistent; None if it is consistent."""
         return (
             None
             if self._closure.clash is None
@@ -44,34 +44,34 @@ class GeneralEngine:
         )
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        """The asserted triples of a pattern."""
+        """Return the asserted triples that match a pattern."""
         return (triple for triple in self._closure.match(s, p, o) if triple in self._asserted)
 
     def computed(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        """The computed triples of a pattern."""
+        """Return the computed triples that match a pattern."""
         return (
             triple
             for triple in self._computed
-            if all(mine in (None, its) for mine, its in zip((s, p, o), triple, strict=True))
+            if all(wanted in (None, term) for wanted, term in zip((s, p, o), triple, strict=True))
         )
 
     def is_computed(self, triple: Triple) -> bool:
-        """Whether a triple is computed, and not asserted."""
+        """Return whether a triple is computed and not asserted."""
         return triple in self._computed
 
     def about(self, subject: Term) -> dict[Term, list[Term]]:
-        """The asserted triples of a subject: predicate to objects."""
+        """Return the asserted triples of a subject: predicate to objects."""
         objects: dict[Term, list[Term]] = {}
         for _, p, o in self.asserted(subject, None, None):
             objects.setdefault(p, []).append(o)
         return objects
 
     def mentioned(self, terms: Set[Term]) -> set[Term]:
-        """Those that a triple has as its subject or object."""
+        """Return those of `terms` that are the subject or object of a triple."""
         return {term for s, _, o in self.asserted(None, None, None) for term in (s, o) if term in terms}
 
     def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        """The triples of a pattern that follow and were not asserted; which, `Reasoner.inferred` says."""
+        """Return the inferred triples of a pattern that are not asserted (see `Reasoner.inferred`)."""
         wants_schema = p is not None and (p != TYPE or (o is not None and is_schema((o, p, o))))
         given: set[Triple] = set()
         for triple in self._closure.match(s, p, None if o is not None and is_literal(o) else o):
@@ -83,23 +83,23 @@ class GeneralEngine:
                     yield triple
             elif is_literal(object_):
                 spelled = (subject, predicate, datatypes.canonical(object_))
-                if spelled not in given and o in (None, spelled[2]) and not self._is_said(spelled):
+                if spelled not in given and o in (None, spelled[2]) and not self._is_asserted(spelled):
                     given.add(spelled)
                     yield spelled
             elif predicate != TYPE or is_named(object_):
                 yield triple
 
-    def _is_said(self, triple: Triple) -> bool:
-        """Whether a value, in its canonical spelling, is asserted in any."""
+    def _is_asserted(self, triple: Triple) -> bool:
+        """Return whether a value, given in its canonical spelling, is asserted in any spelling."""
         s, p, value = triple
         return any(datatypes.canonical(o) == value for _, _, o in self.asserted(s, p, None))
 
     def holds(self, triple: Triple) -> bool:
-        """Whether a triple is asserted or follows."""
+        """Return whether a triple is asserted or inferred."""
         return self._fact(triple) is not None
 
     def _fact(self, triple: Triple) -> Triple | None:
-        """The fact that a triple states, a value perhaps in another spelling; None if it does not hold."""
+        """Return the fact that a triple states, in any spelling of its value; None if it does not hold."""
         if self._closure.holds(triple):
             return triple
         s, p, o = triple
@@ -111,15 +111,15 @@ class GeneralEngine:
         )
 
     def types(self, individual: Term) -> frozenset[Term]:
-        """The named classes of an individual."""
+        """Return the named classes of an individual."""
         facts = self._closure.match(individual, TYPE)
         return frozenset(fact[2] for fact in facts if is_named(fact[2]) and not is_schema(fact))
 
     def instances(self, cls: Term) -> Iterator[Term]:
-        """The individuals of a class."""
+        """Return the individuals of a class."""
         facts = self._closure.match(None, TYPE, cls)
         return (fact[0] for fact in facts if not is_literal(fact[0]) and not is_schema(fact))
 
     def explain(self, triple: Triple) -> Explanation:
-        """Why a triple follows that holds."""
+        """Return the proof of a triple that holds."""
         return Prover(self.words).prove(self._closure.leaves(self._fact(triple)), triple)

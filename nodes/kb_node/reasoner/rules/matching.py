@@ -1,7 +1,7 @@
-"""How a rule's data atoms are matched: planned once for each atom that a new fact may match first.
+"""Join plans for the data atoms of a rule: one for each atom that a new fact may match first.
 
-A plan numbers the variables. What an atom is looked up by is a constant, the number of a variable that is
-known by then, or None; constants and known variables need no check afterwards.
+A plan numbers the variables. The look-up key of an atom has constants, numbers of bound variables, or None.
+Constants and bound variables need no check afterwards.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ Slot = Term | int | None
 
 
 class Access(NamedTuple):
-    """One atom: what to look facts up by, and which variables a fact then settles."""
+    """The look-up key of an atom, and the variables that a fact binds."""
 
     key: tuple[Slot, Slot, Slot]
-    takes: tuple[tuple[int, int], ...]
+    binds: tuple[tuple[int, int], ...]
     """(variable, place in the fact)"""
     repeats: tuple[tuple[int, int], ...]
     """Places in the fact that must hold the same term."""
@@ -32,22 +32,22 @@ class Plan(NamedTuple):
     rule: Rule
     accesses: tuple[Access, ...]
     places: tuple[int, ...]
-    """Where the match of each atom stands among the rule's premises."""
+    """The position of each atom's match among the rule's premises."""
     head: tuple[Term | int, Term | int, Term | int] | None
     variables: int
 
 
 def plan(rule: Rule, data: tuple[Atom, ...], first: int | None = None) -> Plan:
-    """Plan to match the data atoms of a rule, beginning with the given one."""
+    """Return a plan for the data atoms of a rule, starting with atom `first`."""
     order = _join_order(data, first)
     numbers: dict[str, int] = {}
     accesses = tuple(_access(data[place], numbers) for place in order)
     head = rule.head and tuple(numbers.get(word, word) for word in rule.head)
-    return Plan(rule, accesses, order, head, len(numbers))  # type: ignore[arg-type]  # three words stay three
+    return Plan(rule, accesses, order, head, len(numbers))  # type: ignore[arg-type]  # the tuple keeps its length
 
 
 def _join_order(atoms: tuple[Atom, ...], first: int | None) -> tuple[int, ...]:
-    """The given atom first, then always the one with the most known words."""
+    """Return the join order: the given atom, then always the atom with the most bound words."""
     left = [place for place in range(len(atoms)) if place != first]
     order = [] if first is None else [first]
     while left:
@@ -60,7 +60,7 @@ def _join_order(atoms: tuple[Atom, ...], first: int | None) -> tuple[int, ...]:
 
 def _access(atom: Atom, numbers: dict[str, int]) -> Access:
     key: list[Slot] = []
-    takes: list[tuple[int, int]] = []
+    binds: list[tuple[int, int]] = []
     repeats: list[tuple[int, int]] = []
     here: dict[str, int] = {}
     for place, word in enumerate(atom):
@@ -74,26 +74,26 @@ def _access(atom: Atom, numbers: dict[str, int]) -> Access:
         else:
             key.append(None)
             here[word] = place
-            takes.append((len(numbers) + len(takes), place))
-    numbers.update((word, number) for word, (number, _) in zip(here, takes, strict=True))
+            binds.append((len(numbers) + len(binds), place))
+    numbers.update((word, number) for word, (number, _) in zip(here, binds, strict=True))
     s, p, o = key
-    return Access((s, p, o), tuple(takes), tuple(repeats))
+    return Access((s, p, o), tuple(binds), tuple(repeats))
 
 
 def pattern(atom: Atom) -> Pattern:
-    """An atom with its variables as wildcards."""
+    """Return an atom with its variables as wildcards."""
     s, p, o = (None if word[0] == "?" else word for word in atom)
     return s, p, o
 
 
 def indexed(fact: Triple) -> tuple[Pattern, ...]:
-    """The patterns that facts are looked up by."""
+    """Return the patterns under which a fact is indexed."""
     s, p, o = fact
     return (s, None, None), (None, p, None), (None, None, o), (s, p, None), (None, p, o)
 
 
 def patterns(fact: Triple) -> tuple[Pattern, ...]:
-    """All patterns that a fact matches."""
+    """Return all patterns that a fact matches."""
     s, p, o = fact
     return (
         (None, p, None), (None, p, o), (s, p, None), (None, None, None), (s, None, None), (None, None, o),
@@ -102,7 +102,7 @@ def patterns(fact: Triple) -> tuple[Pattern, ...]:
 
 
 def unify(atom: Atom, fact: Triple) -> dict[str, Term] | None:
-    """The variables of an atom as a fact has them; None when it does not match."""
+    """Return the variable bindings of an atom for a fact; None if it does not match."""
     found: dict[str, Term] = {}
     for word, term in zip(atom, fact, strict=True):
         if word[0] == "?":
@@ -114,7 +114,7 @@ def unify(atom: Atom, fact: Triple) -> dict[str, Term] | None:
 
 
 def bind(rule: Rule, bindings: dict[str, Term], premises: tuple[Triple, ...]) -> Rule:
-    """What is left of a rule when its first schema atom is matched."""
+    """Return the rest of a rule after its first schema atom is matched."""
 
     def bound(word: str) -> str:
         if word[-1] == ")":

@@ -1,16 +1,20 @@
 """The OWL 2 RL/RDF rules as a table: name | schema | data | conclusion.
 
-The rows are tables 4 to 9 of the recommendation (OWL 2 Profiles, section 4.3) under their own names. A row
-reads: *given* the schema atoms and *if* the data atoms hold, *then* the conclusion holds; `false` means that
-the graph is inconsistent. The engine specialises a row by its schema atoms first, so that `?x ?p ?y` becomes
-`?x :partOf ?y` before any individual is looked at.
+The rows are tables 4 to 9 of the recommendation (OWL 2 Profiles, section 4.3) with their original names. If
+the schema atoms and the data atoms of a row hold, its conclusion holds. `false` means that the graph is
+inconsistent. The engine first specialises a row by its schema atoms: `?x ?p ?y` becomes `?x :partOf ?y`
+before individuals are matched.
 
-A list `?l` is spoken of in five ways. `?x a all(?l)`: of every member. `?m in ?l`: of some member.
-`?x path(?l) ?y`: one property after the other. `?x agree(?l) ?y`: both have a common value of every property.
-`?m,?n of ?l`: two members at different places.
+There are five list atoms:
 
-Not rows: eq-ref (every term is itself; answered without being stored), the axiomatic triples (AXIOMS), and
-table 8, which speaks of values (datatypes.py). Rows named ext-* go beyond the recommendation.
+- `?x a all(?l)`: x is in every member;
+- `?m in ?l`: m is some member;
+- `?x path(?l) ?y`: the properties lead from x to y, one after the other;
+- `?x agree(?l) ?y`: x and y have a common value of every property;
+- `?m,?n of ?l`: m and n are members at different positions.
+
+Not in the table: eq-ref (every term is the same as itself, which is not stored), the axiomatic triples
+(AXIOMS), and table 8 about values (datatypes.py). Rows named ext-* go beyond the recommendation.
 """
 
 from __future__ import annotations
@@ -116,10 +120,7 @@ Atom = tuple[str, str, str]
 
 
 class Rule(NamedTuple):
-    """One row, or what is left of it when atoms have been matched.
-
-    `premises` are the triples matched so far, `order` how many schema atoms are still to be matched.
-    """
+    """A row, or the rest of it after some atoms are matched. `premises` are the triples matched so far."""
 
     name: str
     schema: tuple[Atom, ...]
@@ -150,7 +151,7 @@ NUMBERS: Final[tuple[Term, Term]] = (
     f'"0"^^{iri("xsd:nonNegativeInteger")}',
     f'"1"^^{iri("xsd:nonNegativeInteger")}',
 )
-"""How the table writes 0 and 1; other spellings are the same by value (dt-eq)."""
+"""The literals 0 and 1 of the table. Other spellings are equal by value (dt-eq)."""
 
 RULES: Final[tuple[Rule, ...]] = tuple(_rule(row) for row in TABLE.splitlines() if row.strip())
 
@@ -170,10 +171,10 @@ AXIOMS: Final[dict[Triple, str]] = {
     (iri("owl:Thing"), iri("a"), iri("owl:Class")): "cls-thing",
     (iri("owl:Nothing"), iri("a"), iri("owl:Class")): "cls-nothing1",
 }
-"""Axiomatic triples that other rules start from, with their rule's name."""
+"""Axiomatic triples that are premises of other rules, with their rule's name."""
 
 DECLARATIONS: Final[dict[Triple, str]] = {
     **{(term, iri("a"), iri("owl:AnnotationProperty")): "prp-ap" for term in ANNOTATIONS},
     **{(term, iri("a"), iri("rdfs:Datatype")): "dt-type1" for term in DATATYPES},
 }
-"""Axiomatic triples that nothing follows from: answered, never stored."""
+"""Axiomatic triples without further conclusions. They are not stored."""

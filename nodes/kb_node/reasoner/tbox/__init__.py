@@ -1,1 +1,1 @@
-"""The TBox, compiled: what it says, in numbers."""
+"""The compiled TBox: its axioms with numbers for classes and properties."""

@@ -1,6 +1,6 @@
-"""What a TBox says, in numbers: roles, chains, limits, keys, and the axioms of one property.
+"""Compiled axioms: roles, chains, limits, keys, and the axioms of one property.
 
-A *role* is a property read forwards or backwards: `(q, False)` of an edge x-y is x q y, `(q, True)` is y q x.
+A *role* is a property or its inverse: for an edge x-y, `(q, False)` is x q y and `(q, True)` is y q x.
 """
 
 from __future__ import annotations
@@ -10,24 +10,24 @@ from dataclasses import dataclass, field
 from semmap.nodes.kb_node.reasoner.explanations import Term
 
 Role = tuple[int, bool]
-"""A property's number, and whether it is read backwards."""
+"""The number of a property, and whether it is read backwards."""
 
 ANY = -1
-"""In the place of a class: everything."""
+"""The pseudo class of everything."""
 WIDE = 12
-"""Properties of a group beyond which nobody looks for their edges one by one."""
+"""Number of properties in a group above which all edges of a node are scanned."""
 SAME, DIFFERENT = 0, 1
-"""The numbers of owl:sameAs and owl:differentFrom among the properties."""
+"""The property numbers of owl:sameAs and owl:differentFrom."""
 
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """How the individuals related to one by a role are found: along which of its edges."""
+    """The edges along which a role leads: outgoing and incoming ones, by property."""
 
     out: tuple[int, ...]
     into: tuple[int, ...]
     is_wide: bool = field(init=False, compare=False)
-    """Whether it is quicker to look at all edges of a node than for those of each property."""
+    """Whether it is faster to scan all edges of a node than to look up each property."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "is_wide", len(self.out) + len(self.into) > WIDE)
@@ -35,7 +35,7 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """At most one value: of `role`, for members of `owner`, among members of `filler` (or ANY)."""
+    """At most one value of `role` in `filler` (or ANY) for members of `owner`."""
 
     role: Role
     owner: int
@@ -44,7 +44,7 @@ class Limit:
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """Members of a class that agree on all properties are one individual (prp-key)."""
+    """Members of a class with common values of all properties are the same individual (prp-key)."""
 
     owner: int
     properties: tuple[int, ...]
@@ -52,7 +52,7 @@ class Key:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """x first y and y second z make x result z (prp-spo2, prp-trp); each is a property's number."""
+    """x first y and y second z imply x result z (prp-spo2, prp-trp). Each is a property number."""
 
     first: int
     second: int
@@ -61,23 +61,23 @@ class Chain:
 
 @dataclass
 class Axioms:
-    """What is said of one property; classes are numbers, ANY where there is no restriction."""
+    """The axioms of one property. Classes are numbers, or ANY for no restriction."""
 
     term: Term
     domain: int = 0
     range: int = 0
     some: list[tuple[int, int]] = field(default_factory=list)
-    """(restriction, filler): relating to a filler makes a member."""
+    """(restriction, filler): a value in the filler implies the restriction."""
     only: list[tuple[int, int]] = field(default_factory=list)
-    """(restriction, filler): what members relate to is a filler."""
+    """(restriction, filler): all values of members are in the filler."""
     none: list[tuple[int, int]] = field(default_factory=list)
-    """(restriction, filler): members relate to no filler."""
+    """(restriction, filler): members have no value in the filler."""
     limits: list[Limit] = field(default_factory=list)
     keys: list[Key] = field(default_factory=list)
     exclusive: set[Role] = field(default_factory=set)
-    """Roles that never hold beside this property between the same two individuals."""
+    """Roles that exclude this property between the same two individuals."""
     irreflexive: bool = False
 
 
 class NotCompilable(Exception):
-    """The graph uses the vocabulary in a way that the compiled engine does not know (OWL Full)."""
+    """The graph uses the vocabulary in a way that the compiled engine does not support (OWL Full)."""

@@ -1,7 +1,7 @@
-"""What a schema says beyond the OWL 2 RL profile (OWL 2 Profiles, section 4.2).
+"""Axioms beyond the OWL 2 RL profile (OWL 2 Profiles, section 4.2).
 
-Such an axiom does no harm: the rules draw from it what they can, most often nothing. What remains unsaid is
-counted here, by kind, so that a user is told once.
+Such axioms are allowed, but the rules use them only partially or not at all. They are counted by kind, so
+that the user can be warned.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _CLASSES = {iri("owl:ReflexiveProperty"): "reflexive property"}
 
 
 def outside_rl(schema: Iterable[Triple]) -> Counter[str]:
-    """How many axioms there are of each kind that no rule, or no rule in full, takes notice of."""
+    """Return the number of axioms that the rules do not use fully, by kind."""
     facts = Facts(dict.fromkeys(schema))
     found: Counter[str] = Counter()
     for s, p, o in facts.facts:
@@ -75,7 +75,7 @@ def _axiom(facts: Facts, s: Term, p: Term, o: Term) -> Iterator[str]:
 
 
 def _below(facts: Facts, cls: Term, where: str) -> Iterator[str]:
-    """What makes a class expression other than one that may stand below another (`subClassExpression`)."""
+    """Yield what an expression has beyond the allowed subclasses (`subClassExpression`)."""
     if cls[0] == "<":
         return
     for _, p, o in facts.match(cls):
@@ -89,7 +89,7 @@ def _below(facts: Facts, cls: Term, where: str) -> Iterator[str]:
 
 
 def _above(facts: Facts, cls: Term, where: str) -> Iterator[str]:
-    """What makes a class expression other than one that may stand above another (`superClassExpression`)."""
+    """Yield what an expression has beyond the allowed superclasses (`superClassExpression`)."""
     for _, p, o in facts.match(cls):
         if p == iri("owl:intersectionOf"):
             for member in _members(facts, o) if cls[0] != "<" else ():
@@ -106,7 +106,7 @@ def _above(facts: Facts, cls: Term, where: str) -> Iterator[str]:
                 for _, _, filler in facts.match(cls, name):
                     yield from _below(facts, filler, where)
             if p in _CARDINALITIES[2:] and datatypes.canonical(o) == datatypes.canonical(NUMBERS[1]):
-                yield f"{_KINDS[iri('owl:minCardinality')]} {where}"  # the half of "exactly" that is lost
+                yield f"{_KINDS[iri('owl:minCardinality')]} {where}"  # minimum is ignored
         elif (kind := _kind(p)) is not None and p != iri("owl:hasValue"):
             yield f"{kind} {where}"
 

@@ -1,10 +1,10 @@
-"""The TBox compiled: classes as bits, properties as roles, and what they say of an edge between individuals.
+"""The compiled TBox: classes as bits, properties as roles, and their axioms.
 
-A *role* is a property read forwards or backwards: `(q, False)` of an edge x-y is x q y, `(q, True)` is y q x.
-An edge of one property implies a set of roles (its super-properties, inverses and symmetric readings), so no
-implied edge is ever stored. A *mask* is a set of classes as the bits of an integer.
+A *role* is a property or its inverse: for an edge x-y, `(q, False)` is x q y and `(q, True)` is y q x. An
+edge of one property implies a set of roles (super-properties, inverses and symmetry). So implied edges are
+not stored. A *mask* is a set of classes as the bits of an integer.
 
-Compiled from the schema's closure, which already holds all that the scm-* rules say.
+It is compiled from the schema's closure, which contains all conclusions of the scm-* rules.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS
 
 
 class Schema:
-    """A compiled TBox. New classes and properties may be met later; nothing is said of them."""
+    """A compiled TBox. Classes and properties without axioms may be added later."""
 
     def __init__(self, closure: Facts) -> None:
         self.closure = closure
@@ -35,15 +35,15 @@ class Schema:
         self.nominals: dict[Term, int] = {}
         self.literals: dict[datatypes.Value, int] = {}
         self.negatives: dict[int, Term] = {}
-        """The classes of what must not have a value, with the negative assertion that says so."""
+        """Classes of individuals that must not have a value, with their negative assertion."""
         self.listed: dict[Term, list[Term]] = {}
-        """The AllDisjoint and AllDifferent axioms in whose list a term is."""
+        """The AllDisjoint and AllDifferent axioms that list a term."""
         self.axioms: list[Axioms] = []
         self.chains: dict[Chain, None] = {}
         self.virtual: tuple[int, ...] = ()
-        """The transitive properties whose chains are followed when somebody asks, instead of being stored."""
+        """The transitive properties whose chains are followed by queries instead of being stored."""
         self.passed_on: dict[int, tuple[int, int]] = {}
-        """Classes of our own along a transitive property: by which restriction, and what its members are."""
+        """Auxiliary classes along a transitive property: the restriction, and the class of their members."""
         self._class_numbers: dict[Term, int] = {}
         self._property_numbers: dict[Term, int] = {}
         self._roles: dict[int, dict[Role, tuple[Triple, ...]]] = {}
@@ -59,7 +59,7 @@ class Schema:
     # Numbers
 
     def cls(self, term: Term) -> int:
-        """The number of a class; a new one for a class not met before."""
+        """Return the number of a class. Adds the class if it is new."""
         number = self._class_numbers.get(term)
         if number is None:
             number = self._class_numbers[term] = len(self.classes)
@@ -69,7 +69,7 @@ class Schema:
         return number
 
     def property(self, term: Term) -> int:
-        """The number of a property; a new one for a property not met before."""
+        """Return the number of a property. Adds the property if it is new."""
         number = self._property_numbers.get(term)
         if number is None:
             number = self._property_numbers[term] = len(self.axioms)
@@ -78,26 +78,26 @@ class Schema:
         return number
 
     def find_class(self, term: Term) -> int | None:
-        """The number of a class, or None when it was never met."""
+        """Return the number of a class, or None if it is unknown."""
         return self._class_numbers.get(term)
 
     def find_property(self, term: Term) -> int | None:
-        """The number of a property, or None when it was never met."""
+        """Return the number of a property, or None if it is unknown."""
         return self._property_numbers.get(term)
 
-    def speaks_of(self, term: Term) -> bool:
-        """Whether a term is in use as a class or a property."""
+    def is_used(self, term: Term) -> bool:
+        """Return whether a term is used as a class or a property."""
         return term in self._class_numbers or term in self._property_numbers
 
     @cached_property
     def datatypes(self) -> dict[Term, int]:
-        """The known datatypes that the schema speaks of, with their numbers as classes."""
+        """The supported datatypes that the schema mentions, with their class numbers."""
         return {term: n for term, n in self._class_numbers.items() if datatypes.is_datatype(term)}
 
     # Roles
 
     def roles(self, prop: int) -> dict[Role, tuple[Triple, ...]]:
-        """The roles that an edge of a property implies, each with the schema facts that say so."""
+        """Return the roles that an edge of a property implies, each with the schema facts that imply it."""
         found = self._roles.get(prop)
         if found is None:
             found = self._roles[prop] = {(prop, False): ()}
@@ -124,14 +124,14 @@ class Schema:
             yield (prop, not backwards), fact
 
     def transitive_roles(self, prop: int) -> Iterator[Role]:
-        """The roles of virtual properties each of whose chains implies a property."""
+        """Yield the roles of virtual properties whose chains imply a property."""
         for p in self.virtual:
             for backwards in (False, True):
                 if (prop, backwards) in self.roles(p):
                     yield p, backwards
 
     def group(self, role: Role) -> Group:
-        """Along which edges of an individual a role leads."""
+        """Return the edges of an individual along which a role leads."""
         found = self._groups.get(role)
         if found is None:
             prop, backwards = role
@@ -148,19 +148,19 @@ class Schema:
         for c, _, d in self._facts("rdfs:subClassOf"):
             self.supers[self.cls(c)] |= 1 << self.cls(d)
         for c, _, d in self._facts("owl:disjointWith"):
-            self._separate(self.cls(c), self.cls(d))
+            self._add_disjoint(self.cls(c), self.cls(d))
         for c, _, d in self._facts("owl:complementOf"):
-            self._separate(self.cls(c), self.cls(d))
+            self._add_disjoint(self.cls(c), self.cls(d))
         for members in self._lists_of("owl:AllDisjointClasses", "owl:members"):
             for c, d in combinations(members, 2):
-                self._separate(self.cls(c), self.cls(d))
+                self._add_disjoint(self.cls(c), self.cls(d))
         for c, _, head in self._facts("owl:intersectionOf"):
             if members := self._members(head):
                 self.intersections.append((self._mask(members), self.cls(c)))
         nothing = self.cls(NOTHING)
-        self._separate(nothing, nothing)
+        self._add_disjoint(nothing, nothing)
 
-    def _separate(self, one: int, other: int) -> None:
+    def _add_disjoint(self, one: int, other: int) -> None:
         self.disjoint[one] |= 1 << other
         self.disjoint[other] |= 1 << one
 
@@ -200,9 +200,9 @@ class Schema:
         self._axioms(q).exclusive.add((self.property(p), False))
 
     def _chain(self, links: list[Term], result: Term) -> None:
-        """A long chain is made of short ones, by properties of our own for its beginnings."""
+        """Split a long chain into chains of two, with auxiliary properties for its beginnings."""
         if len(links) < 2:
-            return  # not OWL, which wants two; `profile` counts it
+            return  # OWL requires two; `profile` counts it
         first = self.property(links[0])
         for i, link in enumerate(links[1:], 2):
             end = self.property(result if i == len(links) else " ".join(links[:i]))
@@ -233,7 +233,7 @@ class Schema:
         for name in ("owl:members", "owl:distinctMembers"):
             for members in self._lists_of("owl:AllDifferent", name):
                 for one, other in combinations(members, 2):
-                    self._separate(self.nominal(one), self.nominal(other))
+                    self._add_disjoint(self.nominal(one), self.nominal(other))
         for n, _, s in self._facts("owl:sourceIndividual"):
             for p in self._objects(n, "owl:assertionProperty"):
                 targets = (*self._objects(n, "owl:targetIndividual"), *self._objects(n, "owl:targetValue"))
@@ -241,10 +241,10 @@ class Schema:
                     forbidden = self.cls(f"{{{n} {p} {o}}}")
                     self.negatives[forbidden] = n
                     self._axioms(p).some.append((forbidden, self.nominal(o)))
-                    self._separate(forbidden, self.nominal(s))
+                    self._add_disjoint(forbidden, self.nominal(s))
 
     def nominal(self, term: Term) -> int:
-        """The class of one individual or value only."""
+        """Return the class that has one individual or value as its only member."""
         if term not in self.nominals:
             number = self.nominals[term] = self.cls(f"{{{term}}}")
             if is_literal(term) and (value := datatypes.value(term)) is not None:

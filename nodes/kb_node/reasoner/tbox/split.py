@@ -1,7 +1,7 @@
-"""Which triples belong to the schema, which of these say nothing, and which are beyond the compiled engine.
+"""Classification of triples: schema or data, inert axioms, and triples beyond the compiled engine.
 
-A triple about individuals is compared with the schema at every change, so the sets below are what the rules
-read, and no more: all else of the reserved vocabulary (annotations of axioms, headers, reification) is data.
+A change of the schema is expensive. So only triples that the rules read as axioms count as schema. All other
+triples with the reserved vocabulary (annotated axioms, headers, reification) are data.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from semmap.nodes.kb_node.reasoner.terms import (
 )  # fmt: skip
 
 UNIVERSAL: Final = frozenset(iris("owl:topObjectProperty owl:topDataProperty"))
-"""The properties that relate everything: a subproperty of theirs says nothing."""
+"""The properties that relate everything. To be a subproperty of them is trivial."""
 _EXTREME = UNIVERSAL | frozenset(iris("owl:bottomObjectProperty owl:bottomDataProperty"))
 _PLAIN_PREDICATES = _EXTREME | frozenset(
     {
@@ -41,7 +41,7 @@ _PLAIN_PREDICATES = _EXTREME | frozenset(
 _SCHEMA_PREDICATES = frozenset(
     iris("rdfs:subClassOf rdfs:subPropertyOf rdfs:domain rdfs:range rdf:first rdf:rest")
 )
-"""Those that are not OWL's own, all of which are but the plain ones."""
+"""Schema predicates outside the OWL namespace. Those in it are schema unless they are plain."""
 _PLAIN_CLASSES = frozenset(
     {
         THING,
@@ -57,11 +57,11 @@ METACLASSES: Final = frozenset(
         "owl:DeprecatedProperty rdfs:ContainerMembershipProperty rdf:List"
     )
 )
-"""The classes of classes and properties of which no rule draws anything about individuals."""
+"""Classes of classes and properties from which no rule derives facts about individuals."""
 
 
 def is_schema(triple: Triple) -> bool:
-    """Whether a triple belongs to the schema: it says something of classes, properties, lists or axioms."""
+    """Return whether a triple belongs to the schema (classes, properties, lists, axioms)."""
     _, p, o = triple
     return _is_schema_class(o) if p == TYPE else _is_schema_predicate(p)
 
@@ -77,15 +77,15 @@ def _is_schema_predicate(term: Term) -> bool:
 
 
 def is_datatype(term: Term) -> bool:
-    """Whether a term names a datatype, be its values known here or not (`xsd:duration`)."""
+    """Return whether a term names a datatype, supported or not (such as `xsd:duration`)."""
     return term.startswith(_XSD) or datatypes.is_datatype(term)
 
 
 def is_inert(triple: Triple) -> bool:
-    """Whether a triple of the schema is outside of OWL 2 RL and says nothing there.
+    """Return whether an axiom is outside OWL 2 RL and has no consequences.
 
-    It makes something a subproperty of what relates everything, or speaks of the classes of the
-    vocabulary as if they were classes of individuals (`:Concept rdfs:subClassOf rdfs:Class`).
+    It declares a subproperty of a universal property, or uses classes of the vocabulary as classes of
+    individuals (`:Concept rdfs:subClassOf rdfs:Class`).
     """
     s, p, o = triple
     if p == TYPE:
@@ -94,22 +94,22 @@ def is_inert(triple: Triple) -> bool:
 
 
 def check_compilable(triple: Triple) -> None:
-    """Raise NotCompilable for a triple about the vocabulary itself, or that equates what is no individual."""
+    """Raise NotCompilable if a triple redefines the vocabulary or equates something with a value."""
     s, p, o = triple
     if is_literal(s):
-        raise NotCompilable(f"a literal has properties: {_told(triple)}")
-    spoken_of = () if p == TYPE and o in METACLASSES else (s,) if p == TYPE else (s, o)
-    if any(is_reserved(term) and not _may_be_spoken_of(term) for term in spoken_of):
-        raise NotCompilable(f"the meaning of OWL's own vocabulary is changed: {_told(triple)}")
+        raise NotCompilable(f"a literal has properties: {_text(triple)}")
+    described = () if p == TYPE and o in METACLASSES else (s,) if p == TYPE else (s, o)
+    if any(is_reserved(term) and not _may_be_described(term) for term in described):
+        raise NotCompilable(f"the meaning of OWL's own vocabulary is changed: {_text(triple)}")
     if p in (SAME_AS, DIFFERENT_FROM) and is_literal(o):
-        raise NotCompilable(f"an individual is compared with a value: {_told(triple)}")
+        raise NotCompilable(f"an individual is compared with a value: {_text(triple)}")
 
 
-def _told(triple: Triple) -> str:
+def _text(triple: Triple) -> str:
     return " ".join(triple)
 
 
-def _may_be_spoken_of(term: Term) -> bool:
+def _may_be_described(term: Term) -> bool:
     return (
         term in ANNOTATIONS
         or term in (THING, NOTHING, NIL, _RESOURCE)

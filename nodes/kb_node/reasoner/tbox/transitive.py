@@ -1,8 +1,9 @@
-"""Transitive properties that need not be stored step by step.
+"""Transitive properties whose closure need not be stored.
 
-What `x p y p z` adds to `x p z` grows with the square of what is said, and most rules do not care: a domain
-or range is known from the single steps, and membership in a restriction can be passed on along them. Only
-where a rule looks at pairs (functional, disjoint, irreflexive, chains with others, keys) are they stored.
+The number of pairs `x p z` implied by `x p y p z` grows quadratically, and most rules do not need them.
+Domain and range follow from the single steps, and membership in a restriction can be passed on along the
+steps. The pairs are stored only if a rule needs them (functional, disjoint, irreflexive, chains with others,
+keys).
 """
 
 from __future__ import annotations
@@ -17,13 +18,13 @@ if TYPE_CHECKING:
 
 
 def compile_transitive(schema: Schema) -> Iterator[int]:
-    """Take the chains that need not be stored out of a schema, let restrictions be passed on instead."""
+    """Remove the chains that need not be stored from a schema, and pass restrictions on instead."""
     own = {chain.first: chain for chain in schema.chains if chain.first == chain.second == chain.result}
     paired = {q for chain in schema.chains if chain not in own.values() for q in (chain.first, chain.second)}
     found = [
         p
         for p in own
-        if p > DIFFERENT and not any(_looks_at_pairs(schema, q, paired) for q in _wider(schema, p))
+        if p > DIFFERENT and not any(_needs_pairs(schema, q, paired) for q in _wider(schema, p))
     ]
     passed = [(p, *_restrictions(schema, p)) for p in found]
     for p, some, only in passed:
@@ -37,17 +38,17 @@ def _wider(schema: Schema, p: int) -> set[int]:
     return {q for q, _ in schema.roles(p)}
 
 
-def _looks_at_pairs(schema: Schema, q: int, paired: set[int]) -> bool:
+def _needs_pairs(schema: Schema, q: int, paired: set[int]) -> bool:
     axioms = schema.axioms[q]
     special = axioms.limits or axioms.exclusive or axioms.none or axioms.keys or axioms.irreflexive
     return bool(special) or q in paired
 
 
 def _restrictions(schema: Schema, p: int) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
-    """What is to be said of the subject and of the object of each single step.
+    """Return the restrictions to apply to the subject and to the object of each step.
 
-    Not the restriction itself is passed on, for who is a member of it need not have the value that it speaks
-    of, but a class of our own below it (or, for allValuesFrom, below its filler).
+    The restriction itself is not passed on, because its members may have it without such a value. An
+    auxiliary subclass of it is used instead (for allValuesFrom, a subclass of its filler).
     """
     some: dict[tuple[int, int], None] = {}
     only: dict[tuple[int, int], None] = {}

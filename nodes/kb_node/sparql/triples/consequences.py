@@ -62,7 +62,7 @@ class Consequences:
         self._dataset = dataset
         aside = set(believed.aside)
         self._reasoner = Reasoner(t for t in asserted if t not in aside)
-        self._reasoner.believe(come=believed.come, aside=believed.aside)
+        self._reasoner.update_computed(add=believed.come, suppress=believed.aside)
         dataset.deny(believed.aside)
         self._read_schema()
         dataset.infer(inferred(self._reasoner))
@@ -78,9 +78,11 @@ class Consequences:
         `believed` is what it changes besides.
         """
         was_compiled = self._reasoner.is_compiled
-        less = self._reasoner.believe(gone=believed.gone, aside=believed.aside, tell_implied=True)
+        less = self._reasoner.update_computed(
+            remove=believed.gone, suppress=believed.aside, report_implied=True
+        )
         touched = self._reasoner.apply(delete=delta.retracted, insert=delta.inserted).touched
-        more = self._reasoner.believe(come=believed.come, back=believed.back, tell_implied=True)
+        more = self._reasoner.update_computed(add=believed.come, restore=believed.back, report_implied=True)
         if not (was_compiled and self._reasoner.is_compiled) or any(map(is_schema, delta.asserted)):
             gone, new = self._all_changes()
         elif less.implied is None or more.implied is None:

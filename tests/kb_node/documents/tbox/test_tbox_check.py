@@ -55,7 +55,7 @@ def test_a_class_whose_members_would_need_what_cannot_be_is_unsatisfiable(report
     assert (wrong.iri, found.untried, found.is_sound) == ("http://o.org/o#Ice", 0, False)
     assert wrong.why == (
         "nothing is an ice cream, because every ice cream has a topping that is a Topping, every ice cream"
-        " is a Plate, whatever has a topping is an o:Cup, and nothing is both a Plate and an o:Cup."
+        " is a Plate, everything that has a topping is an o:Cup, and nothing is both a Plate and an o:Cup."
     )
 
 

@@ -1,4 +1,4 @@
-"""What is asked of an ABox by pattern: the same as all that it has, looked through one by one."""
+"""Pattern queries return the same as filtering all facts."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def matches(pattern, fact):
 
 
 def patterns_of(facts):
-    """Every pattern that one of the facts fits, and some that none does."""
+    """Return all patterns that match one of the facts, and some that match none."""
     found = {
         tuple(term if kept else None for term, kept in zip(fact, mask, strict=True))
         for fact in facts
@@ -58,13 +58,13 @@ def patterns_of(facts):
 def reasoner(request):
     reasoner = Reasoner(triples(TBOX))
     reasoner.apply(insert=triples(FACTS + request.param))
-    reasoner.believe(come=COMPUTED)
+    reasoner.update_computed(add=COMPUTED)
     assert reasoner.is_compiled
     return reasoner
 
 
 @pytest.mark.parametrize("ask", ["asserted", "computed", "inferred"])
-def test_what_fits_a_pattern_is_what_fits_of_all(reasoner, ask):
+def test_a_pattern_returns_all_matching_facts(reasoner, ask):
     ask = getattr(reasoner, ask)
     everything = list(ask())
     assert len(everything) == len(set(everything))
@@ -73,8 +73,8 @@ def test_what_fits_a_pattern_is_what_fits_of_all(reasoner, ask):
         assert sorted(found) == sorted(fact for fact in everything if matches(pattern, fact)), pattern
 
 
-def test_what_follows_is_what_the_rules_make(reasoner):
-    """As one engine that computes all from nothing does."""
+def test_conclusions_equal_those_of_the_rules(reasoner):
+    """Compared with the general engine."""
     asserted = list(reasoner.asserted())
     general = GeneralEngine([*asserted, *reasoner.computed()])
     said = set(reasoner.computed())
@@ -94,8 +94,8 @@ WHOLE = ":tray1 :part :shelf1 . :shelf1 :part :room1 . :room1 :has :lamp1 . "
 @pytest.mark.parametrize(
     "facts", [PLAIN, PLAIN + WHOLE, PLAIN + ":cup2 :weight 3 . "], ids=["things", "parts", "a value"]
 )
-def test_what_follows_of_things_without_values_is_what_the_rules_make(facts):
-    """Where nothing is the same as another, and no value is spelled in two ways, there is a shorter way."""
+def test_conclusions_without_literals_equal_those_of_the_rules(facts):
+    """Without equal nodes and spellings a faster algorithm is used."""
     reasoner = Reasoner(triples(TBOX))
     reasoner.apply(insert=triples(facts))
     general = GeneralEngine(list(reasoner.asserted()))
@@ -106,7 +106,7 @@ def test_what_follows_of_things_without_values_is_what_the_rules_make(facts):
         assert set(found) == wanted
     for pattern in patterns_of(wanted):
         assert set(reasoner.inferred(*pattern)) == {fact for fact in wanted if matches(pattern, fact)}
-    reasoner.believe(come=triples(":cup1 :on :lamp1 ."))
+    reasoner.update_computed(add=triples(":cup1 :on :lamp1 ."))
     assert triple(":lamp1 :bears :cup1") in set(reasoner.inferred())
     assert triple(":lamp1 :touches :cup1") in set(reasoner.inferred())
 
@@ -135,11 +135,11 @@ def test_what_follows_of_things_without_values_is_what_the_rules_make(facts):
         (":shelf1 :weight 2", True),
     ],
 )
-def test_what_holds(reasoner, fact, holds):
+def test_holds(reasoner, fact, holds):
     assert reasoner.holds(triple(fact)) is holds
 
 
-def test_what_is_asserted_is_given_subject_by_subject(reasoner):
+def test_asserted_facts_are_returned_by_subject(reasoner):
     asserted = list(reasoner.asserted())
     by_subject = list(reasoner.by_subject())
     assert sorted(fact for facts in by_subject for fact in facts) == sorted(asserted)
@@ -153,7 +153,7 @@ def test_what_is_asserted_is_given_subject_by_subject(reasoner):
     assert reasoner.about("<http://example.org/none>") == {}
 
 
-def test_what_is_computed_is_told_from_what_is_asserted(reasoner):
+def test_computed_and_asserted_facts_are_distinguished(reasoner):
     asserted = set(reasoner.asserted())
     for fact in COMPUTED:
         assert reasoner.is_computed(fact) is (fact not in asserted)
@@ -168,7 +168,7 @@ def test_what_is_computed_is_told_from_what_is_asserted(reasoner):
         assert not reasoner.is_computed(triple(nothing))
 
 
-def test_a_class_has_its_individuals(reasoner):
+def test_the_individuals_of_a_class(reasoner):
     def named(cls):
         return {
             term
@@ -183,7 +183,7 @@ def test_a_class_has_its_individuals(reasoner):
 
 
 @pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
-def test_in_any_world_a_pattern_finds_what_fits_of_all(theme):
+def test_a_pattern_returns_all_matching_facts_in_random_worlds(theme):
     for seed in range(4):
         world, random_ = World(seed, theme), random.Random(seed)
         try:
@@ -200,5 +200,5 @@ def test_in_any_world_a_pattern_finds_what_fits_of_all(theme):
 
 
 @pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
-def test_it_is_the_same_after_changes(theme):
+def test_patterns_after_changes(theme):
     follow(3, 6, theme)

@@ -20,7 +20,7 @@ def columns(adjacency):
 
 
 @pytest.mark.parametrize("seed", range(100))
-def test_linking_many_edges_leaves_what_linking_one_by_one_does(seed):
+def test_linking_many_edges_equals_linking_one_by_one(seed):
     rng = random.Random(seed)
     together, singly = empty(), empty()
     begin = 0
@@ -41,7 +41,7 @@ def test_linking_many_edges_leaves_what_linking_one_by_one_does(seed):
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_edges_are_found_by_some_predicates(seed):
+def test_edges_are_found_by_several_predicates(seed):
     rng = random.Random(seed)
     adjacency = empty()
     of: dict[int, dict[int, set[int]]] = {node: {} for node in range(NODES)}

@@ -1,4 +1,4 @@
-"""What literals can be: texts are alike unless the schema tells some from others."""
+"""Kinds of literals: all texts have one kind unless the schema distinguishes them."""
 
 import pytest
 
@@ -12,7 +12,7 @@ def kinds(tbox):
     return Kinds(Reasoner(triples(tbox))._engine._schema)
 
 
-def test_plain_texts_are_of_one_kind_and_numbers_and_names_in_a_language_of_others():
+def test_plain_texts_share_a_kind_that_numbers_and_tagged_texts_do_not_have():
     found = kinds(":name a owl:DatatypeProperty ; rdfs:range xsd:string .")
     assert found.literal('"cup"') is found.literal('"the blue cup, 2nd shelf"') is found.literal('"caffè"')
     others = ['"cup"@en', '"1"^^<http://www.w3.org/2001/XMLSchema#integer>']
@@ -26,7 +26,7 @@ def test_plain_texts_are_of_one_kind_and_numbers_and_names_in_a_language_of_othe
         (":code a owl:DatatypeProperty ; rdfs:range xsd:NCName .", "1st", "first"),
     ],
 )
-def test_where_the_schema_tells_texts_apart_each_is_looked_at(tbox, one, other):
+def test_texts_are_distinguished_if_the_schema_does(tbox, one, other):
     found = kinds(tbox)
     assert found.literal(f'"{one}"') is not found.literal(f'"{other}"')
     reasoner = Reasoner(triples(tbox))
@@ -36,7 +36,7 @@ def test_where_the_schema_tells_texts_apart_each_is_looked_at(tbox, one, other):
         reasoner.apply(insert=[("<http://x/a>", code, f'"{one}"')])
 
 
-def test_a_text_that_a_class_is_defined_by_is_looked_at():
+def test_a_text_in_a_class_definition_is_distinguished():
     tbox = ":Red a owl:Class ; owl:equivalentClass [ owl:onProperty :colour ; owl:hasValue 'red' ] ."
     reasoner = Reasoner(triples(tbox))
     (red, *_), colour = triples(":Red a owl:Class .")[0], triples(":a :colour 'red' .")[0][1]

@@ -1,4 +1,4 @@
-"""A reasoner that was filled from columns is as good as the one that they are of, also from then on."""
+"""A reasoner restored from columns behaves like the original, also after further changes."""
 
 import random
 
@@ -27,7 +27,7 @@ FACTS = triples(
 
 
 def restored(reasoner, random_):
-    """Another one with the same schema, numbered otherwise, that was filled; None if it cannot be."""
+    """Return a restored reasoner with the same schema in another order; None if that is not possible."""
     columns = reasoner.columns()
     schema = [fact for fact in reasoner.asserted() if is_schema(fact)]
     random_.shuffle(schema)
@@ -44,7 +44,7 @@ def restored(reasoner, random_):
     "theme", [AXIOMS, NOMINALS, TRANSITIVE], ids=["everything", "nominals", "transitive"]
 )
 @pytest.mark.parametrize("seed", range(8))
-def test_a_filled_reasoner_goes_on_like_the_one_before(seed, theme):
+def test_a_restored_reasoner_behaves_like_the_original(seed, theme):
     random_, world = random.Random(seed), None
     while world is None or Closure(world.asserted).clash is not None:
         world = World(random_.random(), theme, without=("sameAs",))
@@ -59,7 +59,7 @@ def test_a_filled_reasoner_goes_on_like_the_one_before(seed, theme):
             check(reasoner, Closure(world.asserted), world.asserted, random_)
 
 
-def test_derived_edges_go_with_what_they_rest_on():
+def test_derived_edges_are_removed_with_their_reasons():
     reasoner = Reasoner(SCHEMA)
     reasoner.apply(insert=FACTS)
     filled = restored(reasoner, random.Random(1))
@@ -72,7 +72,7 @@ def test_derived_edges_go_with_what_they_rest_on():
         filled.apply(insert=triples(":kitchen a :Cup ."))
 
 
-def test_the_columns_stay_as_they_were():
+def test_columns_do_not_change_with_the_reasoner():
     reasoner = Reasoner(SCHEMA)
     reasoner.apply(insert=FACTS)
     columns = reasoner.columns()
@@ -85,7 +85,7 @@ def test_the_columns_stay_as_they_were():
     assert sorted(columns.triples()) == before
 
 
-def test_nothing_is_filled_under_another_schema():
+def test_columns_of_another_schema_are_rejected():
     reasoner = Reasoner(SCHEMA)
     reasoner.apply(insert=FACTS)
     columns = reasoner.columns()
@@ -94,15 +94,15 @@ def test_nothing_is_filled_under_another_schema():
     assert sorted(other.asserted()) == sorted(SCHEMA[1:])
 
 
-def test_nothing_is_filled_that_only_another_schema_has():
+def test_columns_with_unknown_classes_are_rejected():
     reasoner = Reasoner(SCHEMA)
     reasoner.apply(insert=FACTS)
     columns = reasoner.columns()
-    columns.classes[0] = "_:of nobody's"
+    columns.classes[0] = "_:unknown"
     assert not Reasoner(SCHEMA).fill(columns)
 
 
-def test_what_makes_nodes_the_same_is_not_kept():
+def test_equal_nodes_are_not_supported():
     reasoner = Reasoner(SCHEMA)
     reasoner.apply(insert=triples(":cup owl:sameAs :mug ."))
     assert reasoner.columns() is None

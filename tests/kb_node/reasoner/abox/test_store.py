@@ -33,7 +33,7 @@ def test_edges_are_found_from_both_ends_and_in_groups(changes):
                 assert store.edge(s, p, o) == there.get((s, p, o), NONE)
 
 
-def test_a_released_number_is_used_again():
+def test_a_released_number_is_reused():
     store = Store(Kinds(SCHEMA))
     first = store.node("<http://example.org/a>")
     assert store.release(first)

@@ -1,7 +1,7 @@
 """All interpretations of two classes, two properties and two individuals over one and over two elements.
 
-What an axiom means is written down here once more, by sets; a set of interpretations is an integer with a bit
-for each. So a conclusion that some interpretation of the premise makes false is found at sight.
+The meaning of axioms is defined here independently, by sets. A set of interpretations is an integer with one
+bit for each. So a conclusion that is false in an interpretation of the premise is found immediately.
 """
 
 from functools import cache
@@ -52,11 +52,11 @@ MEANINGS = {
     ":a owl:differentFrom :b": lambda m: m.a != m.b,
     "[] NEVER(:a :p :b)": lambda m: (m.a, m.b) not in m.p,
 }
-"""Axioms, and whether they are true in an interpretation."""
+"""Axioms, with functions that return whether they are true in an interpretation."""
 
 
 class Interpretation:
-    """What classes, properties and individuals stand for."""
+    """An assignment of classes, properties and individuals."""
 
     def __init__(self, everything, classes, properties, individuals):
         self.all = everything
@@ -94,6 +94,6 @@ def interpretations():
 
 @cache
 def where(axiom):
-    """The interpretations in which an axiom is true, as bits."""
+    """Return the interpretations in which an axiom is true, as bits."""
     true = MEANINGS[axiom]
     return sum(1 << i for i, m in enumerate(interpretations()) if true(m))

@@ -1,4 +1,4 @@
-"""What follows and what does not, a few lines each: a premise and a conclusion."""
+"""Cases of entailment and non-entailment: a name, a premise and a conclusion."""
 
 import re
 from functools import reduce
@@ -29,7 +29,7 @@ different by disjoint properties
 different by disjoint data properties
     :name owl:propertyDisjointWith :street . :p :name "Elm" . :q :street "Elm"
     :p owl:differentFrom :q
-different by disjoint classes, and the other way round
+different by disjoint classes, and vice versa
     :Cup owl:disjointWith :Room . :c a :Cup . :r a :Room
     :c owl:differentFrom :r . :r owl:differentFrom :c
 difference is symmetric
@@ -236,7 +236,7 @@ the same property by the same value
     :d owl:equivalentClass HAS(:p :v) , HAS(:q :v) .
       :p rdfs:domain :d . :q rdfs:domain :d . :p a owl:FunctionalProperty . :q a owl:FunctionalProperty
     :p owl:equivalentProperty :q
-a functional property has one value at most of anything
+a functional property has at most one value of any class
     :p a owl:FunctionalProperty
     owl:Thing rdfs:subClassOf MOST(:p)
 the only value is the one that must exist
@@ -299,7 +299,7 @@ one known value is not one at most
 all known values are not all
     :a :p :b . :b a :B
     :a a ONLY(:p :B)
-a superclass is no subclass
+not a subclass by being a superclass
     :A rdfs:subClassOf :B
     :B rdfs:subClassOf :A
 not equivalent by one direction
@@ -347,7 +347,7 @@ two witnesses may be one
 one blank node is one individual
     :a :p :b . :a :q :c
     :a :p _:x ; :q _:x
-a blank node of the conclusion is no node of the premise
+a blank node of the conclusion differs from those of the premise
     :A rdfs:subClassOf _:x . _:x owl:onProperty :p ; owl:someValuesFrom :B
     :A rdfs:subClassOf _:x . _:x owl:onProperty :p ; owl:allValuesFrom :B
 no key without a value
@@ -368,7 +368,7 @@ a subproperty's domain is none of the property above
 an axiom without members
     :z owl:members (:A :B) . :A owl:disjointWith :B
     :z a owl:AllDisjointClasses
-an axiom with a name that nobody gave
+an axiom with an unknown name
     :A owl:disjointWith :B
     :z a owl:AllDisjointClasses ; owl:members (:A :B)
 a list without members
@@ -377,7 +377,7 @@ a list without members
 a negative assertion without a target
     :A owl:disjointWith :B
     [] a owl:NegativePropertyAssertion ; owl:sourceIndividual :a
-a class that nothing is said of
+a class without axioms
     :a a :A
     [] owl:complementOf :A
 a restriction with a name
@@ -389,7 +389,7 @@ a restriction without a property
 a number that is none
     :a :p :b
     :a a [ owl:onProperty :p ; owl:minCardinality :many ]
-an annotation nobody made
+an annotation that is not asserted
     :a a :A
     :a rdfs:label "a"
 a declaration of something else
@@ -467,14 +467,14 @@ def test_does_not_follow(premise, conclusion):
 
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(st.sampled_from(list(MEANINGS)), min_size=1, max_size=4, unique=True))
-def test_nothing_is_claimed_that_a_small_interpretation_makes_false(premise):
+def test_no_conclusion_is_false_in_a_small_interpretation(premise):
     check_soundness(premise)
 
 
 @pytest.mark.long
 @settings(max_examples=2000, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(st.sampled_from(list(MEANINGS)), min_size=1, max_size=5, unique=True))
-def test_nothing_is_claimed_that_one_of_many_makes_false(premise):
+def test_no_conclusion_is_false_in_many_interpretations(premise):
     check_soundness(premise)
 
 

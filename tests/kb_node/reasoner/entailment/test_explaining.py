@@ -1,4 +1,4 @@
-"""What follows although no rule derives it, with the asserted triples that it takes."""
+"""Proofs of statements that no rule derives, with their support."""
 
 import time
 
@@ -6,7 +6,7 @@ import pytest
 
 from semmap.nodes.kb_node.reasoner import Reasoner, entails
 from semmap.nodes.kb_node.reasoner.entailment.explaining import (
-    _contrary,
+    _negation,
     _shrunk,
     nearby,
     why_entailed,
@@ -42,10 +42,10 @@ TBOX = """
         (":mug1 a :Grippable", "mug1 is a Grippable, because"),
         (":Mug rdfs:subClassOf :Grippable", "every Mug is a Grippable, because"),
         (":mug1 :meets :mug1", "mug1 meets itself, because "),
-        (":mug1 owl:topObjectProperty :wall1", "mug1 has top object property wall1 (always)."),
+        (":mug1 owl:topObjectProperty :wall1", "mug1 has top object property wall1 (axiomatic)."),
     ],
 )
-def test_the_support_is_enough_and_no_less_is(goal, text):
+def test_the_support_is_sufficient_and_minimal(goal, text):
     reasoner = Reasoner(triples(TBOX))
     goal = triple(goal)
     assert not reasoner.holds(goal)
@@ -77,7 +77,7 @@ DENYING = """
         ),
         (
             ":ann a :Robot",
-            "ann is not a Robot, because it is a Person (asserted), a Person is whatever is an ",
+            "ann is not a Robot, because it is a Person (asserted), a Person is by definition something that",
         ),
         (
             ":ann :avoids :ann",
@@ -89,7 +89,7 @@ DENYING = """
         ),
     ],
 )
-def test_what_cannot_be_although_no_rule_excludes_it(supposed, text):
+def test_statements_that_are_excluded_although_no_rule_contradicts_them(supposed, text):
     reasoner, supposed = Reasoner(triples(DENYING)), triple(supposed)
     assert refute(reasoner, supposed) is None
     found = why_excluded(Reasoner(nearby(reasoner, supposed[::2]), closed=reasoner.closed), supposed)
@@ -98,7 +98,7 @@ def test_what_cannot_be_although_no_rule_excludes_it(supposed, text):
     assert found.conclusion == ((s, DIFFERENT_FROM, o) if p == SAME_AS else None)
     assert (found.supposed, found.steps) == (supposed, ())
     assert set(found.support) <= set(reasoner.asserted())
-    contrary = _contrary(supposed)
+    contrary = _negation(supposed)
     assert entails(Reasoner(found.support), contrary)
     for left_out in found.support:
         assert not entails(Reasoner([one for one in found.support if one != left_out]), contrary)
@@ -115,19 +115,19 @@ def test_what_cannot_be_although_no_rule_excludes_it(supposed, text):
         ":Mug rdfs:subClassOf :Plush",
     ],
 )
-def test_what_may_be_is_not_excluded(supposed):
+def test_a_possible_statement_is_not_excluded(supposed):
     assert why_excluded(Reasoner(triples(DENYING)), triple(supposed)) is None
 
 
 @pytest.mark.parametrize("goal", [":mug1 :on :mug2", ":mug1 a :Other", ":Cup rdfs:subClassOf :Mug"])
-def test_what_does_not_follow_has_no_proof(goal):
+def test_a_statement_that_does_not_follow_has_no_proof(goal):
     reasoner = Reasoner(triples(TBOX))
     before = set(reasoner.asserted())
     assert why_entailed(reasoner, triple(goal)) is None
     assert set(reasoner.asserted()) == before
 
 
-def test_only_the_facts_nearby_are_looked_at():
+def test_only_nearby_facts_are_used():
     told = triples(TBOX + "".join(f":mug{i} a :Mug ; :on :table{i} . " for i in range(3, 300)))
     reasoner = Reasoner(told)
     near = nearby(reasoner, triple(":mug3 :on :table3")[::2])
@@ -135,8 +135,8 @@ def test_only_the_facts_nearby_are_looked_at():
     assert not {t for t in near if "mug4>" in t[0]}
 
 
-def test_a_value_that_is_there_needs_no_other_name():
-    """Else an individual would be the same as a value, and everything be worked out anew, in seconds."""
+def test_an_existing_value_is_not_named_again():
+    """Otherwise an individual would equal a value, and everything would be recomputed, in seconds."""
     reasoner = Reasoner(
         [
             *household(),
@@ -147,14 +147,14 @@ def test_a_value_that_is_there_needs_no_other_name():
     )
     engine = reasoner._engine
     seen = []
-    supposing = reasoner.supposing
-    reasoner.supposing = lambda *given, **how: seen.append(reasoner._engine) or supposing(*given, **how)
+    assuming = reasoner.assuming
+    reasoner.assuming = lambda *given, **how: seen.append(reasoner._engine) or assuming(*given, **how)
     assert not entails(reasoner, [triple(":thing1 a :Elsewhere")])
     assert seen
     assert all(one is engine for one in seen)
 
 
-def test_a_busy_machine_makes_no_proof_longer():
+def test_proofs_do_not_depend_on_the_load_of_the_machine():
     many = [(f"<s{i}>", "<p>", "<o>") for i in range(16)]
 
     def suffice(some):

@@ -1,4 +1,4 @@
-"""Whatever follows in any world has an explanation that is valid and minimal, and so has what is refused."""
+"""Every conclusion and every rejection in a random world has a valid and minimal explanation."""
 
 import random
 
@@ -12,7 +12,7 @@ from tests.kb_node.reasoner.worlds import World
 
 
 def grown(seed, theme):
-    """A world after some changes, and its reasoner; what is refused is explained."""
+    """Return a random world after some changes, and its reasoner. Checks the explanations of rejections."""
     world = World(seed, theme)
     while Closure(world.asserted).clash is not None:
         seed += 100
@@ -30,7 +30,7 @@ def grown(seed, theme):
 
 
 @pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
-def test_what_follows_and_what_is_refused_is_explained(theme):
+def test_conclusions_and_rejections_are_explained(theme):
     for seed in range(4):
         world, reasoner = grown(seed, theme)
         found = sorted(reasoner.inferred())
@@ -38,7 +38,7 @@ def test_what_follows_and_what_is_refused_is_explained(theme):
             proofs.check(reasoner.explain(fact), world.asserted)
 
 
-def test_an_asserted_fact_needs_no_other():
+def test_an_asserted_fact_is_its_own_support():
     _, reasoner = grown(1, THEMES["everything"])
     for fact in sorted(reasoner.asserted()):
         explanation = reasoner.explain(fact)

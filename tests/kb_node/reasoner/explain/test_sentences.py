@@ -1,4 +1,4 @@
-"""Explanations as they are read: whole sentences."""
+"""The sentences of explanations."""
 
 import functools
 
@@ -19,12 +19,13 @@ HOLDS = {
     ":milk1 dm:isLocatedIn :kitchen1": (
         ":milk1 dm:isOn :counter1 . :counter1 dm:isLocatedIn :kitchen1",
         "milk1 is located in kitchen1, because milk1 is on counter1 (asserted), counter1 is located in "
-        "kitchen1 (asserted), and whatever is on something that is located in something is located in "
+        "kitchen1 (asserted), and everything that is on something that is located in something is located in "
         "the latter.",
     ),
     ":milk1 a dm:Food": (
         ":milk1 a dm:Milk",
-        "milk1 is food, because it is milk (asserted), whatever is milk is a drink, and every drink is food.",
+        "milk1 is food, because it is milk (asserted), everything that is milk is a drink, and every drink "
+        "is food.",
     ),
     ":counter1 dm:supports :milk1": (
         ":milk1 dm:isOn :counter1",
@@ -33,12 +34,12 @@ HOLDS = {
     ),
     ":door1 dm:hasPart :x": (
         ":door1 dm:hasHandle :x",
-        "door1 has part x, because door1 has handle x (asserted), whatever has something as handle has it as "
-        "direct part, and whatever has something as direct part has it as part.",
+        "door1 has part x, because door1 has handle x (asserted), everything that has something as handle "
+        "has it as direct part, and everything that has something as direct part has it as part.",
     ),
     ":x a dm:Handle": (
         ":door1 dm:hasHandle :x",
-        "x is a handle, because door1 has handle x (asserted), and whatever something has as handle "
+        "x is a handle, because door1 has handle x (asserted), and everything that something has as handle "
         "is a handle.",
     ),
     ":f dm:hasAffordance dm:cooling": (
@@ -48,16 +49,17 @@ HOLDS = {
     ),
     ":a a dm:Object": (
         ":a dm:isSwitchedOn false",
-        "a is an object, because it is not switched on (asserted), and whatever has a value for “is switched "
-        "on” is an object.",
+        "a is an object, because it is not switched on (asserted), and everything that has a value for “is "
+        "switched on” is an object.",
     ),
     ":plate1 a dm:Tableware": (
         ":plate1 a dm:Dishware",
-        "plate1 is tableware, because it is dishware (asserted), and whatever is dishware is tableware.",
+        "plate1 is tableware, because it is dishware (asserted), and everything that is dishware is "
+        "tableware.",
     ),
     ":door1 dm:isOpen true": (":door1 dm:isOpen true", "door1 is open (asserted)."),
     ":door1 dm:isOpen false": (":door1 dm:isOpen false", "door1 is not open (asserted)."),
-    ":m owl:sameAs :m": (":m a dm:Milk", "m is the same as m (always)."),
+    ":m owl:sameAs :m": (":m a dm:Milk", "m is the same as m (axiomatic)."),
 }
 
 CANNOT_BE = {
@@ -70,8 +72,8 @@ CANNOT_BE = {
         "and if one thing is on another, the other is not on it."
     ),
     ":a dm:isOpen true , false": (
-        "a cannot be both not open and open: a is not open (asserted), it is open (asserted), "
-        "and “is open” has one value at most."
+        "a cannot be both open and not open: a is not open (asserted), it is open (asserted), "
+        "and “is open” has at most one value."
     ),
     ":a dm:hasMainColor dm:color_red , dm:color_blue": (
         "a cannot have both color_blue and color_red as main color: a has main color color_blue (asserted), "
@@ -99,28 +101,28 @@ CANNOT_BE = {
 @pytest.mark.parametrize(("goal", "case"), HOLDS.items(), ids=HOLDS)
 def test_why_something_holds(goal, case):
     given, text = case
-    with home().supposing(triples(given + " .")):
+    with home().assuming(triples(given + " .")):
         assert home().explain(triple(goal)).text == text
 
 
 @pytest.mark.parametrize(("given", "text"), CANNOT_BE.items(), ids=CANNOT_BE)
 def test_why_something_cannot_be(given, text):
-    with pytest.raises(Inconsistent) as refusal, home().supposing(triples(given + " .")):
+    with pytest.raises(Inconsistent) as refusal, home().assuming(triples(given + " .")):
         pass
     explanation = refusal.value.explanation
     assert sorted(explanation.text.split(", ")) == sorted(text.split(", "))  # facts come as they were found
 
 
-def test_another_proof_of_the_shape_has_its_own_names():
+def test_a_cached_proof_gets_the_names_of_its_individuals():
     for door in ("door1", "door2"):
         with pytest.raises(
-            Inconsistent, match=f"{door} cannot be both not open and open: {door} is not open"
+            Inconsistent, match=f"{door} cannot be both open and not open: {door} is not open"
         ):
             home().apply(insert=triples(f":{door} dm:isOpen true , false ."))
 
 
 @pytest.mark.parametrize(
-    ("name", "said", "denied"),
+    ("name", "affirmed", "negated"),
     [
         ("isOn", "is on x", "is not on x"),
         ("partOf", "is part of x", "is not part of x"),
@@ -134,13 +136,13 @@ def test_another_proof_of_the_shape_has_its_own_names():
         ("p", "has p x", "does not have p x"),
     ],
 )
-def test_a_property_without_a_label_is_taken_apart(name, said, denied):
+def test_a_property_without_a_label_is_split_into_words(name, affirmed, negated):
     words, prop = Words.of([]), f"<http://example.org/{name}>"
-    assert words.says(prop, "<http://example.org/x>") == said
-    assert words.says(prop, "<http://example.org/x>", denied=True) == denied
+    assert words.predicate_phrase(prop, "<http://example.org/x>") == affirmed
+    assert words.predicate_phrase(prop, "<http://example.org/x>", negated=True) == negated
 
 
-def test_the_english_label_counts_and_others_do_not():
+def test_the_english_label_is_used():
     cls = ":C rdfs:label "
     assert Words.of(triples(cls + '"Tasse"@de .')).cls(triple(":a :p :C")[2]) == "C"
     assert Words.of(triples(cls + '"cup" .')).cls(triple(":a :p :C")[2]) == "cup"
@@ -156,12 +158,12 @@ def test_articles():
     ]
 
 
-def test_the_triples_of_a_proof_have_a_clause_each_but_for_the_parts_of_axioms():
+def test_every_triple_of_a_proof_has_a_clause_except_parts_of_axioms():
     proof = triples(
         ":milk1 a dm:Milk . dm:Milk rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:hasAffordance ;"
         " owl:hasValue dm:drinking ] ."
     )
-    told = clauses(proof, proof, home().words)
-    assert Clause("milk1 is milk", is_axiom=False) in told.values()
-    assert Clause("whatever is milk has affordance drinking", is_axiom=True) in told.values()
-    assert not any(predicate.endswith(("onProperty>", "hasValue>")) for _, predicate, _ in told)
+    found = clauses(proof, proof, home().words)
+    assert Clause("milk1 is milk", is_axiom=False) in found.values()
+    assert Clause("everything that is milk has affordance drinking", is_axiom=True) in found.values()
+    assert not any(predicate.endswith(("onProperty>", "hasValue>")) for _, predicate, _ in found)

@@ -1,4 +1,4 @@
-"""Computed facts that come together leave what they leave one by one."""
+"""Bulk insertion of computed facts gives the same result as single insertion."""
 
 import random
 from functools import partial
@@ -49,21 +49,21 @@ HOME = triples("""
 
 @pytest.fixture(autouse=True)
 def comparable(monkeypatch):
-    """`together` and `singly` set it. One who departs may take along what is computed, which others keep."""
+    """Restore `MANY`, and disable fast removal, which may also remove computed facts."""
     monkeypatch.setattr(paths, "MANY", paths.MANY)
-    monkeypatch.setattr(paths, "depart", lambda *_: None)
+    monkeypatch.setattr(paths, "remove_individuals", lambda *_: None)
 
 
 def together(reasoner, **change):
-    """Let a reasoner take each change by columns, however small."""
+    """Apply a change by columns, even if it is small."""
     paths.MANY = 1
-    reasoner.believe(**change)
+    reasoner.update_computed(**change)
 
 
 def singly(reasoner, **change):
-    """Let a reasoner take each change edge by edge, however large."""
+    """Apply a change edge by edge, even if it is large."""
     paths.MANY = 10**9
-    reasoner.believe(**change)
+    reasoner.update_computed(**change)
 
 
 def state(reasoner):
@@ -77,7 +77,7 @@ def state(reasoner):
 
 
 def is_done(change):
-    """Whether a change is made."""
+    """Apply a change and return whether it was accepted."""
     try:
         change()
     except Inconsistent:
@@ -86,7 +86,7 @@ def is_done(change):
 
 
 def follow(seed, theme):
-    """One world, to which computed facts come together, and one to which they come singly."""
+    """Apply the same changes to two reasoners, in bulk and singly; return the number of facts."""
     world, random_ = World(seed, theme), random.Random(seed)
     try:
         pair = [Reasoner(world.asserted), Reasoner(world.asserted)]
@@ -101,14 +101,14 @@ def follow(seed, theme):
             ]
             there = sorted(pair[0].computed())
             gone = random_.sample(there, min(len(there), random_.choice((0, 0, 1, 3))))
-            change = {"come": facts, "gone": gone}
-            ways = [partial(way, one, **change) for way, one in zip((together, singly), pair, strict=True)]
+            change = {"add": facts, "remove": gone}
+            calls = [partial(call, one, **change) for call, one in zip((together, singly), pair, strict=True)]
         else:
             facts, some = [], world.change()
             change = some._asdict()
-            ways = [partial(one.apply, **change) for one in pair]
+            calls = [partial(one.apply, **change) for one in pair]
         before = [state(one) for one in pair]
-        done = [is_done(way) for way in ways]
+        done = [is_done(call) for call in calls]
         assert done[0] == done[1], change
         if not done[0]:
             assert [state(one) for one in pair] == before, change
@@ -124,7 +124,7 @@ def follow(seed, theme):
 
 
 @pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
-def test_they_are_as_those_that_come_singly(theme):
+def test_bulk_insertion_equals_single_insertion(theme):
     assert sum(follow(seed, theme) for seed in range(tries(12))) > tries(100)
 
 
@@ -138,7 +138,7 @@ def test_many_times(theme):
 
 
 def at_home(tables, per_table):
-    """A kitchen with tables, cups on them, and all of them in the kitchen; a chair without a place on one."""
+    """Return a kitchen with tables and cups on them, and a chair on a table without a location."""
     said, seen = list(HOME), []
     for n in range(tables):
         said += triples(f":t{n} a :Thing .")
@@ -149,12 +149,12 @@ def at_home(tables, per_table):
     return said, [triple(text) for text in (*seen, ":chair :isOn :t0")]
 
 
-def test_a_home_is_as_one_whose_things_came_singly():
+def test_a_home_is_the_same_as_with_single_insertion():
     said, seen = at_home(6, 7)
     pair = Reasoner(said), Reasoner(said)
-    together(pair[0], come=seen)
+    together(pair[0], add=seen)
     for fact in seen:
-        singly(pair[1], come=[fact])
+        singly(pair[1], add=[fact])
     assert state(pair[0]) == state(pair[1])
     for text in (
         ":c5_6 :isIn :flat",
@@ -166,7 +166,7 @@ def test_a_home_is_as_one_whose_things_came_singly():
         assert pair[0].follows(triple(text)), text
     assert not pair[0].holds(triple(":c5_6 a :Laden"))
     for one in pair:
-        one.believe(gone=seen)
+        one.update_computed(remove=seen)
     assert state(pair[0]) == state(pair[1]) == state(Reasoner(said))
 
 
@@ -181,58 +181,58 @@ FAULTS = [
 @pytest.mark.parametrize(
     ("fault", "is_there"), [*((fault, False) for fault in FAULTS), *((fault, True) for fault in FAULTS[:2])]
 )
-def test_many_that_contradict_the_rest_are_refused_with_an_explanation(fault, is_there):
+def test_contradictory_facts_in_bulk_are_rejected_with_an_explanation(fault, is_there):
     said, seen = at_home(4, 3)
     fault = triple(fault)
     reasoner = Reasoner([*said, fault] if is_there else said)
     before = state(reasoner)
     with pytest.raises(Inconsistent) as refusal:
-        together(reasoner, come=seen if is_there else [*seen, fault])
+        together(reasoner, add=seen if is_there else [*seen, fault])
     support = refusal.value.explanation.support
     assert fault in support
     assert state(reasoner) == before
-    together(reasoner, come=[fact for fact in seen if fact not in support])
+    together(reasoner, add=[fact for fact in seen if fact not in support])
 
 
-def test_what_is_there_already_is_not_there_twice():
+def test_existing_facts_are_not_duplicated():
     said, seen = at_home(2, 2)
     reasoner = Reasoner([*said, seen[0]])
-    together(reasoner, come=[*seen, *seen])
-    together(reasoner, come=seen)
+    together(reasoner, add=[*seen, *seen])
+    together(reasoner, add=seen)
     assert sorted(reasoner.computed()) == sorted(set(seen) - {seen[0]})
 
 
-def test_what_followed_and_is_computed_now_outlives_its_reason():
+def test_an_inferred_fact_that_is_now_computed_outlives_its_reason():
     said, seen = at_home(1, 1)
     cup_in_flat, cup_in_kitchen = triple(":c0_0 :isIn :flat"), triple(":c0_0 :isIn :kitchen")
     reasoner = Reasoner(said)
-    together(reasoner, come=seen)
+    together(reasoner, add=seen)
     assert not reasoner.is_computed(cup_in_flat)
-    together(reasoner, come=[cup_in_flat])
-    reasoner.believe(gone=[cup_in_kitchen, triple(":t0 :isIn :kitchen")])
+    together(reasoner, add=[cup_in_flat])
+    reasoner.update_computed(remove=[cup_in_kitchen, triple(":t0 :isIn :kitchen")])
     assert reasoner.holds(cup_in_flat)
     assert not reasoner.holds(cup_in_kitchen)
 
 
-def test_nobody_looks_singly_at_a_home_in_which_nothing_is_wrong(monkeypatch):
+def test_no_edge_of_a_consistent_home_is_processed_singly(monkeypatch):
     said, seen = at_home(6, 7)
     reasoner = Reasoner(said)
     asked = []
-    monkeypatch.setattr(Saturation, "_look_at", lambda _, edge: asked.append(edge))
-    together(reasoner, come=seen)
+    monkeypatch.setattr(Saturation, "_process_edge", lambda _, edge: asked.append(edge))
+    together(reasoner, add=seen)
     assert not asked
     assert reasoner.holds(triple(":c5_6 :isIn :flat"))
 
 
-def test_what_chains_conclude_together_is_explained_and_goes_with_its_reasons():
+def test_conclusions_of_chains_in_bulk_are_explained_and_removed_with_their_reasons():
     said, seen = at_home(2, 2)
     reasoner = Reasoner([*said, *triples(":flat :isPartOf :house .")])
-    together(reasoner, come=seen)
+    together(reasoner, add=seen)
     in_house = triple(":c1_1 :isIn :house")
     proofs.check(reasoner.explain(in_house), list(reasoner.given()))
-    reasoner.believe(gone=[triple(":c1_1 :isIn :kitchen")])
+    reasoner.update_computed(remove=[triple(":c1_1 :isIn :kitchen")])
     assert reasoner.holds(in_house)  # as what it is on is there
-    reasoner.believe(gone=[triple(":t1 :isIn :kitchen")])
+    reasoner.update_computed(remove=[triple(":t1 :isIn :kitchen")])
     assert not reasoner.holds(in_house)
 
 
@@ -246,29 +246,29 @@ def test_what_chains_conclude_together_is_explained_and_goes_with_its_reasons():
         ([":kitchen :has :tray"], [":tray :bears :cup"]),
     ],
 )
-def test_a_chain_is_made_of_what_came_in_any_order_and_way(first, then):
+def test_a_chain_is_derived_in_any_order_of_insertion(first, then):
     reasoner = Reasoner([*HOME, *triples(":has owl:inverseOf :isIn .")])
     for come in (first, then):
-        together(reasoner, come=[triple(text) for text in come])
+        together(reasoner, add=[triple(text) for text in come])
     explanation = reasoner.explain(triple(":cup :isIn :flat"))
     proofs.check(explanation, list(reasoner.given()))
     assert {triple(text) for text in (*first, *then)} < set(explanation.support)
     assert not any(reasoner.inferred(triple(":flat :isIn :cup")[0], triple(":flat :isIn :cup")[1]))
 
 
-def test_holes_are_filled_before_there_are_more_edges():
+def test_free_rows_are_used_before_new_edges_are_allocated():
     said, seen = at_home(6, 7)
     reasoner = Reasoner(said)
     store = reasoner._engine._abox.store
-    together(reasoner, come=seen)
+    together(reasoner, add=seen)
     length = len(store.subject)
     for _ in range(3):
-        reasoner.believe(gone=seen)
-        together(reasoner, come=seen)
+        reasoner.update_computed(remove=seen)
+        together(reasoner, add=seen)
     assert len(store.subject) <= length + 256
 
 
-def test_few_are_taken_singly(monkeypatch):
+def test_few_facts_are_inserted_singly(monkeypatch):
     monkeypatch.setattr(ManyEdges, "insert", None)
     said, seen = at_home(1, 2)
-    Reasoner(said).believe(come=seen)
+    Reasoner(said).update_computed(add=seen)

@@ -1,4 +1,4 @@
-"""Runs of new individuals whose shape is known: written down as they would be worked out."""
+"""Runs of a known shape are stored as the rules would store them."""
 
 import pytest
 from hypothesis import given, note
@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.abox.store import Store
-from semmap.nodes.kb_node.reasoner.explain.sentences import sentence
+from semmap.nodes.kb_node.reasoner.explain.sentences import proof_sentence
 from semmap.nodes.kb_node.reasoner.fastpaths import batches
-from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Contradiction, Shapes, Written
+from semmap.nodes.kb_node.reasoner.fastpaths.shapes import Contradiction, KnownShape, Shapes
 from tests.depth import tries
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.facts import prefixed
@@ -34,32 +34,32 @@ VALUES = st.tuples(st.integers(0, 2), st.sampled_from(prefixed("", DATA_PROPERTI
 
 
 def sorted_by_subject(run):
-    """As people write it, an individual with what is said of it, beginning with the first."""
+    """Sort a run by individual, as in a usual document."""
     return sorted(run, key=lambda part: part[0])
 
 
 RUNS = st.lists(st.one_of(TYPES, TYPES, LINKS, VALUES), min_size=1, max_size=6)
-"""Runs without names: individuals by number, literals to be chosen."""
+"""Runs without names: individuals by number, literals to be inserted."""
 BEFORE = [triple(text) for text in (":old a :F", ":older a :F", ":older :free :i2")]
 
 
 def named(run, name, values):
-    """A run about individuals of that name."""
+    """Return a run with individuals named after `name`."""
 
-    def word(part):
+    def term(part):
         if isinstance(part, int):
             return f":{name}{part}"
         return next(values) if part == "value" else part
 
-    return [triple(" ".join(map(word, part))) for part in run]
+    return [triple(" ".join(map(term, part))) for part in run]
 
 
 @pytest.fixture(params=[False, True], ids=["singly", "in batches"])
 def by_columns(request, monkeypatch):
-    """Whether few runs are read and written together, as else many are."""
+    """Whether small numbers of runs are also processed in batches."""
     if request.param:
         monkeypatch.setattr(batches, "_MANY", 1)
-        monkeypatch.setattr(Store, "holes", 0)
+        monkeypatch.setattr(Store, "free_rows", 0)
 
 
 @pytest.mark.usefixtures("by_columns")
@@ -67,7 +67,7 @@ def by_columns(request, monkeypatch):
 @given(
     RUNS, st.lists(st.sampled_from(sorted(set(LITERALS) - {KNOWN})), min_size=24, max_size=24), st.booleans()
 )
-def test_what_a_run_leaves_does_not_depend_on_whether_its_shape_is_known(run, literals, together):
+def test_the_result_does_not_depend_on_whether_the_shape_is_known(run, literals, together):
     values = iter(literals)
     asserted = dict.fromkeys([*asserted_in(BASE), *BEFORE])
     closure = closure_of(asserted, BASE)
@@ -88,7 +88,9 @@ def test_what_a_run_leaves_does_not_depend_on_whether_its_shape_is_known(run, li
                 reasoner.apply(insert=insert)
             explanation = refusal.value.explanation
             proofs.check(explanation, after)
-            assert explanation.text == sentence(None, explanation.support, explanation.steps, reasoner.words)
+            assert explanation.text == proof_sentence(
+                None, explanation.support, explanation.steps, reasoner.words
+            )
         check_same(reasoner, asserted, BASE, closure)
     for insert in reversed(transactions):
         there = [fact for fact in dict.fromkeys(insert) if fact in asserted]
@@ -100,7 +102,7 @@ def test_what_a_run_leaves_does_not_depend_on_whether_its_shape_is_known(run, li
 @pytest.mark.usefixtures("by_columns")
 @sequences(30)
 @given(st.lists(RUNS, min_size=1, max_size=5), st.permutations(range(24)), st.data())
-def test_all_at_once_is_one_by_one(runs, order, data):
+def test_one_transaction_equals_single_transactions(runs, order, data):
     values = iter(data.draw(st.lists(st.sampled_from(LITERALS[:4]), min_size=40, max_size=40)))
     facts = [fact for i, run in enumerate(runs) for fact in named(run, f"n{i % 3}_", values)]
     facts = [facts[i] for i in order if i < len(facts)]
@@ -126,17 +128,17 @@ def known(reasoner):
     return list(reasoner._engine._paths.shapes.known.values())
 
 
-def test_a_shape_is_worked_out_once():
+def test_the_rules_are_applied_once_for_each_shape():
     reasoner = Reasoner(triples(HOME))
     for name in ("a", "b", "c"):
         reasoner.apply(insert=triples(f":{name} a :C , :K ; :p :{name}1 ; :n 1 . :{name}1 :n 2.5 ."))
-    assert [type(shape) for shape in known(reasoner)] == [Written]
+    assert [type(shape) for shape in known(reasoner)] == [KnownShape]
     assert reasoner.holds(triple(":c a :B"))
     assert reasoner.holds(triple(":c1 a :D"))
     assert reasoner.holds(triple(":c :q :here"))
 
 
-def test_a_contradiction_in_itself_is_worked_out_once():
+def test_a_contradictory_shape_is_cached():
     reasoner = Reasoner(triples(HOME))
     for name in ("a", "b"):
         with pytest.raises(Inconsistent, match=f"{name} cannot be both a C and a D"):
@@ -145,8 +147,8 @@ def test_a_contradiction_in_itself_is_worked_out_once():
     assert len(reasoner) == len(triples(HOME))
 
 
-def test_a_contradiction_with_the_map_is_not():
-    """What one run contradicts, another of the shape need not."""
+def test_a_contradiction_with_the_map_is_not_cached():
+    """Another run of the same shape may be consistent with the map."""
     reasoner = Reasoner([*triples(HOME), *triples(":d a :C . :e a :B .")])
     with pytest.raises(Inconsistent):
         reasoner.apply(insert=triples(":x :p :d ."))
@@ -155,8 +157,8 @@ def test_a_contradiction_with_the_map_is_not():
     reasoner.apply(insert=triples(":d a :B . :y :p :d ."))
 
 
-def test_one_object_twice_is_one_triple():
-    """Two objects of a kind in the first run, and the same one twice in the second."""
+def test_a_repeated_object_is_one_triple():
+    """The first run has two objects of a kind, the second has the same object twice."""
     reasoner = Reasoner([*triples(HOME), *triples(":d a :B . :e a :B .")])
     reasoner.apply(insert=triples(":x :r :d , :e ."))
     reasoner.apply(insert=[triple(":y :r :d")] * 2)
@@ -164,8 +166,8 @@ def test_one_object_twice_is_one_triple():
     assert not list(reasoner.asserted(triple(":y :r :d")[0]))
 
 
-def test_a_constant_that_is_no_longer_as_it_was():
-    """The value that comes with a class lost what another individual made it."""
+def test_a_constant_that_changed():
+    """The value implied by a class lost a class that another individual implied."""
     reasoner = Reasoner([*triples(HOME), *triples(":s rdfs:range :Far .")])
     reasoner.apply(insert=triples(":z :s :here ."))
     reasoner.apply(insert=triples(":a a :K ."))
@@ -192,20 +194,20 @@ def names(count, stem="a"):
 
 @pytest.fixture
 def batched(monkeypatch):
-    """How many runs were written together, each time."""
+    """The number of runs in each batch."""
     sizes = []
     write_all = Shapes.write_all
 
     def counted(self, triples, start):
         alike, end = write_all(self, triples, start)
-        sizes.append(sum(len(list(runs.stars())) for runs in alike))
+        sizes.append(sum(len(list(runs.rows())) for runs in alike))
         return alike, end
 
     monkeypatch.setattr(Shapes, "write_all", counted)
     return sizes
 
 
-def test_a_load_is_written_by_columns(batched):
+def test_a_load_is_stored_by_columns(batched):
     home = triples(HOME)
     reasoner = Reasoner(home)
     reasoner.apply(insert=load(names(300)))
@@ -217,7 +219,7 @@ def test_a_load_is_written_by_columns(batched):
     assert set(reasoner.asserted()) == set(home)
 
 
-def test_what_is_free_is_filled_before_a_load_makes_room(batched):
+def test_free_rows_are_used_before_a_load_allocates_new_ones(batched):
     reasoner = Reasoner(triples(HOME))
     reasoner.apply(insert=load(names(300)))
     reasoner.apply(delete=load(names(300)))
@@ -226,7 +228,7 @@ def test_what_is_free_is_filled_before_a_load_makes_room(batched):
     assert len(reasoner._engine._abox.store.subject) == room
 
 
-def test_a_load_that_says_more_of_one_is_as_if_said_singly(batched):
+def test_a_load_with_more_facts_about_an_individual_equals_single_insertion(batched):
     reasoner = Reasoner(triples(HOME))
     reasoner.apply(insert=[*load(names(300)), *load(["a7_"], lambda _: "7.5")])
     assert len(list(reasoner.asserted(triple(":a7_ :p :a7_1")[0]))) == 4
@@ -256,7 +258,7 @@ PLAIN = st.lists(
 @given(
     PLAIN, st.lists(st.sampled_from(['"1.5"^^xsd:float', '"2"^^xsd:float', '"x"']), min_size=80, max_size=80)
 )
-def test_what_is_written_by_columns_is_what_is_written_singly(run, literals):
+def test_storing_by_columns_equals_storing_singly(run, literals):
     home = [*triples(HOME), *triples(":d a :B . :e a :B .")]
     values = iter(literals)
     loads = [[fact for name in group for fact in named(run, name, values)] for group in ("a", "bcd", "efg")]
@@ -265,7 +267,7 @@ def test_what_is_written_by_columns_is_what_is_written_singly(run, literals):
         singly.apply(insert=insert)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(batches, "_MANY", 1)
-        patch.setattr(Store, "holes", 0)
+        patch.setattr(Store, "free_rows", 0)
         for insert in loads:
             by_columns.apply(insert=insert)
     gone = loads[1][::2]

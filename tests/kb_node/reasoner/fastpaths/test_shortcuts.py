@@ -4,7 +4,11 @@ import pytest
 
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.fastpaths import paths
-from semmap.nodes.kb_node.reasoner.fastpaths.shortcuts import depart, depart_among, exchange
+from semmap.nodes.kb_node.reasoner.fastpaths.shortcuts import (
+    remove_independent,
+    remove_individuals,
+    replace_literals,
+)
 from semmap.nodes.kb_node.reasoner.terms import TYPE
 from tests.kb_node.reasoner.fastpaths.test_many_edges import THEMES
 from tests.kb_node.reasoner.graphs import EVERYTHING, triple, triples
@@ -24,8 +28,11 @@ def same_as_fresh(reasoner, turtle):
     check_same(reasoner, dict.fromkeys([*asserted_in(BASE), *triples(turtle)]), BASE)
 
 
-def test_a_thing_goes_with_all_that_was_said_of_it(reasoner):
-    assert depart(reasoner._engine._abox, triples(STAR)) == {triple(":a a :C")[0], triple(":a1 a :C")[0]}
+def test_an_object_is_removed_with_all_its_facts(reasoner):
+    assert remove_individuals(reasoner._engine._abox, triples(STAR)) == {
+        triple(":a a :C")[0],
+        triple(":a1 a :C")[0],
+    }
     assert not reasoner.mentioned({triple(":a1 a :C")[0]})
     assert not list(reasoner.inferred(triple(":a a :C")[0]))
 
@@ -42,10 +49,10 @@ def test_a_thing_goes_with_all_that_was_said_of_it(reasoner):
         (' :i6 :key2 "a"^^xsd:token .', STAR),
     ],
 )
-def test_it_is_not_plain_when_somebody_else_is_concerned(reasoner, more, gone):
-    """More was deleted than was there, or less, or others point there or rest on it."""
+def test_there_is_no_shortcut_if_other_individuals_are_affected(reasoner, more, gone):
+    """More or fewer triples are deleted than exist, or others refer to the object or depend on it."""
     reasoner.apply(insert=triples(more))
-    assert depart(reasoner._engine._abox, triples(gone)) is None
+    assert remove_individuals(reasoner._engine._abox, triples(gone)) is None
     reasoner.apply(delete=triples(gone))
     left = [fact for fact in triples(STAR + REST + more) if fact not in triples(gone)]
     check_same(reasoner, dict.fromkeys([*asserted_in(BASE), *left]), BASE)
@@ -55,8 +62,8 @@ def values(*texts):
     return [triple(f':a1 :fundata "{text}"^^xsd:float') for text in texts]
 
 
-def test_a_number_becomes_another(reasoner):
-    assert exchange(reasoner._engine._abox, values("1.5"), values("2.5")) == {triple(":a1 a :C")[0]}
+def test_a_number_is_replaced(reasoner):
+    assert replace_literals(reasoner._engine._abox, values("1.5"), values("2.5")) == {triple(":a1 a :C")[0]}
     same_as_fresh(reasoner, STAR.replace("1.5", "2.5") + REST)
 
 
@@ -71,10 +78,10 @@ def test_a_number_becomes_another(reasoner):
         ([triple(":a :free :old")], [triple(":a :free :i6")]),
     ],
 )
-def test_it_is_not_plain_when_there_is_more_to_it(reasoner, delete, insert):
-    """Not there; another property, subject or kind; one for two; no literals."""
+def test_there_is_no_shortcut_for_other_replacements(reasoner, delete, insert):
+    """An absent value; another property, subject or kind; one value for two; not a literal."""
     before = set(reasoner.asserted())
-    assert exchange(reasoner._engine._abox, delete, insert) is None
+    assert replace_literals(reasoner._engine._abox, delete, insert) is None
     try:
         reasoner.apply(delete=delete, insert=insert)
         before = (before - set(delete)) | set(insert)
@@ -83,17 +90,17 @@ def test_it_is_not_plain_when_there_is_more_to_it(reasoner, delete, insert):
     check_same(reasoner, dict.fromkeys(before), BASE)
 
 
-def test_an_ill_typed_value_is_refused_in_exchange(reasoner):
+def test_an_ill_typed_replacement_is_rejected(reasoner):
     with pytest.raises(Inconsistent, match='"abc" is not a value of float'):
         reasoner.apply(delete=values("1.5"), insert=values("abc"))
     same_as_fresh(reasoner, STAR + REST)
 
 
 @pytest.mark.parametrize("text", ["abc", "٣", "1_0"])
-def test_what_is_no_number_is_refused_beside_another_value(text):
-    """Two values of a functional property, one of them none: both ways it is undone without a trace."""
+def test_an_invalid_number_is_rejected_together_with_a_valid_one(text):
+    """Two values of a functional property, one of them invalid, are undone in both orders."""
     reasoner = Reasoner(triples(EVERYTHING))
-    facts = [triple(f':x :fundata "{word}"^^xsd:float') for word in (text, "1.0")]
+    facts = [triple(f':x :fundata "{number}"^^xsd:float') for number in (text, "1.0")]
     for insert in (facts, facts[::-1]):
         with pytest.raises(Inconsistent):
             reasoner.apply(insert=insert)
@@ -102,41 +109,41 @@ def test_what_is_no_number_is_refused_beside_another_value(text):
 
 
 def state(reasoner):
-    said = list(reasoner.asserted())
-    individuals = {term for s, p, o in said for term in (s, o) if p != TYPE and term[0] == "<"}
+    asserted = list(reasoner.asserted())
+    individuals = {term for s, p, o in asserted for term in (s, o) if p != TYPE and term[0] == "<"}
     types = {individual: reasoner.types(individual) for individual in individuals}
-    return set(said), set(reasoner.inferred()), types, len(reasoner)
+    return set(asserted), set(reasoner.inferred()), types, len(reasoner)
 
 
 def follow(monkeypatch, seed, theme):
-    """One world from which many go at once, and one from which they go by the rules; how many departed."""
+    """Remove individuals by the shortcut and by the rules; return the number of removed triples."""
     world, random_ = World(seed, theme), random.Random(seed)
     try:
         pair = Reasoner(world.asserted), Reasoner(world.asserted)
     except Inconsistent:
         return 0
-    departed = []
+    removed = []
 
-    def depart_and_tell(*of):
-        gone = depart_among(*of)
-        departed.extend(gone)
+    def remove_and_record(*of):
+        gone = remove_independent(*of)
+        removed.extend(gone)
         return gone
 
-    monkeypatch.setattr(paths, "depart", lambda *_: None)
-    monkeypatch.setattr(paths, "depart_among", depart_and_tell)
+    monkeypatch.setattr(paths, "remove_individuals", lambda *_: None)
+    monkeypatch.setattr(paths, "remove_independent", remove_and_record)
     for _ in range(10):
         insert = [world._fact() for _ in range(random_.randint(1, 12))]
         if is_refused(pair[0], insert) or is_refused(pair[1], insert):
             continue
-        said = sorted(set(pair[0].asserted()).difference(world.asserted))
-        subjects = sorted({t[0] for t in said})
+        asserted = sorted(set(pair[0].asserted()).difference(world.asserted))
+        subjects = sorted({t[0] for t in asserted})
         going = set(random_.sample(subjects, random_.randint(0, len(subjects))))
-        delete = [t for t in said if t[0] in going or random_.random() < 0.1]
+        delete = [t for t in asserted if t[0] in going or random_.random() < 0.1]
         for reasoner, many in zip(pair, (1, 10**9), strict=True):
-            monkeypatch.setattr(paths, "MANY_GO", many)
+            monkeypatch.setattr(paths, "MANY_DELETED", many)
             reasoner.apply(delete=delete)
         assert state(pair[0]) == state(pair[1]), delete
-    return len(departed)
+    return len(removed)
 
 
 def is_refused(reasoner, insert):
@@ -148,15 +155,15 @@ def is_refused(reasoner, insert):
 
 
 @pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
-def test_many_who_go_leave_what_they_would_leave_by_the_rules(monkeypatch, theme):
+def test_bulk_removal_equals_removal_by_the_rules(monkeypatch, theme):
     assert sum(follow(monkeypatch, seed, theme) for seed in range(20)) > 10
 
 
-def test_of_many_those_go_who_concern_nobody(reasoner):
+def test_only_independent_individuals_are_removed_in_bulk(reasoner):
     others = triples(":x a :C . :y a :C ; :free :x . :z a :C . :i6 :free :z . :w a :C ; :p :i6 .")
     reasoner.apply(insert=others)
     gone = [t for t in [*triples(STAR), *others] if t[0] != triple(":i6 a :C")[0]]
-    departed = depart_among(reasoner._engine._abox, gone)
-    assert set(departed) == {*triples(STAR), *triples(":x a :C . :y a :C ; :free :x .")}
-    left = [*asserted_in(BASE), *triples(REST), *(t for t in others if t not in departed)]
+    removed = remove_independent(reasoner._engine._abox, gone)
+    assert set(removed) == {*triples(STAR), *triples(":x a :C . :y a :C ; :free :x .")}
+    left = [*asserted_in(BASE), *triples(REST), *(t for t in others if t not in removed)]
     assert state(reasoner)[:3] == state(Reasoner(left))[:3]

@@ -1,4 +1,4 @@
-"""The rule table applied to a graph: beside an implementation by others, and by its laws."""
+"""The closure by the rule table, compared with owlrl, and its invariants."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_the_same_follows_as_with_owlrl(seed):
 
 
 def grown(seed, theme):
-    """A world after some changes that contradict nothing, for it has few facts when it begins."""
+    """Return a random world after some consistent changes. It starts with few facts."""
     world = World(seed, theme)
     for _ in range(15):
         change = world.change()
@@ -43,7 +43,7 @@ def consistent(theme):
 
 
 @pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
-def test_the_order_in_which_facts_come_does_not_matter(theme):
+def test_the_order_of_facts_does_not_matter(theme):
     for seed, world in enumerate(consistent(theme)):
         facts = list(world.asserted)
         whole = set(Closure(facts).facts)
@@ -52,7 +52,7 @@ def test_the_order_in_which_facts_come_does_not_matter(theme):
 
 
 @pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
-def test_a_closure_that_starts_from_another_has_what_one_from_nothing_has(theme):
+def test_a_closure_from_a_base_equals_a_fresh_closure(theme):
     for world in consistent(theme):
         everything = list(world.asserted)
         schema, facts = everything[::2], everything[1::2]
@@ -67,7 +67,7 @@ def test_a_closure_that_starts_from_another_has_what_one_from_nothing_has(theme)
 
 
 @pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
-def test_all_that_follows_rests_on_facts_that_came_before(theme):
+def test_premises_precede_their_conclusions(theme):
     for world in consistent(theme):
         closure = Closure(world.asserted)
         known = set()
@@ -105,7 +105,7 @@ CASES = {
 
 
 @pytest.mark.parametrize(("turtle", "follows", "does_not"), CASES.values(), ids=CASES)
-def test_what_a_rule_makes(turtle, follows, does_not):
+def test_conclusions_of_a_rule(turtle, follows, does_not):
     closure = Closure(triples(turtle))
     assert closure.clash is None
     assert closure.holds(triple(follows))
@@ -135,7 +135,7 @@ CLASHES = {
 
 
 @pytest.mark.parametrize("turtle", CLASHES.values(), ids=CLASHES)
-def test_what_cannot_be_is_a_clash_and_no_less_is(turtle):
+def test_a_contradiction_is_found_and_minimal(turtle):
     facts = triples(turtle)
     assert Closure(facts).clash is not None
     assert GeneralEngine(facts).contradiction() is not None
@@ -145,7 +145,7 @@ def test_what_cannot_be_is_a_clash_and_no_less_is(turtle):
         assert GeneralEngine(rest).contradiction() is None
 
 
-def test_a_general_engine_gives_by_pattern_what_it_has():
+def test_the_general_engine_answers_patterns():
     engine = GeneralEngine(triples(EVERYTHING + ":i2 a :A ; :q :i4 ; :int 1 . :i4 owl:sameAs :i6 ."))
     assert engine.contradiction() is None
     for ask in (engine.asserted, engine.inferred):

@@ -4,7 +4,7 @@ from tests.kb_node.reasoner.graphs import triples
 from tests.kb_node.reasoner.test_reasoner import BASE, asserted_in
 
 
-def test_what_was_kept_is_what_was_closed():
+def test_unpacked_facts_equal_the_closure():
     back = unpack(pack(BASE))
     assert list(back.facts.items()) == list(BASE.facts.items())
     for fact in BASE.facts:
@@ -12,7 +12,7 @@ def test_what_was_kept_is_what_was_closed():
         assert back.leaves(fact) == BASE.leaves(fact)
 
 
-def test_a_reasoner_with_it_infers_and_explains_the_same():
+def test_a_reasoner_with_unpacked_facts_infers_and_explains_the_same():
     tbox, abox = asserted_in(BASE), triples(":a a :C ; :q :b ; :tra :c . :c :tra :d .")
     one, other = Reasoner(tbox), Reasoner(tbox, closed=unpack(pack(BASE)))
     for reasoner in (one, other):

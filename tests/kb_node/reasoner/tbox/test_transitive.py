@@ -1,4 +1,4 @@
-"""Transitive properties whose chains are followed when somebody asks, and are not stored."""
+"""Transitive properties whose closure is computed by queries and not stored."""
 
 import pytest
 
@@ -23,7 +23,7 @@ def reasoner():
     return Reasoner(triples(TBOX))
 
 
-def test_what_is_together_costs_what_is_said_and_no_more(reasoner):
+def test_only_asserted_edges_are_stored(reasoner):
     facts = triples("".join(f":cup{i} :in :room{i % 3} , :flat . " for i in range(300)))
     reasoner.apply(insert=facts)
     assert stored(reasoner) == len(facts) == 600
@@ -36,7 +36,7 @@ def test_what_is_together_costs_what_is_said_and_no_more(reasoner):
 
 
 def test_a_class_whose_members_all_have_one_value_costs_each_member_one_edge():
-    """As every arm of KnowRob's PR2 has one payload, under the `associatedWith` of DUL."""
+    """Example: every arm of KnowRob's PR2 has one payload, below `associatedWith` of DUL."""
     arms = Reasoner(triples(TBOX + ":Arm rdfs:subClassOf [ owl:onProperty :in ; owl:hasValue :robot ] ."))
     empty = stored(arms)
     arms.apply(insert=triples("".join(f":arm{i} a :Arm . " for i in range(200))))
@@ -47,7 +47,7 @@ def test_a_class_whose_members_all_have_one_value_costs_each_member_one_edge():
     assert not arms.holds(triple(":arm0 :with :arm199"))
 
 
-def test_what_a_restriction_says_goes_along_the_chain_and_back(reasoner):
+def test_a_restriction_is_passed_on_along_the_chain_and_back(reasoner):
     chain = triples(":a :part :b . :c :has :b . :c :part :d .".replace(":c :has :b", ":b :part :c"))
     wet = triple(":d a :Water")
     reasoner.apply(insert=chain)
@@ -61,13 +61,13 @@ def test_what_a_restriction_says_goes_along_the_chain_and_back(reasoner):
         proofs.check(reasoner.explain(fact), list(reasoner.asserted()))
 
 
-def test_who_is_of_a_restriction_need_not_have_what_it_speaks_of(reasoner):
-    """No rule says that something of `:Wet` has any part."""
+def test_a_member_of_a_restriction_need_not_have_its_value(reasoner):
+    """No rule derives that a member of `:Wet` has a part."""
     reasoner.apply(insert=triples(":b a :Wet . :a :part :b ."))
     assert not reasoner.holds(triple(":a a :Wet"))
 
 
-def test_the_ends_may_be_the_same_as_others(reasoner):
+def test_the_ends_may_be_equal_to_other_individuals(reasoner):
     reasoner.apply(insert=triples(":a :part :b . :b owl:sameAs :c . :c :part :d . :d owl:sameAs :e ."))
     told = list(reasoner.asserted())
     for fact in map(triple, (":a :part :d", ":a :part :e", ":e :has :a")):
@@ -86,7 +86,7 @@ def test_the_ends_may_be_the_same_as_others(reasoner):
         ":has owl:propertyDisjointWith :part .",
     ],
 )
-def test_where_a_rule_looks_at_pairs_a_circle_is_found(axiom):
+def test_a_cycle_is_found_if_a_rule_needs_pairs(axiom):
     reasoner = Reasoner(triples(TBOX + axiom))
     reasoner.apply(insert=triples(":a :part :b . :b :part :c ."))
     assert stored(reasoner) == 3
@@ -99,7 +99,7 @@ def test_where_a_rule_looks_at_pairs_a_circle_is_found(axiom):
     [":on a owl:TransitiveProperty .", ":on owl:propertyChainAxiom ( :on :on ) ."],
     ids=["declared", "as a chain"],
 )
-def test_however_it_is_stated_it_is_part_of_the_proof(axiom):
+def test_every_form_of_the_transitivity_axiom_is_in_the_proof(axiom):
     told = triples(axiom + ":under owl:inverseOf :on . :a :on :b . :c :under :b . :c a :Floor .")
     told += triples(":Top owl:onProperty :on ; owl:someValuesFrom :Floor .")
     reasoner = Reasoner(told)

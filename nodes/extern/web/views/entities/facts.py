@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Final, NamedTuple, get_args
 
 from semmap.nodes.extern.phrasing import english
-from semmap.nodes.kb_node.reasoner.explain.sentences import said
+from semmap.nodes.kb_node.reasoner.explain.sentences import triple_clause
 from semmap.nodes.kb_node.reasoner.explain.words import Words
 from semmap.ontology import vocabulary as v
 from semmap.schemas.changes import value_in_words
@@ -130,7 +130,7 @@ def inferred_facts(
         if v.entity_name(subject) != name or predicate in _PARTS:
             continue
         is_class = predicate == v.RDF_TYPE
-        text = said(triple, words).removeprefix(f"{name} ")
+        text = triple_clause(triple, words).removeprefix(f"{name} ")
         known = properties.get(v.local_name(predicate))
         if known is not None and (value_label := known.values.get(v.local_name(value), "")):
             text = f"{english(known.labels) or known.name} {value_label}"

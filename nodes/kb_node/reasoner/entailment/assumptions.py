@@ -1,4 +1,4 @@
-"""What it says of an individual to be in a class: triples, with names for what must exist."""
+"""Class membership as triples, with names for values that must exist."""
 
 from __future__ import annotations
 
@@ -23,28 +23,30 @@ from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS, THING, TYPE, iri, is_literal
 
 WIDEST = 24
-"""Alternatives that are told apart; of more nothing is supposed, which is sound."""
+"""Maximum number of alternatives. With more, nothing is assumed, which is sound."""
 
 Alternatives = list[list[Triple]]
-"""Sets of triples of which one holds; none at all is a contradiction."""
+"""Sets of triples of which one holds. An empty list is a contradiction."""
 
 
-def given(x: Term, expression: Expression, writer: Writer) -> Alternatives:
-    """What it says of x to be a member of a class, with names for what must exist."""
+def membership_alternatives(x: Term, expression: Expression, writer: Writer) -> Alternatives:
+    """Return the alternatives that x is a member of a class, with names for values that must exist."""
     match expression:
         case Named(term):
             return [[]] if term == THING else [[(x, TYPE, term)]]
         case And(parts):
-            choices = islice(product(*(given(x, part, writer) for part in parts)), WIDEST + 1)
+            choices = islice(
+                product(*(membership_alternatives(x, part, writer) for part in parts)), WIDEST + 1
+            )
             whole = [[triple for part in choice for triple in part] for choice in choices]
             return whole if len(whole) <= WIDEST else [[]]
         case Or(parts):
-            whole = [one for part in parts for one in given(x, part, writer)]
+            whole = [one for part in parts for one in membership_alternatives(x, part, writer)]
             return whole if len(whole) <= WIDEST else [[]]
         case OneOf(terms):
             return [[(x, SAME_AS, term)] for term in terms] if len(terms) <= WIDEST else [[]]
         case AtLeast(number, role, filler) if number <= WIDEST:
-            return _given_values(x, number, role, filler, writer)
+            return _value_alternatives(x, number, role, filler, writer)
         case Has(role, value):
             return [[role.edge(x, value)]]
         case Self(role):
@@ -52,9 +54,9 @@ def given(x: Term, expression: Expression, writer: Writer) -> Alternatives:
         case Not(OneOf((term,))):
             return [[(x, DIFFERENT_FROM, term)]]
         case Not(Has(role, value)):
-            return [_never(role.edge(x, value), writer)]
+            return [_negative_assertion(role.edge(x, value), writer)]
         case Not(Self(role)):
-            return [_never(role.edge(x, x), writer)]
+            return [_negative_assertion(role.edge(x, x), writer)]
         case Not(Named(term)) if term == THING:
             return []
     triples: list[Triple] = []
@@ -65,19 +67,19 @@ def given(x: Term, expression: Expression, writer: Writer) -> Alternatives:
     return [[*triples, (x, TYPE, node)]]
 
 
-def _given_values(x: Term, number: int, role: Role, filler: Expression, writer: Writer) -> Alternatives:
+def _value_alternatives(x: Term, number: int, role: Role, filler: Expression, writer: Writer) -> Alternatives:
     values = [writer.fresh() for _ in range(number)]
     triples = [role.edge(x, y) for y in values]
     triples += [(one, DIFFERENT_FROM, other) for one, other in combinations(values, 2)]
     if filler == ANYTHING:
         return [triples]
-    choices = list(islice(product(*(given(y, filler, writer) for y in values)), WIDEST + 1))
+    choices = list(islice(product(*(membership_alternatives(y, filler, writer) for y in values)), WIDEST + 1))
     if len(choices) > WIDEST:
         return [triples]
     return [[*triples, *(triple for part in choice for triple in part)] for choice in choices]
 
 
-def _never(edge: Triple, writer: Writer) -> list[Triple]:
+def _negative_assertion(edge: Triple, writer: Writer) -> list[Triple]:
     s, p, o = edge
     node = writer.fresh()
     target = "owl:targetValue" if is_literal(o) else "owl:targetIndividual"

@@ -1,8 +1,8 @@
-"""What follows from new edges, column by column.
+"""Inference from new edges, column by column.
 
-A rule is tried for all edges of a column with a few look-ups each. Widened kinds, values that come with
-classes, and what chains conclude are worked out here. An edge from which more may follow, or a contradiction,
-is *doubtful*: the rules look at it like at any other.
+A rule is applied to all edges of a column with a few look-ups for each. This module computes wider kinds,
+values implied by classes, and conclusions of chains. An edge that may imply more, or a contradiction, is
+*doubtful*: the rules process it individually.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from semmap.nodes.kb_node.reasoner.tbox.axioms import Chain, Role
 Pair = tuple[int, int]
 
 
-class Following:
-    """What follows from columns that are in the store now, in an ABox in which no nodes are the same."""
+class ColumnInference:
+    """Inference from columns that are already stored, in an ABox without equal nodes."""
 
     def __init__(self, abox: ABox, columns: Sequence[Column], before: Ends) -> None:
-        """`before` is of all ends of the columns, as they were before, for all predicates `looked_for`."""
+        """`before` are the ends of the columns before they were stored, for all `relevant_predicates`."""
         self._abox = abox
         self._columns = columns
         self._before = before
@@ -35,8 +35,8 @@ class Following:
         self._made: dict[int, dict[Pair, tuple[Edge, Edge]]] = {}
         self._valued: dict[int, None] = {}
 
-    def take(self, column: Column, edges: Sequence[int]) -> Iterable[int]:
-        """Widen the kinds of a column's ends, and note what its edges make; which places are doubtful."""
+    def apply_rules(self, column: Column, edges: Sequence[int]) -> Iterable[int]:
+        """Widen the kinds of a column's ends, note its conclusions, and return the doubtful places."""
         doubtful = self._widen(column, edges)
         rules = self._abox.steps.rules(column.predicate)
         if rules is None:
@@ -44,7 +44,7 @@ class Following:
         if rules.limits:
             is_alone = self._abox.store.out.is_alone
             return doubtful.union(
-                at for at, edge in enumerate(edges) if not (rules.of_values and is_alone(edge))
+                at for at, edge in enumerate(edges) if not (rules.only_uniqueness and is_alone(edge))
             )
         doubtful.update(self._excluded(column, rules))
         if rules.irreflexive:
@@ -55,20 +55,20 @@ class Following:
                 self._conclude(column, edges, chain, is_head, forwards)
         return doubtful
 
-    def made(self) -> Iterator[Column]:
-        """The edges that follow from those that were taken, and are not there."""
+    def conclusions(self) -> Iterator[Column]:
+        """Yield the edges that follow from the processed columns and do not exist."""
         for result, pairs in self._made.items():
             subjects, objects = zip(*pairs, strict=True)
             yield Column(result, DERIVED, subjects, objects, claims=list(pairs.values()))
         yield from self._values()
 
     def _values(self) -> Iterator[Column]:
-        """The edges that classes come with (cls-hv1), and that nothing else implies."""
+        """Yield the edges that are implied by classes (cls-hv1) and by nothing else."""
         abox, store = self._abox, self._abox.store
         having: dict[tuple[int, Term], list[int]] = {}
         for node in self._valued:
-            for said in store.kind[node].values:
-                having.setdefault(said, []).append(node)
+            for implied in store.kind[node].values:
+                having.setdefault(implied, []).append(node)
         for (predicate, term), owners in having.items():
             group, value = abox.steps.group((predicate, False)), store.node(term)
             may_have = Ends.of(store, owners, {*group.out, *group.into}).along(group)
@@ -83,7 +83,7 @@ class Following:
     # Classes
 
     def _widen(self, column: Column, edges: Sequence[int]) -> set[int]:
-        """Widen the kinds of the ends; which edges say more than that."""
+        """Widen the kinds of the ends; return the edges that imply more."""
         abox = self._abox
         kind_of = abox.store.kind.__getitem__
         kinds = list(zip(map(kind_of, column.subjects), map(kind_of, column.objects), strict=True))
@@ -95,28 +95,28 @@ class Following:
                 if (now := (step.subject, step.object)[which]) is not pair[which]
             }
             if masks:
-                told = zip(ends, kinds, strict=True)
-                for node, mask in {(node, masks[pair]) for node, pair in told if pair in masks}:
+                pairs = zip(ends, kinds, strict=True)
+                for node, mask in {(node, masks[pair]) for node, pair in pairs if pair in masks}:
                     self._widen_one(node, mask)
         special = {pair for pair, step in steps.items() if step.special or pair[1].excluded is not None}
         return {
             at
             for at, pair in enumerate(kinds if special else ())
-            if pair in special and not self._is_all_told(steps[pair], pair, edges[at])
+            if pair in special and not self._is_done(steps[pair], pair, edges[at])
         }
 
     def _widen_one(self, node: int, mask: int) -> None:
-        """Widen a kind; nobody needs to look at the node's edges if what is new says nothing of them."""
+        """Widen a kind. The node's edges are only processed again if its new classes affect them."""
         abox, store = self._abox, self._abox.store
-        before, is_awaited = store.kind[node], node in abox.dirty
+        before, is_pending = store.kind[node], node in abox.dirty
         abox.widen(node, mask)
         now = store.kind[node]
-        if is_awaited or now is before or now.clash:
+        if is_pending or now is before or now.clash:
             return
         new = now.mask & ~before.mask
-        concerned = abox.steps.concerned
+        relevant_classes = abox.steps.relevant_classes
         if not any(
-            concerned(p)[which] & new
+            relevant_classes(p)[which] & new
             for which, side in enumerate((store.out, store.into))
             for p in side.predicates(node)
         ):
@@ -124,15 +124,15 @@ class Following:
             if now.values != before.values:
                 self._valued[node] = None
 
-    def _is_all_told(self, step: Step, pair: tuple[Kind, Kind], edge: int) -> bool:
-        """Whether nothing is left of a step of an edge once the kinds are widened."""
-        is_plain = not step.special or (step.of_values and self._abox.store.out.is_alone(edge))
+    def _is_done(self, step: Step, pair: tuple[Kind, Kind], edge: int) -> bool:
+        """Return whether a step needs nothing more after the kinds are widened."""
+        is_plain = not step.special or (step.only_uniqueness and self._abox.store.out.is_alone(edge))
         return is_plain and pair[1].excluded is None
 
     # Pairs
 
     def _excluded(self, column: Column, rules: EdgeRules) -> Iterator[int]:
-        """The edges beside which there is one that must not be."""
+        """Yield the edges that coexist with an excluded one."""
         abox = self._abox
         others = [other for _, other in rules.exclusive]
         groups = [abox.steps.group(other) for other in others]
@@ -146,12 +146,12 @@ class Following:
     def _conclude(
         self, column: Column, edges: Sequence[int], chain: Chain, is_head: bool, forwards: bool
     ) -> None:
-        """Note what a chain makes that edges begin, or that they end."""
-        abox, role = self._abox, _role_beside(chain, is_head)
+        """Note the conclusions of a chain that the edges start, or end."""
+        abox, role = self._abox, _other_role(chain, is_head)
         group = abox.steps.group(role)
         ends = column.subjects, column.objects
         outer, middle = ends if is_head == forwards else ends[::-1]
-        # a new edge that it ends is among those that begin it
+        # pairs of new edges are found from the first edge
         joined = (self._now if is_head else self._before).along(group).intersection(middle)
         if not joined:
             return
@@ -173,7 +173,7 @@ class Following:
             self._made[chain.result] = made
 
     def _pairs(self, result: int) -> set[Pair]:
-        """Between whom the new edges imply a property."""
+        """Return the pairs for which the new edges imply a property."""
         if (found := self._implied.get(result)) is None:
             group = self._abox.steps.group((result, False))
             found = self._implied[result] = set()
@@ -185,25 +185,25 @@ class Following:
         return found
 
 
-def looked_for(abox: ABox, columns: Iterable[Column]) -> set[int]:
-    """The predicates of edges that matter to whether something follows from new ones, and their own."""
+def relevant_predicates(abox: ABox, columns: Iterable[Column]) -> set[int]:
+    """Return the predicates of the columns, and of all edges that may affect their conclusions."""
     found: set[int] = set()
     for predicate in {column.predicate for column in columns}:
         found.add(predicate)
-        for role in _roles_beside(abox.steps.rules(predicate)):
+        for role in _other_roles(abox.steps.rules(predicate)):
             group = abox.steps.group(role)
             found.update(group.out, group.into)
     return found
 
 
-def _roles_beside(rules: EdgeRules | None) -> Iterator[Role]:
-    """The roles of other edges that rules look for."""
+def _other_roles(rules: EdgeRules | None) -> Iterator[Role]:
+    """Yield the roles of other edges in the rules."""
     if rules is not None:
         yield from (other for _, other in rules.exclusive)
-        yield from (_role_beside(chain, True) for _, chain in rules.heads)
-        yield from (_role_beside(chain, False) for _, chain in rules.tails)
+        yield from (_other_role(chain, True) for _, chain in rules.heads)
+        yield from (_other_role(chain, False) for _, chain in rules.tails)
 
 
-def _role_beside(chain: Chain, is_head: bool) -> Role:
-    """How a chain goes on from the middle, seen from its first edge or else its second."""
+def _other_role(chain: Chain, is_head: bool) -> Role:
+    """Return the role of the other edge of a chain, seen from its first edge or else its second."""
     return (chain.second, False) if is_head else (chain.first, True)

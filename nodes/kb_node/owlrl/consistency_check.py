@@ -1,4 +1,4 @@
-"""A second opinion on consistency, by owlrl: slow, independent of our own reasoner, in its own process."""
+"""An independent consistency check with owlrl. It is slow and runs in a separate process."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from semmap.schemas import errors
 from semmap.schemas.explanations import Triple
 
 TIMEOUT_S = 600.0
-_LOOK_S = 0.5
+_POLL_S = 0.5
 _CHILD = "semmap.nodes.kb_node.owlrl.closure_process"
 
 
-def owlrl_faults(triples: Iterable[Triple], *, is_over: Callable[[], bool] = lambda: False) -> list[str]:
-    """What owlrl finds wrong; empty when it finds the triples consistent. Takes minutes for a large map.
+def find_owlrl_faults(triples: Iterable[Triple], *, is_over: Callable[[], bool] = lambda: False) -> list[str]:
+    """Return the inconsistencies that owlrl finds; empty if there are none. Takes minutes for a large map.
 
-    It is given up as soon as `is_over()`, which is asked twice a second. Raises Refused when it does not come
-    to an end.
+    Aborts when `is_over()`, which is polled twice a second. Raises Refused if owlrl is aborted, fails, or
+    does not finish within `TIMEOUT_S`.
     """
     document: str | None = "".join(f"{s} {p} {o} .\n" for s, p, o in triples)
     deadline_s = time.monotonic() + TIMEOUT_S
@@ -32,18 +32,19 @@ def owlrl_faults(triples: Iterable[Triple], *, is_over: Callable[[], bool] = lam
     ) as child:
         while True:
             try:
-                found, complaint = child.communicate(document, timeout=_LOOK_S)
+                found, stderr = child.communicate(document, timeout=_POLL_S)
                 break
             except subprocess.TimeoutExpired:
-                document = None  # it is being fed already
+                document = None  # the input was already passed
                 if is_over():
                     child.kill()
-                    raise errors.Refused("owlrl was given up: the knowledge base is stopping") from None
+                    raise errors.Refused("owlrl check aborted: the knowledge base is stopping") from None
                 if time.monotonic() > deadline_s:
                     child.kill()
                     raise errors.Refused(
-                        f"owlrl did not finish within {TIMEOUT_S:g} s; the map is too large for it"
+                        f"owlrl check: timeout after {TIMEOUT_S:g} s (large map); use --engine semmap"
                     ) from None
     if child.returncode != 0:
-        raise errors.Refused(f"owlrl failed: {(complaint.strip() or str(child.returncode)).splitlines()[-1]}")
+        reason = (stderr.strip() or f"exit status {child.returncode}").splitlines()[-1]
+        raise errors.Refused(f"owlrl check failed: {reason}")
     return [line for line in found.splitlines() if line]
