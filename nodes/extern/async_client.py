@@ -23,7 +23,7 @@ from typing import Any, Final, Literal, TypeVar
 
 from semmap.nodes.extern.client import LONG_S, Client
 from semmap.nodes.extern.client import connect as connect_blocking
-from semmap.nodes.extern.client_verbs import Verbs
+from semmap.nodes.extern.client_commands import CommandMethods
 from semmap.nodes.extern.sparql_client import StandingQuery
 from semmap.schemas import errors
 from semmap.schemas.backups import Opening
@@ -64,7 +64,7 @@ async def connect(
         threads.shutdown(wait=False, cancel_futures=True)
 
 
-class AsyncClient(Verbs):
+class AsyncClient(CommandMethods):
     """Commands over the session of a `Client`; the verbs are coroutines. Owned by one event loop."""
 
     def __init__(self, client: Client, threads: ThreadPoolExecutor) -> None:
@@ -73,15 +73,15 @@ class AsyncClient(Verbs):
 
     async def send(self, command: Command[R], *, timeout_s: float = LONG_S) -> R:
         """Send any command and return its reply; see `Client.send`."""
-        return await self._beside(lambda: self._client.send(command, timeout_s=timeout_s))
+        return await self._in_thread(lambda: self._client.send(command, timeout_s=timeout_s))
 
     async def request(self, make: Callable[[], Command[R]], read: Callable[[R], Any] | None = None) -> Any:
         """Make a command, send it, and `read` its reply: what each verb does."""
-        return await self._beside(lambda: self._client.request(make, read))
+        return await self._in_thread(lambda: self._client.request(make, read))
 
     async def backup(self, file: str | Path, *, overwrite: bool = False) -> Opening:
         """Write the map with its history to a file here; see `Client.backup`."""
-        return await self._beside(lambda: self._client.backup(file, overwrite=overwrite))
+        return await self._in_thread(lambda: self._client.backup(file, overwrite=overwrite))
 
     async def publish_pose(self, name: str, at: Sequence[float], **pose: Any) -> None:
         """Say where a tracked entity is just now; see `Client.publish_pose`. It waits for nothing."""
@@ -100,8 +100,8 @@ class AsyncClient(Verbs):
     @contextlib.asynccontextmanager
     async def commits(self, *, timeout: float | None = None) -> AsyncIterator[AsyncIterator[Commit]]:
         """Every commit from now on; see `Client.commits`. None for `timeout` seconds raises NoAnswer."""
-        async with self._entered(self._client.commits()) as commits:
-            yield _handed_over(commits, "no commit came", timeout)
+        async with self._enter_in_thread(self._client.commits()) as commits:
+            yield _iterate_in_thread(commits, "no commit came", timeout)
 
     @contextlib.asynccontextmanager
     async def watch(
@@ -122,19 +122,19 @@ class AsyncClient(Verbs):
         watching = self._client.watch(
             query, inferred=inferred, class_=class_, on=on, in_=in_, near=near, within=within
         )
-        async with self._entered(watching) as standing:
+        async with self._enter_in_thread(watching) as standing:
             yield AsyncStandingQuery(standing)
 
     @contextlib.asynccontextmanager
-    async def _entered(self, context: contextlib.AbstractContextManager[T]) -> AsyncIterator[T]:
+    async def _enter_in_thread(self, context: contextlib.AbstractContextManager[T]) -> AsyncIterator[T]:
         """Enter and leave on a thread, for both may wait for the system."""
-        entered = await self._beside(context.__enter__)
+        entered = await self._in_thread(context.__enter__)
         try:
             yield entered
         finally:
-            await self._beside(functools.partial(context.__exit__, None, None, None))
+            await self._in_thread(functools.partial(context.__exit__, None, None, None))
 
-    async def _beside(self, function: Callable[[], T]) -> T:
+    async def _in_thread(self, function: Callable[[], T]) -> T:
         return await asyncio.get_running_loop().run_in_executor(self._threads, function)
 
 
@@ -150,10 +150,10 @@ class AsyncStandingQuery:
 
     def changes(self, *, timeout: float | None = None) -> AsyncIterator[RowsChanged]:
         """The news, in order, until it is closed. Raises Refused, NoAnswer; see `StandingQuery.changes`."""
-        return _handed_over(self._standing.changes(), "no rows changed", timeout)
+        return _iterate_in_thread(self._standing.changes(), "no rows changed", timeout)
 
 
-async def _handed_over(items: Iterator[T], nothing: str, timeout_s: float | None) -> AsyncIterator[T]:
+async def _iterate_in_thread(items: Iterator[T], nothing: str, timeout_s: float | None) -> AsyncIterator[T]:
     """What a thread takes from `items`, which must end when what they come from is closed."""
     loop = asyncio.get_running_loop()
     taken: asyncio.Queue[tuple[T] | Exception | None] = asyncio.Queue()

@@ -16,7 +16,7 @@ WENT_DOWN = "the knowledge base is down; waiting for it to come back"
 CAME_BACK = "the knowledge base is back, with the same map"
 
 
-class _Beginning(NamedTuple):
+class _FirstCommit(NamedTuple):
     """What a map began with: no two maps have the same."""
 
     stamp_ns: int
@@ -24,11 +24,11 @@ class _Beginning(NamedTuple):
 
 
 @contextmanager
-def told(client: Client, tell: Callable[[str], None]) -> Iterator[None]:
+def report_availability(client: Client, tell: Callable[[str], None]) -> Iterator[None]:
     """Meanwhile `tell(sentence)` is called, on another thread, when the system goes down or comes back."""
     changes: queue.SimpleQueue[bool | None] = queue.SimpleQueue()
     subscriber = bus.follow_presence(client.session, "kb_node", changes.put)
-    thread = threading.Thread(target=_tell_of, args=(client, changes, tell), daemon=True)
+    thread = threading.Thread(target=_report_changes, args=(client, changes, tell), daemon=True)
     thread.start()
     try:
         yield
@@ -38,27 +38,29 @@ def told(client: Client, tell: Callable[[str], None]) -> Iterator[None]:
         thread.join(timeout=bus.PATIENCE_S)
 
 
-def _tell_of(client: Client, changes: queue.SimpleQueue[bool | None], tell: Callable[[str], None]) -> None:
-    before: _Beginning | None = None
+def _report_changes(
+    client: Client, changes: queue.SimpleQueue[bool | None], tell: Callable[[str], None]
+) -> None:
+    before: _FirstCommit | None = None
     while (there := changes.get()) is not None:
         if not there:
             tell(WENT_DOWN)
             continue
         try:
-            now = _beginning(client)
+            now = _first_commit(client)
             if before is not None:
-                tell(CAME_BACK if now == before else _another(client, now))
+                tell(CAME_BACK if now == before else _other_map_text(client, now))
             before = now
         except errors.SemmapError:  # it has gone again, or this client may not ask it
             continue
 
 
-def _beginning(client: Client) -> _Beginning:
+def _first_commit(client: Client) -> _FirstCommit:
     (first,) = client.history(until=1, limit=1)
-    return _Beginning(first.stamp_ns, first.reason)
+    return _FirstCommit(first.stamp_ns, first.reason)
 
 
-def _another(client: Client, beginning: _Beginning) -> str:
+def _other_map_text(client: Client, beginning: _FirstCommit) -> str:
     status = client.status()
     counts = f"{wording.entities(status.entities)}, commit {status.commit}"
     return (

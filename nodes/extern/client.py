@@ -25,7 +25,7 @@ import msgspec
 
 from semmap.nodes import bus
 from semmap.nodes.extern import backup
-from semmap.nodes.extern.client_verbs import Verbs
+from semmap.nodes.extern.client_commands import CommandMethods
 from semmap.nodes.extern.connection import endpoint, open_session
 from semmap.nodes.extern.connection import identity as identify
 from semmap.nodes.extern.connection import namespace as robot
@@ -84,7 +84,7 @@ _LONG = (Load, Undo, Clear)
 """What may be at work for long when a node ends: its restart is waited for, so that the end is known."""
 
 
-class Client(Verbs):
+class Client(CommandMethods):
     """Commands over a session of yours; `source` and `agent` sign those that do not say their own."""
 
     def __init__(
@@ -111,7 +111,7 @@ class Client(Verbs):
         role of this client's certificate does not permit, and NoAnswer when the reply takes longer than
         `timeout_s` [s].
         """
-        signed, first_hand = _checked(command, self._signature), command.VERB in keys.OF_THE_MAP
+        signed, first_hand = _prepare(command, self._signature), command.VERB in keys.OF_THE_MAP
         if self.identity is not None and (refusal := roles.refusal(self.identity.role, signed)) is not None:
             raise errors.Refused(refusal)
         reply: R = self._ask(
@@ -129,11 +129,11 @@ class Client(Verbs):
         try:
             return bus.ask(self.session, self.prefix, verb, command, kind, lifelines=self._lifelines, **how)
         except errors.SemmapError as error:
-            if _may_be_of_versions(error) and (difference := version.difference(self._version_of_system())):
+            if _is_version_mismatch(error) and (difference := version.difference(self._system_version())):
                 raise type(error)(f"{error.text}; {difference}", explanation=error.explanation) from None
             raise
 
-    def _version_of_system(self) -> str:
+    def _system_version(self) -> str:
         """What its status says; this client's own where nobody says."""
         ask = functools.partial(bus.ask, timeout_s=_VERSION_S, patience_s=0.0)
         try:
@@ -209,7 +209,7 @@ class Client(Verbs):
         """Put a pose on a key; without a `kind` delete what was put there."""
         message: LivePose | FramePose | None = None
         if kind is not None:
-            plain = msgspec.to_builtins(fields, enc_hook=_plain)
+            plain = msgspec.to_builtins(fields, enc_hook=_to_builtin)
             try:
                 message = codec.convert(plain, kind)
                 message.require_pose()
@@ -243,7 +243,7 @@ class Client(Verbs):
         wanted = Watch(
             query=query, inferred=inferred, class_=class_, on=on, in_=in_, near=near, within=within
         )
-        standing = StandingQuery(self.session, self._ask, _checked(wanted, {}))
+        standing = StandingQuery(self.session, self._ask, _prepare(wanted, {}))
         try:
             yield standing
         finally:
@@ -263,7 +263,7 @@ class Client(Verbs):
         subscriber = bus.follow(self.session, keys.COMMIT, lambda _, commit: events.put(commit))
         try:
             now = self.status().commit
-            yield (c for c in _each(events, timeout) if c.seq > now or c.stamp_ns > began_ns)
+            yield (c for c in _wait_for_commits(events, timeout) if c.seq > now or c.stamp_ns > began_ns)
         finally:
             subscriber.undeclare()
             events.put(None)  # whoever waits for the next one on another thread is told of the end
@@ -275,7 +275,7 @@ def _frame_key(name: str) -> str:
     return keys.frame_key(name)
 
 
-def _each(events: queue.SimpleQueue[Commit | None], timeout_s: float | None) -> Iterator[Commit]:
+def _wait_for_commits(events: queue.SimpleQueue[Commit | None], timeout_s: float | None) -> Iterator[Commit]:
     while True:
         try:
             commit = events.get(timeout=timeout_s)
@@ -286,20 +286,20 @@ def _each(events: queue.SimpleQueue[Commit | None], timeout_s: float | None) -> 
         yield commit
 
 
-def _may_be_of_versions(error: errors.SemmapError) -> bool:
+def _is_version_mismatch(error: errors.SemmapError) -> bool:
     """A message that one end cannot read, a verb that it does not have, or an error of an unknown kind."""
     malformed = isinstance(error, errors.BadRequest) and error.text.startswith(codec.MALFORMED)
     return malformed or isinstance(error, errors.UnknownVerb) or type(error) is errors.SemmapError
 
 
-def _checked(command: C, signature: dict[str, Any]) -> C:
+def _prepare(command: C, signature: dict[str, Any]) -> C:
     """The command as it is sent: signed, in Python's own numbers, with offsets in its times.
 
     A change has an id, so that it is executed once even if the coordinator is killed before it replies and
     the command is sent again. Raises BadRequest.
     """
-    fields = msgspec.to_builtins(command, builtin_types=(bytes,), enc_hook=_plain)
-    for moment in _moments(type(command)) & fields.keys():
+    fields = msgspec.to_builtins(command, builtin_types=(bytes,), enc_hook=_to_builtin)
+    for moment in _time_fields(type(command)) & fields.keys():
         fields[moment] = with_offset(fields[moment])
     if reply_type(type(command)) is Changed and not command.id:
         fields["id"] = _new_id()
@@ -315,12 +315,12 @@ def _new_id() -> str:
 
 
 @functools.cache
-def _moments(kind: type[Command]) -> frozenset[str]:
+def _time_fields(kind: type[Command]) -> frozenset[str]:
     """The fields that are points in the map's history."""
     return frozenset(f.encode_name for f in msgspec.structs.fields(kind) if f.type == When | None)
 
 
-def _plain(value: Any) -> Any:
+def _to_builtin(value: Any) -> Any:
     """Numbers and arrays of NumPy as Python's own."""
     if hasattr(value, "tolist"):
         return value.tolist()

@@ -40,7 +40,7 @@ def test_a_watcher_is_told_that_the_system_goes_and_which_map_comes():
     with contextlib.ExitStack() as watching:
         with system_at(endpoint, 1, asked):
             client = watching.enter_context(connect(endpoint))
-            watching.enter_context(availability.told(client, said.append))
+            watching.enter_context(availability.report_availability(client, said.append))
             until(lambda: asked == ["history"], "it is asked which map is there at first; that is no news")
         until(lambda: said == [availability.WENT_DOWN], "it is told that the system is gone")
         with system_at(endpoint, 1, asked):

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import click
 
-from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.cli.output.printable import print_escaped
 
 _ANGLE: Final = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(deg|°|rad)?\s*")
 
@@ -30,7 +30,7 @@ class Angle(click.ParamType[float]):
             return math.radians(angle)
         if unit is None and math.isfinite(angle) and abs(angle) > math.tau:
             degrees = math.degrees(math.remainder(angle, math.tau))
-            say(
+            print_escaped(
                 f"  note: {value} is read as radians, which is {degrees:.4g}°; for degrees write {value}deg",
                 file=sys.stderr,
             )

@@ -21,9 +21,9 @@ def main() -> None:
 def execute(arguments: list[str]) -> int:
     """Run one command line and return its exit status; what is wrong goes to stderr in one line."""
     try:
-        from semmap.nodes.extern.cli.all_verbs import app
-        from semmap.nodes.extern.cli.calling import run_words
+        from semmap.nodes.extern.cli.all_commands import app
+        from semmap.nodes.extern.cli.common import run_arguments
 
-        return run_words(app, arguments)
+        return run_arguments(app, arguments)
     except KeyboardInterrupt:
         return 130

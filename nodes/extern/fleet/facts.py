@@ -47,10 +47,10 @@ class Facts(Struct, frozen=True, kw_only=True):
     @property
     def triples(self) -> tuple[Triple, ...]:
         """As they are in `FACTS`."""
-        return (*self.lasting, *self.moving)
+        return (*self.map_triples, *self.commit_triples)
 
     @property
-    def lasting(self) -> tuple[Triple, ...]:
+    def map_triples(self) -> tuple[Triple, ...]:
         """What a commit does not change."""
         robot = graph(self.robot)
         said = [
@@ -69,7 +69,7 @@ class Facts(Struct, frozen=True, kw_only=True):
         return tuple(said)
 
     @property
-    def moving(self) -> tuple[Triple, ...]:
+    def commit_triples(self) -> tuple[Triple, ...]:
         """What each commit changes."""
         robot = graph(self.robot)
         if self.commit is None:
@@ -83,10 +83,10 @@ class Facts(Struct, frozen=True, kw_only=True):
     @property
     def guard(self) -> Triple:
         """What is there as long as nobody has written since."""
-        return next(t for t in self.moving if t[1] in (term("digest"), term("copying")))
+        return next(t for t in self.commit_triples if t[1] in (term("digest"), term("copying")))
 
     @property
-    def farewell(self) -> tuple[Triple, ...]:
+    def tombstone(self) -> tuple[Triple, ...]:
         """What remains of an epoch that has ended."""
         epoch = f"<urn:semmap:robot:{self.robot}:epoch:{self.epoch}>"
         said = [

@@ -23,11 +23,11 @@ from semmap.nodes import bus
 from semmap.nodes.extern.connection import open_session
 from semmap.nodes.extern.fleet import facts as f
 from semmap.nodes.extern.fleet import updates
-from semmap.nodes.extern.fleet.catching_up import FAR, Anew, Continued, catch_up
 from semmap.nodes.extern.fleet.facts import Facts
-from semmap.nodes.extern.fleet.following import Following
 from semmap.nodes.extern.fleet.frames import Frame
+from semmap.nodes.extern.fleet.replica import Replica
 from semmap.nodes.extern.fleet.server import TIMEOUT_S, SparqlServer
+from semmap.nodes.extern.fleet.synchronization import FAR, FullCopy, NextCommits, synchronize
 from semmap.nodes.identity import Identity
 from semmap.schemas import errors, keys
 from semmap.schemas.calls import Call, reply_type
@@ -69,14 +69,14 @@ class _Robot:
     def __init__(self, name: str, endpoint: str) -> None:
         self.name = name
         self.endpoint = endpoint
-        self.following = Following(name)
+        self.replica = Replica(name)
         self.instances: set[str] = set()
         """The processes of its knowledge base that are there."""
-        self.way = contextlib.ExitStack()
+        self.connections = contextlib.ExitStack()
         self.ask: Callable[[Call[Any]], Any] | None = None
-        self.is_asked = False
-        self.ask_at_s = 0.0
-        self.told = ""
+        self.is_queried = False
+        self.query_at_s = 0.0
+        self.error = ""
 
 
 class Mirror:
@@ -91,14 +91,14 @@ class Mirror:
         self._robots: dict[str, _Robot] = {}
         self._events: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._threads = ThreadPoolExecutor(_ASKED_AT_ONCE, thread_name_prefix="fleet")
-        self._ways = contextlib.ExitStack()
+        self._connections = contextlib.ExitStack()
         self._stopped = False
         self._found = 0
         """Endpoints at which it was seen which robots there are."""
         self._server: dict[str, Facts] | None = None
         """What the server said of robots when it was last asked about all; None when that is to be done."""
         self._pause_s = _FIRST_S
-        self._not_before_s = 0.0
+        self._next_try_s = 0.0
         self.trouble = ""
         """What keeps the server from being written to; empty when all is well."""
         self.commits = 0
@@ -109,7 +109,7 @@ class Mirror:
     @property
     def facts(self) -> dict[str, Facts]:
         """What the server is known to have, by robot."""
-        known = {name: robot.following.facts for name, robot in self._robots.items()}
+        known = {name: robot.replica.facts for name, robot in self._robots.items()}
         return {name: facts for name, facts in known.items() if facts is not None}
 
     def stop(self) -> None:
@@ -123,7 +123,7 @@ class Mirror:
         """
         try:
             for endpoint in self._config.endpoints:
-                self._look_at(endpoint)
+                self._discover(endpoint)
             while not self._stopped:
                 self._handle()
                 if self._read():
@@ -135,8 +135,8 @@ class Mirror:
             self._stopped = True
             self._threads.shutdown(wait=True, cancel_futures=True)
             for robot in self._robots.values():
-                robot.way.close()
-            self._ways.close()
+                robot.connections.close()
+            self._connections.close()
             self._writer.close()
             self._reader.close()
 
@@ -148,15 +148,15 @@ class Mirror:
             where = ", ".join(self._config.endpoints)
             raise errors.NoAnswer(f"no robot that matches {', '.join(self._config.robots)} is at {where}")
         for robot in there:
-            if robot.told and robot.following.phase == "behind":
-                raise errors.NoAnswer(f"{robot.name}: {robot.told}")
+            if robot.error and robot.replica.phase == "behind":
+                raise errors.NoAnswer(f"{robot.name}: {robot.error}")
         return bool(there) and all(
-            robot.following.phase == "level" and not robot.following.has_work for robot in there
+            robot.replica.phase == "in_sync" and not robot.replica.has_work for robot in there
         )
 
     def _handle(self) -> None:
         """What has come; it is waited for if there is nothing to write."""
-        busy = not self.trouble and any(robot.following.has_work for robot in self._robots.values())
+        busy = not self.trouble and any(robot.replica.has_work for robot in self._robots.values())
         with contextlib.suppress(queue.Empty):
             self._events.get(timeout=0.001 if busy else _WAIT_S)()
             while True:
@@ -164,71 +164,73 @@ class Mirror:
 
     # Robots
 
-    def _look_at(self, endpoint: str) -> None:
+    def _discover(self, endpoint: str) -> None:
         """See which robots are reached at an endpoint, from now on."""
 
         def look() -> None:
             where = open_session(endpoint, "", self._config.identity, mode="client")
-            session = self._ways.enter_context(where)
-            bus.follow_robots(session, "kb_node", functools.partial(self._later, self._appear, endpoint))
+            session = self._connections.enter_context(where)
+            bus.follow_robots(
+                session, "kb_node", functools.partial(self._run_on_owner, self._on_presence, endpoint)
+            )
 
         def looked(done: Future[None]) -> None:
             error = done.exception()
             if error is None:
                 self._found += 1
             elif isinstance(error, errors.SemmapError):
-                self._say(f"{error}; trying again")
+                self._report(f"{error}; trying again")
                 self._threads.submit(time.sleep, _AGAIN_S).add_done_callback(
-                    lambda _: self._later(self._look_at, endpoint)
+                    lambda _: self._run_on_owner(self._discover, endpoint)
                 )
             else:
                 raise error
 
-        self._beside(look, looked)
+        self._run_in_thread(look, looked)
 
-    def _appear(self, endpoint: str, name: str, instance: str, there: bool) -> None:
+    def _on_presence(self, endpoint: str, name: str, instance: str, there: bool) -> None:
         """A process of a robot's knowledge base is there, or has gone."""
         if not any(fnmatchcase(name, pattern) for pattern in self._config.robots):
             return
         robot = self._robots.get(name)
         if robot is None:
             robot = self._robots[name] = _Robot(name, endpoint)
-            robot.following.learn((self._server or {}).get(name))
+            robot.replica.update_facts((self._server or {}).get(name))
         if endpoint != robot.endpoint:
             return
         if there:
             robot.instances.add(instance)
-            robot.following.begin_anew()
-            robot.ask_at_s = 0.0
+            robot.replica.restart()
+            robot.query_at_s = 0.0
         else:
             robot.instances.discard(instance)
             if not robot.instances:
-                self._say(f"{name} has gone; it is followed again when it comes back")
+                self._report(f"{name} has gone; it is followed again when it comes back")
 
     def _ask(self) -> None:
         """Have the robots asked that are behind, or have to be made sure of."""
         now_s = time.monotonic()
         for robot in self._robots.values():
-            following = robot.following
-            idle = following.phase == "level" and not following.has_work
-            due = now_s >= robot.ask_at_s and (
-                idle or (following.phase == "behind" and not following.copying)
-            )
-            if robot.instances and due and not robot.is_asked:
-                robot.is_asked = True
+            replica = robot.replica
+            idle = replica.phase == "in_sync" and not replica.has_work
+            due = now_s >= robot.query_at_s and (idle or (replica.phase == "behind" and not replica.copying))
+            if robot.instances and due and not robot.is_queried:
+                robot.is_queried = True
                 frame = self._config.frames.get(robot.name)
-                ask = functools.partial(self._catch_up, robot, following.facts, frame)
-                done = functools.partial(self._caught_up, robot, following.generation)
-                self._beside(ask, done)
+                ask = functools.partial(self._synchronize, robot, replica.facts, frame)
+                done = functools.partial(self._on_synchronized, robot, replica.generation)
+                self._run_in_thread(ask, done)
 
-    def _catch_up(self, robot: _Robot, facts: Facts | None, frame: Frame | None) -> Continued | Anew | None:
+    def _synchronize(
+        self, robot: _Robot, facts: Facts | None, frame: Frame | None
+    ) -> NextCommits | FullCopy | None:
         """On a thread beside: subscribe first, then fetch."""
         if robot.ask is None:
             where = open_session(robot.endpoint, robot.name, self._config.identity, mode="client")
-            session = robot.way.enter_context(where)
+            session = robot.connections.enter_context(where)
             lifelines = bus.Lifelines(session)
-            hear = robot.following.hear
-            bus.follow(session, keys.COMMIT, lambda _, commit: self._later(hear, commit))
+            hear = robot.replica.add_commit
+            bus.follow(session, keys.COMMIT, lambda _, commit: self._run_on_owner(hear, commit))
 
             def ask(call: Call[Any]) -> Any:
                 kind = reply_type(type(call))
@@ -236,64 +238,66 @@ class Mirror:
                 return bus.ask(session, keys.BRIDGE, call.VERB, call, kind, lifelines=lifelines, **how)
 
             robot.ask = ask
-        return catch_up(robot.ask, robot.name, facts, frame, far=self._config.far)
+        return synchronize(robot.ask, robot.name, facts, frame, far=self._config.far)
 
-    def _caught_up(self, robot: _Robot, generation: int, done: Future[Continued | Anew | None]) -> None:
-        robot.is_asked = False
-        following = robot.following
+    def _on_synchronized(
+        self, robot: _Robot, generation: int, done: Future[NextCommits | FullCopy | None]
+    ) -> None:
+        robot.is_queried = False
+        replica = robot.replica
         try:
             found = done.result()
         except errors.SemmapError as error:
-            robot.ask_at_s = time.monotonic() + _AGAIN_S
-            self._tell_of(robot, error.text)
+            robot.query_at_s = time.monotonic() + _AGAIN_S
+            self._report_robot(robot, error.text)
             return
-        was = following.phase
-        following.catch_up(found, generation)
-        robot.ask_at_s = time.monotonic() + (_VERIFY_S if following.phase == "level" else _AGAIN_S)
-        if isinstance(found, Continued) and was == "behind":
-            at = found.commits[-1].seq if found.commits else following.facts and following.facts.commit
-            self._tell_of(robot, "")
-            self._say(f"{robot.name}: going on from commit {at}")
+        was = replica.phase
+        replica.synchronize(found, generation)
+        robot.query_at_s = time.monotonic() + (_VERIFY_S if replica.phase == "in_sync" else _AGAIN_S)
+        if isinstance(found, NextCommits) and was == "behind":
+            at = found.commits[-1].seq if found.commits else replica.facts and replica.facts.commit
+            self._report_robot(robot, "")
+            self._report(f"{robot.name}: going on from commit {at}")
         elif found is None:
-            self._tell_of(robot, "has no map yet")
+            self._report_robot(robot, "has no map yet")
 
     # The server
 
     def _read(self) -> bool:
         """Know what the server has; False while it cannot be asked."""
-        if time.monotonic() < self._not_before_s:
+        if time.monotonic() < self._next_try_s:
             return False
         if self._server is not None:
             return True
         try:
             self._server = f.read(self._reader.query(f.QUERY).rows)
         except errors.SemmapError as error:
-            self._complain(error.text)
+            self._pause_server(error.text)
             return False
         for robot in self._robots.values():
-            robot.following.learn(self._server.get(robot.name))
+            robot.replica.update_facts(self._server.get(robot.name))
         if self.trouble:
-            self._say("the SPARQL server answers again")
+            self._report("the SPARQL server answers again")
         self.trouble, self._pause_s = "", _FIRST_S
         return True
 
-    def _complain(self, text: str) -> None:
+    def _pause_server(self, text: str) -> None:
         """The server is left alone for a while, longer each time; then it is asked what it has."""
         if text != self.trouble:
-            self._say(f"{text}; trying again")
+            self._report(f"{text}; trying again")
         self.trouble, self._server = text, None
-        self._not_before_s = time.monotonic() + self._pause_s
+        self._next_try_s = time.monotonic() + self._pause_s
         self._pause_s = min(2 * self._pause_s, _LONGEST_S)
 
     def _write(self) -> None:
         for robot in self._robots.values():
-            if robot.following.copying is not None and not self._stopped:
+            if robot.replica.copying is not None and not self._stopped:
                 self._copy(robot)
         pending: list[tuple[_Robot, list[str], Facts, int]] = []
         triples = 0
         for robot in self._robots.values():
-            before = robot.following.facts
-            if triples < _REQUEST_TRIPLES and (next_ := robot.following.change()) and before is not None:
+            before = robot.replica.facts
+            if triples < _REQUEST_TRIPLES and (next_ := robot.replica.change()) and before is not None:
                 change, wanted = next_
                 triples += len(change)
                 pending.append((robot, list(change.operations(before, wanted)), wanted, len(change)))
@@ -305,23 +309,23 @@ class Mirror:
             for robot, operations, wanted, size in pending:
                 self._write_alone(robot, operations, wanted, size=size)
         except errors.SemmapError as error:
-            self._complain(error.text)
+            self._pause_server(error.text)
         else:
             self._confirm([(robot, wanted) for robot, _, wanted, _ in pending])
 
     def _copy(self, robot: _Robot) -> None:
         """Write a robot's whole map, in one request if it is small."""
-        following = robot.following
-        anew, before = following.copying, following.facts
+        replica = robot.replica
+        anew, before = replica.copying, replica.facts
         if anew is None:
             raise errors.InternalError(f"there is no copy of the map of {robot.name} to write")
         wanted = structs.replace(anew.facts, copying=os.urandom(8).hex())
-        operations = list(updates.copying(before, wanted, anew.whole))
+        operations = list(updates.copy_operations(before, wanted, anew.whole))
         small = len(anew.whole.triples) <= 2 * updates.CHUNK
         if self._write_alone(robot, operations, wanted, one_by_one=not small):
             count = len(anew.whole.triples)
-            self._tell_of(robot, "")
-            self._say(f"{robot.name}: copied at commit {wanted.commit} ({count:,} triples): {anew.why}")
+            self._report_robot(robot, "")
+            self._report(f"{robot.name}: copied at commit {wanted.commit} ({count:,} triples): {anew.why}")
 
     def _write_alone(
         self,
@@ -341,14 +345,14 @@ class Mirror:
             for some in ([operation] for operation in operations) if one_by_one else [operations]:
                 self._send(some)
         except errors.BadRequest as error:
-            if robot.following.take_less(size, wanted):
+            if robot.replica.halve_changes(size, wanted):
                 return False
-            self._tell_of(robot, error.text)
-            robot.following.begin_anew()
-            robot.ask_at_s = time.monotonic() + _REFUSED_S
+            self._report_robot(robot, error.text)
+            robot.replica.restart()
+            robot.query_at_s = time.monotonic() + _REFUSED_S
             return False
         except errors.SemmapError as error:
-            self._complain(error.text)
+            self._pause_server(error.text)
             return False
         return self._confirm([(robot, wanted)])
 
@@ -366,38 +370,38 @@ class Mirror:
         try:
             rows = self._reader.query(query).rows
         except errors.SemmapError as error:
-            self._complain(error.text)
+            self._pause_server(error.text)
             return False
         digests = {row[0]: row[1] for row in rows}
         as_wanted = True
         for robot, wanted in written:
-            before = robot.following.facts
+            before = robot.replica.facts
             if digests.get(f.graph(robot.name)) == f.text(wanted.digest):
-                if robot.following.copying is None and before is not None:
+                if robot.replica.copying is None and before is not None:
                     self.commits += (wanted.commit or 0) - (before.commit or 0)
-                robot.following.learn(structs.replace(wanted, copying=""), wanted)
+                robot.replica.update_facts(structs.replace(wanted, copying=""), wanted)
             else:
                 as_wanted = False
-                robot.following.learn(before, wanted)
+                robot.replica.update_facts(before, wanted)
                 self._server = None  # look at all of it
         return as_wanted
 
     # Threads
 
-    def _beside(self, function: Callable[[], Any], done: Callable[[Future[Any]], None]) -> None:
+    def _run_in_thread(self, function: Callable[[], Any], done: Callable[[Future[Any]], None]) -> None:
         """Call `function` on a thread beside, and then `done(future)` on this one."""
-        self._threads.submit(function).add_done_callback(functools.partial(self._later, done))
+        self._threads.submit(function).add_done_callback(functools.partial(self._run_on_owner, done))
 
-    def _later(self, function: Callable[..., None], *args: Any) -> None:
+    def _run_on_owner(self, function: Callable[..., None], *args: Any) -> None:
         """Call `function` on the thread that owns everything."""
         if not self._stopped:
             self._events.put(functools.partial(function, *args))
 
-    def _tell_of(self, robot: _Robot, text: str) -> None:
+    def _report_robot(self, robot: _Robot, text: str) -> None:
         """Something that is wrong with a robot, once."""
-        if text and text != robot.told:
-            self._say(f"{robot.name}: {text}; trying again")
-        robot.told = text
+        if text and text != robot.error:
+            self._report(f"{robot.name}: {text}; trying again")
+        robot.error = text
 
-    def _say(self, text: str) -> None:
+    def _report(self, text: str) -> None:
         self._tell(text)

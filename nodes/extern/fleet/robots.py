@@ -82,33 +82,35 @@ class Robots:
         self, class_: str | None = None, *, as_of: When | None = None, **where: Any
     ) -> tuple[Answer[tuple[Entity, ...]], ...]:
         """The entities of each; see `Client.list`."""
-        return self.each(_at_one_commit(lambda client, then: client.list(class_, as_of=then, **where), as_of))
+        return self.each(
+            _read_at_one_commit(lambda client, then: client.list(class_, as_of=then, **where), as_of)
+        )
 
     def get(
         self, name: str, *, where: bool = False, as_of: When | None = None
     ) -> tuple[Answer[Entity | Described], ...]:
         """The entity of that name of each; UnknownName of those that have none."""
         return self.each(
-            _at_one_commit(lambda client, then: client.get(name, where=where, as_of=then), as_of)
+            _read_at_one_commit(lambda client, then: client.get(name, where=where, as_of=then), as_of)
         )
 
     def sparql(self, query: str, **options: Any) -> tuple[Answer[SparqlResult], ...]:
         """The rows of each; see `Client.sparql`."""
 
         def ask(client: Client) -> tuple[int, SparqlResult]:
-            _now(client)
+            _current_commit(client)
             result = client.sparql(query, **options)
             return result.seq, result
 
         return self.each(ask)
 
 
-def _now(client: Client) -> int:
+def _current_commit(client: Client) -> int:
     """The number of its last commit. Raises NoAnswer soon."""
     return client.send(Status(), timeout_s=ANSWER_S).commit
 
 
-def _at_one_commit(
+def _read_at_one_commit(
     ask: Callable[[Client, When | None], R], as_of: When | None
 ) -> Callable[[Client], tuple[int | None, R]]:
     """Of a question whose reply does not say which commit it is about.
@@ -117,11 +119,11 @@ def _at_one_commit(
     """
 
     def answer(client: Client) -> tuple[int | None, R]:
-        before = _now(client)
+        before = _current_commit(client)
         reply = ask(client, as_of)
         if as_of is not None:
             return (as_of if isinstance(as_of, int) and as_of <= before else None), reply
-        return before, reply if _now(client) == before else ask(client, before)
+        return before, reply if _current_commit(client) == before else ask(client, before)
 
     return answer
 
@@ -140,23 +142,23 @@ def robots(
     systems that this user runs on this machine. Names without wildcards that are not there are answered for
     with an error. Raises NoAnswer when there is no robot at all.
     """
-    patterns = words(pattern)
+    patterns = split_names(pattern)
     who = identity(identity_)
     missing: list[Answer[Any]] = []
     with contextlib.ExitStack() as stack:
         places: dict[str, str] = {}
         for place in endpoints(where):
             try:
-                for name in _there(place, who):
+                for name in _discover_robots(place, who):
                     places.setdefault(name, place)
             except errors.NoAnswer as error:
                 missing.append(Answer(robot=f"at {place}", error=errors.to_message(error)))
         wanted = sorted(name for name in places if any(fnmatchcase(name, one) for one in patterns))
         for name in patterns:
             if not _GLOB.search(name) and name not in places:
-                missing.append(_not_there(name, places))
+                missing.append(_missing_robot(name, places))
         if not wanted and not missing:
-            raise errors.NoAnswer(f"no robot matches {', '.join(patterns)}; {_which(places)}")
+            raise errors.NoAnswer(f"no robot matches {', '.join(patterns)}; {_available(places)}")
         clients = {}
         for name in wanted:
             session = stack.enter_context(open_session(places[name], name, who, mode="client"))
@@ -164,16 +166,16 @@ def robots(
         yield Robots(clients, missing)
 
 
-def robots_there(where: str | None, identity_: str | None) -> tuple[str, ...]:
+def robot_names(where: str | None, identity_: str | None) -> tuple[str, ...]:
     """The names of the robots that are reached at an endpoint, or at all that could be meant.
 
     Raises NoAnswer, BadFile.
     """
     who = identity(identity_)
-    return tuple(dict.fromkeys(name for place in endpoints(where) for name in _there(place, who)))
+    return tuple(dict.fromkeys(name for place in endpoints(where) for name in _discover_robots(place, who)))
 
 
-def _there(place: str, who: Identity | None) -> dict[str, frozenset[str]]:
+def _discover_robots(place: str, who: Identity | None) -> dict[str, frozenset[str]]:
     """The robots that are reached at an endpoint. Raises NoAnswer."""
     with open_session(place, "", who, mode="client") as session:
         return bus.robots(session)
@@ -182,25 +184,25 @@ def _there(place: str, who: Identity | None) -> dict[str, frozenset[str]]:
 def endpoints(where: str | Sequence[str] | None) -> tuple[str, ...]:
     """Those that are given, or of the system that is meant, or of all that this user runs here."""
     if where:
-        return words(where)
+        return split_names(where)
     try:
-        return words(endpoint())
+        return split_names(endpoint())
     except errors.BadRequest:  # it could be any of several: all of them, then
         return tuple(dict.fromkeys(system.reachable for system in registry.systems()))
 
 
-def words(text: str | Sequence[str]) -> tuple[str, ...]:
+def split_names(text: str | Sequence[str]) -> tuple[str, ...]:
     """Several, separated by commas."""
     said = text.split(",") if isinstance(text, str) else text
     return tuple(word.strip() for word in said if word.strip())
 
 
-def _not_there(name: str, others: Sequence[str] | dict[str, str]) -> Answer[Any]:
-    error = errors.NoAnswer(f"no node of {name} is there; {_which(others)}")
+def _missing_robot(name: str, others: Sequence[str] | dict[str, str]) -> Answer[Any]:
+    error = errors.NoAnswer(f"no node of {name} is there; {_available(others)}")
     return Answer(robot=name, error=errors.to_message(error))
 
 
-def _which(names: Sequence[str] | dict[str, str]) -> str:
+def _available(names: Sequence[str] | dict[str, str]) -> str:
     named = sorted(name for name in names if name)
     if named:
         return f"there are: {', '.join(named)}"

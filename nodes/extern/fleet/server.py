@@ -17,7 +17,7 @@ from semmap.schemas.sparql import Row, SparqlResult
 TIMEOUT_S: Final = 30.0
 _RESULTS: Final = "application/sparql-results+json"
 _LONGEST: Final = 300
-_SPENT: Final = (ConnectionError, HTTPException)
+_CLOSED: Final = (ConnectionError, HTTPException)
 """What becomes of a kept connection that the server has closed meanwhile."""
 
 
@@ -88,25 +88,25 @@ class SparqlServer:
             raise errors.NoAnswer(f"no SPARQL server answers at {self.url}: {reason}") from None
         if 200 <= answer.status < 300:
             return answer.body
-        raise self._refusal(answer)
+        raise self._error(answer)
 
     def _exchange(self, body: bytes, headers: dict[str, str]) -> _Answer:
         """Send and receive; over a new connection where the kept one turns out to be closed."""
         kept = self._connection is not None
         try:
-            return self._exchange_over(self._opened(), body, headers)
-        except _SPENT:
+            return self._exchange_over(self._open(), body, headers)
+        except _CLOSED:
             self.close()
             if not kept:
                 raise
-            return self._exchange_over(self._opened(), body, headers)
+            return self._exchange_over(self._open(), body, headers)
 
     def _exchange_over(self, connection: HTTPConnection, body: bytes, headers: dict[str, str]) -> _Answer:
         connection.request("POST", self._path, body, headers)
         response = connection.getresponse()
         return _Answer(response.status, response.read())
 
-    def _opened(self) -> HTTPConnection:
+    def _open(self) -> HTTPConnection:
         if self._connection is None:
             if self._is_tls:
                 context = ssl.create_default_context()
@@ -117,7 +117,7 @@ class SparqlServer:
                 self._connection = HTTPConnection(self._host, self._port, timeout=self._timeout_s)
         return self._connection
 
-    def _refusal(self, answer: _Answer) -> errors.SemmapError:
+    def _error(self, answer: _Answer) -> errors.SemmapError:
         said = " ".join(answer.body.decode(errors="replace").split())[:_LONGEST]
         if answer.status in (401, 403):
             return errors.Refused(

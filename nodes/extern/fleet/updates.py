@@ -32,47 +32,49 @@ class Change:
 
     def __init__(self, robot: str, frame: Frame | None) -> None:
         self._robot, self._frame = robot, frame
-        self._gone: dict[Triple, None] = {}
-        self._come: dict[Triple, None] = {}
-        self._moved: dict[str, tuple[Triple, ...]] = {}
+        self._deleted: dict[Triple, None] = {}
+        self._inserted: dict[Triple, None] = {}
+        self._poses: dict[str, tuple[Triple, ...]] = {}
 
     def take(self, commit: Commit) -> None:
         """Add the next commit."""
-        for triple in skolemised(self._robot, commit.retracted):
-            self._come.pop(triple, None)
-            self._gone[triple] = None
-        for triple in skolemised(self._robot, commit.inserted):
-            self._gone.pop(triple, None)
-            self._come[triple] = None
+        for triple in skolemize(self._robot, commit.retracted):
+            self._inserted.pop(triple, None)
+            self._deleted[triple] = None
+        for triple in skolemize(self._robot, commit.inserted):
+            self._deleted.pop(triple, None)
+            self._inserted[triple] = None
         if self._frame is not None:
             for departed in commit.removed:
-                self._moved[departed.name] = ()
+                self._poses[departed.name] = ()
             for entity in commit.changed:
-                self._moved[entity.name] = pose_triples(entity, self._frame)
+                self._poses[entity.name] = pose_triples(entity, self._frame)
 
     def __len__(self) -> int:
         """About how many triples it is."""
-        return len(self._gone) + len(self._come) + sum(1 + len(placed) for placed in self._moved.values())
+        return (
+            len(self._deleted) + len(self._inserted) + sum(1 + len(placed) for placed in self._poses.values())
+        )
 
     def operations(self, before: Facts, after: Facts) -> Iterator[str]:
         """From the facts as they are in the server to what they are to be with this change."""
         poses = f.poses_graph(self._robot)
-        if self._moved:
-            names = " ".join(map(f.text, self._moved))
+        if self._poses:
+            names = " ".join(map(f.text, self._poses))
             where = f"GRAPH {poses} {{ ?s {f.term('entity')} ?n ; ?p ?o . VALUES ?n {{ {names} }} }}"
             yield (
                 f"DELETE {{ GRAPH {poses} {{ ?s ?p ?o }} }}"
-                f" WHERE {{ GRAPH {FACTS} {{ {_said(before.guard)} }} {where} }}"
+                f" WHERE {{ GRAPH {FACTS} {{ {_pattern(before.guard)} }} {where} }}"
             )
-        placed = [triple for triples in self._moved.values() for triple in triples]
-        yield _replacing(
+        placed = [triple for triples in self._poses.values() for triple in triples]
+        yield _guarded_update(
             before,
-            gone={f.graph(self._robot): self._gone, FACTS: before.moving},
-            come={f.graph(self._robot): self._come, poses: placed, FACTS: after.moving},
+            deleted={f.graph(self._robot): self._deleted, FACTS: before.commit_triples},
+            inserted={f.graph(self._robot): self._inserted, poses: placed, FACTS: after.commit_triples},
         )
 
 
-def copying(before: Facts | None, copied: Facts, whole: MapCopy) -> Iterator[str]:
+def copy_operations(before: Facts | None, copied: Facts, whole: MapCopy) -> Iterator[str]:
     """The operations by which a robot's graph becomes `whole`, whatever it has been.
 
     `before` are the facts as they are in the server. `copied` are those to be in the end; meanwhile they say
@@ -82,29 +84,31 @@ def copying(before: Facts | None, copied: Facts, whole: MapCopy) -> Iterator[str
     begun = structs.replace(copied, commit=None)
     if before is None:
         yield (
-            f"INSERT {{ {_in(FACTS, begun.triples)} }}"
+            f"INSERT {{ {_graph_block(FACTS, begun.triples)} }}"
             f" WHERE {{ FILTER NOT EXISTS {{ GRAPH {FACTS} {{ {robot} ?p ?o }} }} }}"
         )
     else:
-        kept = before.farewell if before.epoch != copied.epoch else ()
+        kept = before.tombstone if before.epoch != copied.epoch else ()
         yield (
             f"DELETE {{ GRAPH {FACTS} {{ {robot} ?p ?o }} }}"
-            f" INSERT {{ {_in(FACTS, [*begun.triples, *kept])} }}"
-            f" WHERE {{ GRAPH {FACTS} {{ {_said(before.guard)} {robot} ?p ?o }} }}"
+            f" INSERT {{ {_graph_block(FACTS, [*begun.triples, *kept])} }}"
+            f" WHERE {{ GRAPH {FACTS} {{ {_pattern(before.guard)} {robot} ?p ?o }} }}"
         )
-    guard = f"GRAPH {FACTS} {{ {_said(begun.guard)} }}"
+    guard = f"GRAPH {FACTS} {{ {_pattern(begun.guard)} }}"
     for graph in (robot, f.poses_graph(name)):
         yield (f"DELETE {{ GRAPH {graph} {{ ?s ?p ?o }} }} WHERE {{ {guard} GRAPH {graph} {{ ?s ?p ?o }} }}")
-    for chunk in _chunks(list(skolemised(name, whole.triples))):
-        yield f"INSERT {{ {_in(robot, chunk)} }} WHERE {{ {guard} }}"
+    for chunk in _chunks(list(skolemize(name, whole.triples))):
+        yield f"INSERT {{ {_graph_block(robot, chunk)} }} WHERE {{ {guard} }}"
     if copied.frame is not None:
         placed = [t for entity in whole.entities for t in pose_triples(entity, copied.frame)]
         for chunk in _chunks(placed):
-            yield f"INSERT {{ {_in(f.poses_graph(name), chunk)} }} WHERE {{ {guard} }}"
-    yield _replacing(begun, gone={FACTS: begun.moving}, come={FACTS: copied.moving})
+            yield f"INSERT {{ {_graph_block(f.poses_graph(name), chunk)} }} WHERE {{ {guard} }}"
+    yield _guarded_update(
+        begun, deleted={FACTS: begun.commit_triples}, inserted={FACTS: copied.commit_triples}
+    )
 
 
-def skolemised(robot: str, triples: Iterable[Triple]) -> Iterator[Triple]:
+def skolemize(robot: str, triples: Iterable[Triple]) -> Iterator[Triple]:
     """The triples with an IRI for each blank node: one that the same node of the same robot always has."""
     for s, p, o in triples:
         yield (
@@ -130,22 +134,21 @@ def _skolem(robot: str, label: Term) -> Term:
     return f"<urn:semmap:robot:{robot}:node:{quote(label[2:], safe='')}>"
 
 
-def _replacing(
-    before: Facts, *, gone: dict[Term, Iterable[Triple]], come: dict[Term, Iterable[Triple]]
+def _guarded_update(
+    before: Facts, *, deleted: dict[Term, Iterable[Triple]], inserted: dict[Term, Iterable[Triple]]
 ) -> str:
     """One operation, which does nothing unless the server is as it was `before`."""
-    delete = " ".join(_in(graph, triples) for graph, triples in gone.items() if triples)
-    insert = " ".join(_in(graph, triples) for graph, triples in come.items() if triples)
-    return (
-        f"DELETE {{ {delete} }} INSERT {{ {insert} }} WHERE {{ GRAPH {FACTS} {{ {_said(before.guard)} }} }}"
-    )
+    delete = " ".join(_graph_block(graph, triples) for graph, triples in deleted.items() if triples)
+    insert = " ".join(_graph_block(graph, triples) for graph, triples in inserted.items() if triples)
+    guard = f"GRAPH {FACTS} {{ {_pattern(before.guard)} }}"
+    return f"DELETE {{ {delete} }} INSERT {{ {insert} }} WHERE {{ {guard} }}"
 
 
-def _in(graph: Term, triples: Iterable[Triple]) -> str:
-    return f"GRAPH {graph} {{ {' '.join(map(_said, triples))} }}"
+def _graph_block(graph: Term, triples: Iterable[Triple]) -> str:
+    return f"GRAPH {graph} {{ {' '.join(map(_pattern, triples))} }}"
 
 
-def _said(triple: Triple) -> str:
+def _pattern(triple: Triple) -> str:
     return f"{triple[0]} {triple[1]} {triple[2]} ."
 
 

@@ -28,7 +28,7 @@ Reader = Callable[[Collection[str]], Iterator[Message]]
 
 
 class Bag:
-    """A recording of topics. Made by `opened`."""
+    """A recording of topics. Made by `open_bag`."""
 
     def __init__(self, path: Path, types: dict[str, str], messages: Reader) -> None:
         """`types`: of each topic, as `sensor_msgs/msg/Image`."""
@@ -47,7 +47,7 @@ def is_bag(path: Path) -> bool:
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[Bag]:
+def open_bag(path: Path) -> Iterator[Bag]:
     """A recording to read from. Raises BadFile for one that is none, that is damaged, or was never closed."""
     with ExitStack() as stack:
         with _readable(path):

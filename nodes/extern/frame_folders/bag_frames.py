@@ -11,13 +11,25 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from semmap.nodes.extern.frame_folders.bag import Bag, opened
-from semmap.nodes.extern.frame_folders.frames import RecordedFrame, Recording, check_unit
+from semmap.nodes.extern.frame_folders.bag import Bag, open_bag
+from semmap.nodes.extern.frame_folders.frames import RecordedFrame, Recording, require_plausible_unit
+from semmap.nodes.extern.frame_folders.images import colour_of, depth_of, encoding_of
 from semmap.nodes.extern.frame_folders.pairs import pairs
-from semmap.nodes.extern.frame_folders.pictures import colour_of, depth_of, encoding_of
-from semmap.nodes.extern.frame_folders.pinhole import of_centres, of_info, read_pinhole, scaled
-from semmap.nodes.extern.frame_folders.poses import MAPS, Tree, plain, stamp_ns_of
-from semmap.nodes.extern.frame_folders.topics import COMPRESSED, IMAGE, INFO, TRANSFORMS, Chosen, choose
+from semmap.nodes.extern.frame_folders.pinhole import (
+    from_camera_info,
+    from_pixel_centres,
+    read_pinhole,
+    scale_intrinsics,
+)
+from semmap.nodes.extern.frame_folders.poses import MAPS, TransformTree, plain, stamp_ns_of
+from semmap.nodes.extern.frame_folders.topics import (
+    COMPRESSED,
+    IMAGE,
+    INFO,
+    TRANSFORMS,
+    CameraTopicNames,
+    choose,
+)
 from semmap.nodes.extern.ros.frames import Transform
 from semmap.schemas.errors import BadFile, BadRequest, SemmapError
 from semmap.schemas.wording import few
@@ -35,7 +47,7 @@ class _Known:
     stamps_ns: dict[str, list[int]] = field(default_factory=dict)
     frames: dict[str, str] = field(default_factory=dict)
     infos: dict[str, Any] = field(default_factory=dict)
-    tree: Tree = field(default_factory=Tree)
+    tree: TransformTree = field(default_factory=TransformTree)
 
 
 def read(
@@ -53,7 +65,7 @@ def read(
     Raises BadFile and BadRequest where there can be none.
     """
     try:
-        with opened(path) as bag:
+        with open_bag(path) as bag:
             chosen = choose(_encodings(bag), _of_types(bag, INFO), colour, depth)
             known = _known(bag, chosen)
         camera = _Camera(chosen, known, intrinsics)
@@ -72,7 +84,7 @@ def read(
     notes = [f"colour of {chosen.colour}, depth of {chosen.depth}, camera of {camera.whence}", *found.notes]
 
     def frames() -> Iterator[RecordedFrame | SemmapError]:
-        with opened(path) as bag:
+        with open_bag(path) as bag:
             for stamp_ns, pictures in _taken(bag, chosen, found.taken, depths_ns):
                 try:
                     rgb, depth_m, matrix = camera.frame(*pictures)
@@ -102,7 +114,7 @@ def _encodings(bag: Bag) -> dict[str, str]:
     return found
 
 
-def _known(bag: Bag, chosen: Chosen) -> _Known:
+def _known(bag: Bag, chosen: CameraTopicNames) -> _Known:
     found = _Known(stamps_ns={chosen.colour: [], chosen.depth: []})
     infos = [topic for topic in chosen.infos if topic is not None]
     transforms = _of_types(bag, *TRANSFORMS)
@@ -118,7 +130,7 @@ def _known(bag: Bag, chosen: Chosen) -> _Known:
 
 
 def _taken(
-    bag: Bag, chosen: Chosen, taken: list[tuple[int, int]], depths_ns: list[int]
+    bag: Bag, chosen: CameraTopicNames, taken: list[tuple[int, int]], depths_ns: list[int]
 ) -> Iterator[tuple[int, tuple[Any, Any]]]:
     """The messages of each pair, when both have come; a colour picture waits for its depth or it for that."""
     pair_of = {(chosen.colour, one): n for n, (one, _) in enumerate(taken)}
@@ -140,14 +152,17 @@ def _taken(
 class _Camera:
     """Makes frames of messages, with the intrinsics of the recording, or those of a file."""
 
-    def __init__(self, chosen: Chosen, known: _Known, intrinsics: Path | None) -> None:
+    def __init__(self, chosen: CameraTopicNames, known: _Known, intrinsics: Path | None) -> None:
         """Raises BadFile where there are none, or where depth is not aligned to colour."""
         self._scale_m: float | None = None
         self._size: tuple[int, int] | None = None
-        _check_aligned(chosen, known)
+        _require_aligned(chosen, known)
         if intrinsics is not None:
             told = read_pinhole(intrinsics)
-            self._matrix, self._scale_m = of_centres(told.fx, told.fy, told.cx, told.cy), told.depth_scale
+            self._matrix, self._scale_m = (
+                from_pixel_centres(told.fx, told.fy, told.cx, told.cy),
+                told.depth_scale,
+            )
             self._size = told.size
             self.whence = str(intrinsics)
             return
@@ -158,7 +173,7 @@ class _Camera:
                 " with fx, fy, cx, cy"
             )
         info = known.infos[topic]
-        self._matrix = of_info(info, rectified="rect" in chosen.depth or "rect" in chosen.colour)
+        self._matrix = from_camera_info(info, rectified="rect" in chosen.depth or "rect" in chosen.colour)
         if not (self._matrix[0, 0] > 0 and self._matrix[1, 1] > 0):
             raise BadFile(f"{topic} has no focal length; add --intrinsics FILE.json with fx, fy, cx, cy")
         self._size, self.whence = (info.width, info.height), topic
@@ -169,30 +184,32 @@ class _Camera:
         """Colour and depth of one size, that of the depth, and the intrinsics of that. Raises BadRequest."""
         rgb, depth_m = colour_of(colour), depth_of(depth, self._scale_m)
         if self._scale_m is None:
-            check_unit(depth_m, 1.0 if "32FC1" in encoding_of(depth) else 0.001)
+            require_plausible_unit(depth_m, 1.0 if "32FC1" in encoding_of(depth) else 0.001)
         height, width = depth_m.shape
         try:
-            matrix = scaled(self._matrix, self._size or (width, height), (width, height))
+            matrix = scale_intrinsics(self._matrix, self._size or (width, height), (width, height))
             if rgb.shape[:2] != depth_m.shape:
-                scaled(matrix, (width, height), (rgb.shape[1], rgb.shape[0]))  # of the same shape
+                scale_intrinsics(matrix, (width, height), (rgb.shape[1], rgb.shape[0]))  # of the same shape
                 rgb = np.asarray(Image.fromarray(rgb).resize((width, height), Image.Resampling.BOX))
         except ValueError as error:
             raise BadRequest(f"{self.whence}: {error}") from None
         return rgb, depth_m, matrix
 
 
-def _check_aligned(chosen: Chosen, known: _Known) -> None:
+def _require_aligned(chosen: CameraTopicNames, known: _Known) -> None:
     """Raises BadFile where depth was taken from elsewhere, or with another lens, than colour."""
     frames = [plain(known.frames[topic]) for topic in (chosen.depth, chosen.colour)]
     apart = ""
     if all(frames) and frames[0] != frames[1]:
         moved = known.tree.between(frames[0], frames[1], known.stamps_ns[chosen.depth][0])
-        if moved is None or not _is_nowhere(moved):
+        if moved is None or not _is_identity(moved):
             apart = f"they are in the frames {frames[0]} and {frames[1]}"
     infos = [known.infos.get(topic) if topic else None for topic in chosen.infos]
     if not apart and chosen.infos[0] != chosen.infos[1] and all(info is not None for info in infos):
         lenses = [
-            of_info(info, rectified=False)[:2] / max(1, info.width) for info in infos if info is not None
+            from_camera_info(info, rectified=False)[:2] / max(1, info.width)
+            for info in infos
+            if info is not None
         ]
         if not np.allclose(lenses[0], lenses[1], atol=_ALIKE):
             apart = f"{chosen.infos[0]} and {chosen.infos[1]} tell of two lenses"
@@ -203,11 +220,11 @@ def _check_aligned(chosen: Chosen, known: _Known) -> None:
         )
 
 
-def _is_nowhere(pose: Transform) -> bool:
+def _is_identity(pose: Transform) -> bool:
     return np.allclose(pose[:3, 3], 0.0, atol=_STILL_M) and np.allclose(pose[:3, :3], np.eye(3), atol=_STILL)
 
 
-def _base(path: Path, known: _Known, chosen: Chosen, base: str | None) -> tuple[str | None, str]:
+def _base(path: Path, known: _Known, chosen: CameraTopicNames, base: str | None) -> tuple[str | None, str]:
     """The frame in which poses are told, and what to say of it. Raises BadRequest where it is not there."""
     camera = plain(known.frames[chosen.depth])
     above = known.tree.above(camera)[1:]

@@ -51,7 +51,7 @@ class Recording:
     notes: Sequence[str] = ()
 
 
-def check_unit(depth_m: NDArray[np.float32], scale_m: float) -> None:
+def require_plausible_unit(depth_m: NDArray[np.float32], scale_m: float) -> None:
     """Raises BadFile for depth (H, W) [m] that is in another unit, it seems, than `scale_m` metres."""
     told = units.doubt(depth_m / scale_m, scale_m)
     if told is not None:
@@ -61,7 +61,7 @@ def check_unit(depth_m: NDArray[np.float32], scale_m: float) -> None:
         )
 
 
-def check_free(folder: Path) -> None:
+def require_empty(folder: Path) -> None:
     """Raises BadRequest for a folder with something in it, and BadFile for what can be none."""
     try:
         if folder.exists() and any(folder.iterdir()):

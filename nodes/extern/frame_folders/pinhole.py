@@ -25,21 +25,23 @@ def read_pinhole(path: Path) -> PinholeCamera:
         raise BadFile(f"{path}: {error}") from None
 
 
-def of_centres(fx: float, fy: float, cx: float, cy: float) -> NDArray[np.float64]:
+def from_pixel_centres(fx: float, fy: float, cx: float, cy: float) -> NDArray[np.float64]:
     """(3, 3) from numbers that count from the first pixel's middle, as ROS and OpenCV do."""
     return np.array([[fx, 0.0, cx + 0.5], [0.0, fy, cy + 0.5], [0.0, 0.0, 1.0]])
 
 
-def of_info(info: Any, *, rectified: bool) -> NDArray[np.float64]:
+def from_camera_info(info: Any, *, rectified: bool) -> NDArray[np.float64]:
     """(3, 3) of a `sensor_msgs/CameraInfo` of ROS 1 or 2; of a rectified picture its projection's."""
     k = np.asarray(info.k if hasattr(info, "k") else info.K, float)
     p = np.asarray(info.p if hasattr(info, "p") else info.P, float)
     if rectified and p[0] > 0 and p[5] > 0:
-        return of_centres(p[0], p[5], p[2], p[6])
-    return of_centres(k[0], k[4], k[2], k[5])
+        return from_pixel_centres(p[0], p[5], p[2], p[6])
+    return from_pixel_centres(k[0], k[4], k[2], k[5])
 
 
-def scaled(intrinsics: NDArray[np.float64], of: tuple[int, int], to: tuple[int, int]) -> NDArray[np.float64]:
+def scale_intrinsics(
+    intrinsics: NDArray[np.float64], of: tuple[int, int], to: tuple[int, int]
+) -> NDArray[np.float64]:
     """Intrinsics for pictures of (width, height) `of`, for the same pictures at the size `to`.
 
     Raises ValueError where these are of another shape, or the intrinsics those of no camera.

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.extern.ros.frames import Transform, placed
+from semmap.nodes.extern.ros.frames import Transform, to_matrix
 
 _GAP_NS: Final = 1_000_000_000
 """Between two poses so far apart in time nobody knows."""
@@ -28,7 +28,7 @@ class Trajectory:
 
     def add(self, stamp_ns: int, position_m: tuple[float, ...], wxyz: tuple[float, ...]) -> None:
         """A pose; what is none is passed over."""
-        if placed(position_m, wxyz) is not None:
+        if to_matrix(position_m, wxyz) is not None:
             self._poses[stamp_ns] = np.array([*position_m, *wxyz])
 
     def at(self, stamp_ns: int) -> Transform | None:
@@ -49,7 +49,7 @@ class Trajectory:
         return _matrix(self._poses[nearest])
 
 
-class Tree:
+class TransformTree:
     """All of /tf and /tf_static of a recording."""
 
     def __init__(self) -> None:
@@ -62,7 +62,7 @@ class Tree:
         for said in message.transforms:
             child, parent = plain(said.child_frame_id), plain(said.header.frame_id)
             t, r = said.transform.translation, said.transform.rotation
-            pose = placed((t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
+            pose = to_matrix((t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
             if pose is None or not child or not parent or child == parent:
                 continue
             self._parents[child] = parent
@@ -120,4 +120,4 @@ def _between(one: NDArray[np.float64], other: NDArray[np.float64], share: float)
 
 
 def _matrix(pose: NDArray[np.float64]) -> Transform | None:
-    return placed(tuple(pose[:3]), tuple(pose[3:]))
+    return to_matrix(tuple(pose[:3]), tuple(pose[3:]))

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, NamedTuple
 
-from semmap.nodes.extern.frame_folders.pictures import is_colour, is_depth
+from semmap.nodes.extern.frame_folders.images import is_colour, is_depth
 from semmap.schemas.errors import BadFile, BadRequest
 from semmap.schemas.wording import few
 
@@ -19,7 +19,7 @@ _INFRARED = re.compile(r"(^|[/_])(ir|infra\d?|infrared)([/_]|$)")
 _TRANSPORT = re.compile(r"/(compressed|compressedDepth)$")
 
 
-class Chosen(NamedTuple):
+class CameraTopicNames(NamedTuple):
     """The topics of a camera; `infos` of its depth and of its colour, where there are any."""
 
     colour: str
@@ -29,7 +29,7 @@ class Chosen(NamedTuple):
 
 def choose(
     encodings: Mapping[str, str], infos: Iterable[str], colour: str | None, depth: str | None
-) -> Chosen:
+) -> CameraTopicNames:
     """From each picture's topic to its encoding, and the topics of camera_info; some may be told.
 
     Raises BadFile where there is no such topic, and BadRequest where there are several.
@@ -45,7 +45,7 @@ def choose(
     depth = depth or _only("depth", "--depth-topic", aligned or depths, encodings)
     colour = colour or _only("colour", "--rgb-topic", colours, encodings)
     known = list(infos)
-    return Chosen(colour, depth, (_nearest(depth, known), _nearest(colour, known)))
+    return CameraTopicNames(colour, depth, (_nearest(depth, known), _nearest(colour, known)))
 
 
 def _only(kind: str, option: str, topics: Sequence[str], encodings: Mapping[str, str]) -> str:

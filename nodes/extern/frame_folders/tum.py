@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.extern.frame_folders.frames import RecordedFrame, Recording, check_unit
+from semmap.nodes.extern.frame_folders.frames import RecordedFrame, Recording, require_plausible_unit
 from semmap.nodes.extern.frame_folders.pairs import pairs
-from semmap.nodes.extern.frame_folders.pinhole import of_centres, read_pinhole, scaled
+from semmap.nodes.extern.frame_folders.pinhole import from_pixel_centres, read_pinhole, scale_intrinsics
 from semmap.nodes.extern.frame_folders.poses import Trajectory
 from semmap.nodes.perception_node.input.files.image_files import is_depth, opened
 from semmap.schemas import errors
@@ -59,7 +59,7 @@ def read(folder: Path, *, within_s: float, every_s: float, intrinsics: Path | No
                         f"{of.name} is {rgb.shape[1]} x {rgb.shape[0]} pixels,"
                         f" {of_depth.name} {depth_m.shape[1]} x {depth_m.shape[0]}"
                     )
-                check_unit(depth_m, scale_m)
+                require_plausible_unit(depth_m, scale_m)
                 pose = None if poses is None else poses.at(stamp_ns)
                 size = (depth_m.shape[1], depth_m.shape[0])
                 yield RecordedFrame(stamp_ns, rgb, depth_m, pinhole(size), pose)
@@ -116,19 +116,23 @@ def _camera(
     if intrinsics is not None:
         camera = read_pinhole(intrinsics)
         matrix, scale_m = (
-            of_centres(camera.fx, camera.fy, camera.cx, camera.cy),
+            from_pixel_centres(camera.fx, camera.fy, camera.cx, camera.cy),
             camera.depth_scale or _SCALE_M,
         )
         whence, of_size = str(intrinsics), camera.size
     else:
         if told is None:
             raise errors.InternalError("the calibration of the camera is unknown")
-        matrix, scale_m, whence = of_centres(*_CALIBRATED[told[1]]), _SCALE_M, f"TUM's freiburg{told[1]}"
+        matrix, scale_m, whence = (
+            from_pixel_centres(*_CALIBRATED[told[1]]),
+            _SCALE_M,
+            f"TUM's freiburg{told[1]}",
+        )
         of_size = _SIZE
 
     def of(size: tuple[int, int]) -> NDArray[np.float64]:
         try:
-            return scaled(matrix, of_size or size, size)
+            return scale_intrinsics(matrix, of_size or size, size)
         except ValueError as error:
             raise BadFile(f"{whence}: {error}") from None
 

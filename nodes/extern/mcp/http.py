@@ -25,7 +25,7 @@ Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 
-def new_token(said: str | None) -> str:
+def choose_token(said: str | None) -> str:
     """The token that somebody chose, or a new one that nobody can guess. Raises BadRequest if too short."""
     if not said:
         return secrets.token_urlsafe(24)
@@ -38,14 +38,14 @@ def run_http(tools: Tools, port: int, token: str, tell: Callable[[str], None]) -
     """Serve on loopback until it is interrupted. Raises BadRequest for a port that is taken."""
     listening = _listen(port)
     made = server(tools)
-    app = behind(token, made.streamable_http_app(host=HOST, max_request_body_size=_LARGEST_BODY))
+    app = require_token(token, made.streamable_http_app(host=HOST, max_request_body_size=_LARGEST_BODY))
     config = uvicorn.Config(app, log_level="warning", lifespan="on")
     tell(f"http://{HOST}:{listening.getsockname()[1]}/mcp")
     tell(f"Authorization: Bearer {token}")
     uvicorn.Server(config).run(sockets=[listening])
 
 
-def behind(token: str, app: App) -> App:
+def require_token(token: str, app: App) -> App:
     """`app`, for requests that bear the token; the others are answered with 401 and never reach it."""
     expected = f"Bearer {token}".encode()
 

@@ -60,7 +60,7 @@ def _require_one_of(allowed: Collection[str], given: Collection[str], refusal: s
         raise errors.Refused(f"{refusal}: {errors.enumerated(sorted(allowed))}")
 
 
-def in_the_maps_words(words: Collection[str], known: Mapping[str, str]) -> frozenset[str]:
+def resolve_classes(words: Collection[str], known: Mapping[str, str]) -> frozenset[str]:
     """Classes as the map names them. `known` has their names by themselves in lower case.
 
     Raises UnknownClass.

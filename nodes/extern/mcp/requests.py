@@ -38,12 +38,12 @@ class Summary(Struct, frozen=True, kw_only=True):
     follows: tuple[str, ...] = ()
 
 
-def of_change(command: Any, tried: Changed) -> Summary:
+def summarize_change(command: Any, tried: Changed) -> Summary:
     """Of a proposal, as it was tried out."""
     return Summary(text=_change_in_words(command, tried), reason=command.reason, follows=facts(tried))
 
 
-def of_undo(undone: LoggedCommit, tried: Changed, reason: str) -> Summary:
+def summarize_undo(undone: LoggedCommit, tried: Changed, reason: str) -> Summary:
     """Of the undoing of a commit: what that would take back, and why the commit was made."""
     taken = [_taken_back(change) for change in undone.changes[:_FEW]]
     if (rest := len(undone.changes) - len(taken)) > 0:

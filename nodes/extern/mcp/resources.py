@@ -13,7 +13,7 @@ from urllib.parse import unquote
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.mcp import answers, rows
 from semmap.nodes.extern.mcp.answers import Answer
-from semmap.nodes.extern.mcp.moment import newest
+from semmap.nodes.extern.mcp.consistent_read import newest
 from semmap.ontology.prefixes import WELL_KNOWN
 from semmap.schemas import errors
 

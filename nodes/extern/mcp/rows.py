@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from semmap.nodes.extern.cli.output.sparql_formats import spoken
-from semmap.nodes.extern.mcp.advice import for_agents
 from semmap.nodes.extern.mcp.answers import metres, said, stands, when, who
+from semmap.nodes.extern.mcp.hints import translate_hints
 from semmap.ontology import vocabulary as v
 from semmap.schemas import changes
 from semmap.schemas.entities import Entity
@@ -63,7 +63,7 @@ def _facts(found: Described) -> Iterator[dict[str, Any]]:
     for relation in found.denied:
         yield {"not_so": relation.text}
     for text in found.withheld:
-        yield {"withheld": for_agents(text)}
+        yield {"withheld": translate_hints(text)}
     if found.on_nothing:
         yield {"where": found.on_nothing}
     for types in _by_tens(found.types):

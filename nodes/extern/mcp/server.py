@@ -23,8 +23,8 @@ from mcp.server.subscriptions import InMemorySubscriptionBus, ListenHandler, Res
 from mcp.shared.exceptions import MCPError
 
 from semmap.nodes.extern.mcp import resources
-from semmap.nodes.extern.mcp.standing import Standing
-from semmap.nodes.extern.mcp.tools import Page, Tool, Tools, complaint
+from semmap.nodes.extern.mcp.subscriptions import Subscriptions
+from semmap.nodes.extern.mcp.tools import Page, Tool, Tools, error_text
 from semmap.nodes.runtime.version import version
 from semmap.schemas import errors
 
@@ -62,7 +62,7 @@ def server(tools: Tools) -> Server[Any]:
         return types.CallToolResult(content=_contents(page))
 
     @asynccontextmanager
-    async def lifespan(_: Server[Any]) -> AsyncIterator[Standing]:
+    async def lifespan(_: Server[Any]) -> AsyncIterator[Subscriptions]:
         loop = asyncio.get_running_loop()
         tasks: set[asyncio.Task[None]] = set()
 
@@ -83,11 +83,11 @@ def server(tools: Tools) -> Server[Any]:
             with suppress(RuntimeError):  # the loop has ended
                 loop.call_soon_threadsafe(begin, uri)
 
-        standing = tools.standing(changed)
+        subscriptions = tools.subscriptions(changed)
         try:
-            yield standing
+            yield subscriptions
         finally:
-            standing.close()
+            subscriptions.close()
 
     async def list_resources(
         _: Context, __: types.PaginatedRequestParams | None
@@ -105,33 +105,33 @@ def server(tools: Tools) -> Server[Any]:
         return types.ReadResourceResult(contents=[contents])
 
     async def subscribe(context: Context, asked: types.SubscribeRequestParams) -> types.EmptyResult:
-        standing: Standing = context.lifespan_context
+        subscriptions: Subscriptions = context.lifespan_context
         if context.session not in sessions.get(asked.uri, ()):
-            await _answered(beside(partial(standing.follow, asked.uri)))
+            await _answered(beside(partial(subscriptions.subscribe, asked.uri)))
             sessions.setdefault(asked.uri, set()).add(context.session)
         return types.EmptyResult()
 
     async def unsubscribe(context: Context, asked: types.UnsubscribeRequestParams) -> types.EmptyResult:
-        standing: Standing = context.lifespan_context
+        subscriptions: Subscriptions = context.lifespan_context
         if context.session in sessions.get(asked.uri, ()):
             sessions[asked.uri].discard(context.session)
-            await beside(partial(standing.leave, asked.uri))
+            await beside(partial(subscriptions.unsubscribe, asked.uri))
         return types.EmptyResult()
 
     async def listen_to(
         context: Context, asked: types.SubscriptionsListenRequestParams
     ) -> types.SubscriptionsListenResult:
-        standing: Standing = context.lifespan_context
+        subscriptions: Subscriptions = context.lifespan_context
         followed: list[str] = []
         try:
             for uri in asked.notifications.resource_subscriptions or ():
-                await _answered(beside(partial(standing.follow, uri)))
+                await _answered(beside(partial(subscriptions.subscribe, uri)))
                 followed.append(uri)
             return await listen(context, asked)
         finally:
             with anyio.CancelScope(shield=True):
                 for uri in followed:
-                    await beside(partial(standing.leave, uri))
+                    await beside(partial(subscriptions.unsubscribe, uri))
 
     return Server(
         "semmap",
@@ -232,4 +232,4 @@ def _contents(page: Page) -> list[types.ContentBlock]:
 
 
 def _refused(error: errors.SemmapError) -> types.CallToolResult:
-    return types.CallToolResult(content=[types.TextContent(text=complaint(error))], is_error=True)
+    return types.CallToolResult(content=[types.TextContent(text=error_text(error))], is_error=True)

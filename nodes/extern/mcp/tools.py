@@ -10,13 +10,13 @@ from typing import Any, Final, NamedTuple
 import msgspec
 
 from semmap.nodes.extern.client import Client
-from semmap.nodes.extern.mcp import answers, reading, resources
+from semmap.nodes.extern.mcp import answers, queries, resources
 from semmap.nodes.extern.mcp import arguments as a
-from semmap.nodes.extern.mcp.advice import for_agents
 from semmap.nodes.extern.mcp.answers import Answer
-from semmap.nodes.extern.mcp.changing import Changes
-from semmap.nodes.extern.mcp.rate import Rate
-from semmap.nodes.extern.mcp.standing import Standing
+from semmap.nodes.extern.mcp.changes import Changes
+from semmap.nodes.extern.mcp.hints import translate_hints
+from semmap.nodes.extern.mcp.rate_limit import Rate
+from semmap.nodes.extern.mcp.subscriptions import Subscriptions
 from semmap.schemas import codec, errors
 
 CALLS_PER_S: Final = 20.0
@@ -60,16 +60,16 @@ class Tool(NamedTuple):
 
 def picture(client: Client, asked: a.Picture) -> Page:
     """The scene as a picture."""
-    found = reading.depicted(client, asked)
+    found = queries.render_picture(client, asked)
     return Page(answers.text(found[0]), found[1])
 
 
-READING: Final = (
+READ_TOOLS: Final = (
     Tool(
         "overview",
         "What the map holds: the places, and how many things of which class are in each. Begin here.",
         a.Overview,
-        reading.overview,
+        queries.overview,
     ),
     Tool(
         "find",
@@ -77,61 +77,61 @@ READING: Final = (
         " drawer from the left, something to drink, la tazza sul tavolo. Where it is ambiguous it gives the"
         " question to ask back, where nothing fits what is nearest.",
         a.Find,
-        reading.find,
+        queries.find,
     ),
     Tool(
         "list",
         "The entities of a class (with its subclasses), or those on, in, near or nearest to something, with"
         " positions [m] and what each is on, inside and in. Without arguments: all, in pages.",
         a.List,
-        reading.list_,
+        queries.list_,
     ),
     Tool(
         "get",
         "All about one entity: class, pose, size, where it is and how that was measured, what it is called"
         " and by whom, its states, who changed it last; with as_of as it was then.",
         a.Get,
-        reading.get,
+        queries.get,
     ),
     Tool(
         "relations",
         "Where an entity is relative to others: on, inside, in, near, next to, touching, above, under; with a"
         " viewer also left, right, in front, behind. Each with the measurement behind it.",
         a.Relations,
-        reading.relations,
+        queries.relations,
     ),
     Tool(
         "query",
         "A read-only SPARQL 1.1 query: for counting, comparing and joining. Prefixes dm: (classes and"
         " properties) and : (entities) are predefined; the resource semmap://schema lists the classes and"
-        f" properties. At most {reading.MOST_ROWS} rows and 5 s.",
+        f" properties. At most {queries.MOST_ROWS} rows and 5 s.",
         a.Query,
-        reading.query,
+        queries.query,
     ),
     Tool(
         "explain",
         "Why a statement holds, as a proof from what was asserted or measured; negated: why it cannot hold."
         " For example name=cup1, predicate=isLocatedIn, value=kitchen1; or predicate=type, value=Cup.",
         a.Explain,
-        reading.explain,
+        queries.explain,
     ),
     Tool(
         "history",
         "The newest commits, or those of one entity: when, who, why, and what changed.",
         a.History,
-        reading.history,
+        queries.history,
     ),
     Tool(
         "diff",
         "What is otherwise now (or at until) than it was at since: what came, went, moved or changed.",
         a.Diff,
-        reading.diff,
+        queries.diff,
     ),
     Tool(
         "when",
         "When, how long and how often one entity was on, inside, in or attached to another.",
         a.WasWhen,
-        reading.when_,
+        queries.when_,
     ),
     Tool(
         "picture",
@@ -142,7 +142,7 @@ READING: Final = (
 )
 
 
-def changing(changes: Changes) -> tuple[Tool, ...]:
+def change_tools(changes: Changes) -> tuple[Tool, ...]:
     """The tools that change the map, within what is allowed."""
     return (
         Tool(
@@ -177,7 +177,7 @@ class Tools:
     def __init__(self, client: Client, further: tuple[Tool, ...] = (), *, rate: Rate | None = None) -> None:
         self._client = client
         self._rate = rate or Rate(CALLS_PER_S, _CALLS_AT_ONCE)
-        self.by_name: Mapping[str, Tool] = {tool.name: tool for tool in (*READING, *further)}
+        self.by_name: Mapping[str, Tool] = {tool.name: tool for tool in (*READ_TOOLS, *further)}
         self.instructions = INSTRUCTIONS + (_CHANGES if any(tool.changes for tool in further) else "")
 
     def read(self, uri: str) -> str:
@@ -185,9 +185,9 @@ class Tools:
         self._require_rate()
         return resources.read(self._client, uri)
 
-    def standing(self, changed: Callable[[str], None]) -> Standing:
-        """Standing questions; `changed(uri)` is called when the answer of one is another."""
-        return Standing(self._client, changed)
+    def subscriptions(self, changed: Callable[[str], None]) -> Subscriptions:
+        """Subscriptions questions; `changed(uri)` is called when the answer of one is another."""
+        return Subscriptions(self._client, changed)
 
     def call(self, name: str, arguments: Mapping[str, Any]) -> Page:
         """What tool `name` answers. Raises SemmapError, with one sentence that a model can act upon."""
@@ -220,11 +220,11 @@ def _read(tool: Tool, arguments: Mapping[str, Any]) -> Any:
         raise errors.BadRequest(f"{tool.name}: {error}") from None
 
 
-def complaint(error: errors.SemmapError) -> str:
+def error_text(error: errors.SemmapError) -> str:
     """An error as a model reads it: the sentence, and when to come again where it may."""
     said: dict[str, Any] = {
         "error": error.code,
-        "text": errors.shortened(for_agents(error.text.removeprefix(codec.MALFORMED)), 3000),
+        "text": errors.shortened(translate_hints(error.text.removeprefix(codec.MALFORMED)), 3000),
     }
     if error.again_s is not None:
         said["again_s"] = _shown(error.again_s)

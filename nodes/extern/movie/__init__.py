@@ -11,9 +11,9 @@ from pathlib import Path
 
 from msgspec import structs
 
-from semmap.nodes.extern.journals import journal_copy
-from semmap.nodes.extern.movie.wanted import Film
-from semmap.nodes.extern.replaying import settings_of
+from semmap.nodes.extern.journal_copy import journal_copy
+from semmap.nodes.extern.movie.film import Film
+from semmap.nodes.extern.replay import read_settings
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors
 
@@ -38,7 +38,7 @@ def movie(
     overwritten; Refused for a span that is not in the history; BadRequest for what no movie can be like.
     """
     file, data = Path(file), None if data is None else Path(data)
-    wanted.require_sound()
+    wanted.validate()
     if file.suffix.lower() != ".mp4":
         raise errors.BadRequest(f"movies are written as MP4; name the file {file.stem or 'movie'}.mp4")
     if file.exists() and not overwrite:
@@ -46,7 +46,7 @@ def movie(
     if not file.absolute().parent.is_dir():
         raise errors.BadFile(f"there is no folder {file.absolute().parent}")
     extras.require("semmap movie", "kb", "sim", "movie")
-    from semmap.nodes.extern.movie.filming import film
+    from semmap.nodes.extern.movie.rendering import render_video
     from semmap.nodes.kb_node.storage.journal import Journal
 
     unfinished = file.with_name(f".{file.stem}.part.mp4")
@@ -55,11 +55,11 @@ def movie(
         closing(Journal(copy.path)) as journal,
     ):
         if copy.data is not None:
-            settings = settings_of(copy.data, wanted.world)
+            settings = read_settings(copy.data, wanted.world)
             models = None if settings.models is None else Path(settings.models)
             wanted = structs.replace(wanted, world=Path(settings.world), models=models, data=copy.data)
         try:
-            told = film(journal, unfinished, wanted, tell)
+            told = render_video(journal, unfinished, wanted, tell)
             unfinished.replace(file)
         finally:
             unfinished.unlink(missing_ok=True)

@@ -56,33 +56,33 @@ def scenes(
     waits = [*rhythm.waits_s(stamps, speed=speed, longest_s=longest_s), 0.0]
     yield Scene(
         seconds=max(waits[0], FIRST_S),
-        caption=f"commit {since} · {_at(start_ns)} · how it was in the beginning",
-        add=tuple(entity for entity in there.values() if is_seen(entity)),
+        caption=f"commit {since} · {_format_time(start_ns)} · how it was in the beginning",
+        add=tuple(entity for entity in there.values() if has_body(entity)),
     )
     for commit, wait_s in zip(commits, waits[1:], strict=True):
-        yield _of_commit(commit, there, max(wait_s, LEAST_S))
+        yield _commit_scene(commit, there, max(wait_s, LEAST_S))
 
 
-def is_seen(entity: Entity) -> bool:
+def has_body(entity: Entity) -> bool:
     """Has it a body? Places, and what is nowhere, have none."""
     return not entity.place and entity.pose is not None
 
 
-def _of_commit(commit: Commit, there: dict[str, Entity], seconds: float) -> Scene:
+def _commit_scene(commit: Commit, there: dict[str, Entity], seconds: float) -> Scene:
     """The scene of a commit; `there` becomes what is there after it."""
     add, remove, glide, labels = [], [], [], dict[str, str]()
     for gone in commit.removed:
-        if (was := there.pop(gone.name, None)) is not None and is_seen(was):
+        if (was := there.pop(gone.name, None)) is not None and has_body(was):
             remove.append(gone.name)
             labels[gone.name] = f"{gone.name} is removed"
     for entity in commit.changed:
         was = there.get(entity.name)
         there[entity.name] = entity
-        if not is_seen(entity):
-            if was is not None and is_seen(was):
+        if not has_body(entity):
+            if was is not None and has_body(was):
                 remove.append(entity.name)
             continue
-        if was is None or was.pose is None or not is_seen(was):
+        if was is None or was.pose is None or not has_body(was):
             add.append(entity)
             labels[entity.name] = f"{entity.name} is added"
             continue
@@ -107,10 +107,10 @@ def _of_commit(commit: Commit, there: dict[str, Entity], seconds: float) -> Scen
 def caption(commit: Commit) -> str:
     """`commit 12 · 2026-11-23 00:44:31 · operator/cli: move cup1`."""
     what = commit.reason or wording.entities(len(commit.names))
-    return f"commit {commit.seq} · {_at(commit.stamp_ns)} · {author(commit)}: {what}"
+    return f"commit {commit.seq} · {_format_time(commit.stamp_ns)} · {author(commit)}: {what}"
 
 
-def _at(stamp_ns: int) -> str:
+def _format_time(stamp_ns: int) -> str:
     return f"{datetime.fromtimestamp(stamp_ns // 1_000_000_000):%Y-%m-%d %H:%M:%S}"
 
 
@@ -129,7 +129,7 @@ def steps(scene: Scene, fps: int) -> Iterator[tuple[float, int]]:
     yield 1.0, frames - gliding
 
 
-def between(was: Pose, now: Pose, share: float) -> Pose:
+def interpolate(was: Pose, now: Pose, share: float) -> Pose:
     """The pose when so much of the way is behind: straight, and turned the shorter way round."""
     at = tuple(a + share * (b - a) for a, b in zip(was.position_m, now.position_m, strict=True))
     p, q = was.orientation_wxyz, now.orientation_wxyz

@@ -11,7 +11,7 @@ import numpy as np
 from msgspec import structs
 
 from semmap.nodes.extern.ros.frames import Frames
-from semmap.nodes.extern.ros.pictures import colour_of, depth_of
+from semmap.nodes.extern.ros.images import colour_of, depth_of
 from semmap.schemas import errors
 from semmap.schemas.entities import NAME_PATTERN
 from semmap.schemas.scenes import CameraFrame
@@ -39,7 +39,7 @@ class Planes(NamedTuple):
     depth_m: bytes
 
 
-def camera_topics(said: str) -> CameraTopics:
+def parse_camera(said: str) -> CameraTopics:
     """`NAME=COLOUR,DEPTH,INFO`. Raises BadRequest for anything else."""
     name, _, rest = said.partition("=")
     parts = rest.split(",")
@@ -75,15 +75,15 @@ class Camera:
         """A `sensor_msgs/Image`; the frame that it makes whole. Raises BadRequest for what makes no sense."""
         with self._lock:
             self._colours.append(image)
-            return self._paired()
+            return self._take_pair()
 
     def take_depth(self, image: Any) -> Planes | None:
         """The same of a depth picture."""
         with self._lock:
             self._depths.append(image)
-            return self._paired()
+            return self._take_pair()
 
-    def _paired(self) -> Planes | None:
+    def _take_pair(self) -> Planes | None:
         if not self._colours or not self._depths or self._info is None:
             return None
         apart, colour, depth = min(

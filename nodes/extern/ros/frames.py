@@ -65,10 +65,10 @@ class Frames:
 def matrix(transform: Any) -> Transform | None:
     """A `geometry_msgs/Transform` as a matrix; None for what has no length, or is no number."""
     t, r = transform.translation, transform.rotation
-    return placed((t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
+    return to_matrix((t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
 
 
-def placed(position_m: tuple[float, ...], wxyz: tuple[float, ...]) -> Transform | None:
+def to_matrix(position_m: tuple[float, ...], wxyz: tuple[float, ...]) -> Transform | None:
     """A position and a quaternion of any length as a matrix; None for what has none, or is no number."""
     w, x, y, z = wxyz
     norm = float(np.sqrt(w * w + x * x + y * y + z * z))

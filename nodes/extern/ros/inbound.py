@@ -9,12 +9,12 @@ from typing import Any, Final, Literal
 from semmap.nodes import bus
 from semmap.nodes.bus.rmw import RosNode
 from semmap.nodes.extern.ros.cameras import Camera, CameraTopics, Planes
-from semmap.nodes.extern.ros.detected import observations_of
+from semmap.nodes.extern.ros.detections import observations_of
 from semmap.nodes.extern.ros.frames import Frames
 from semmap.nodes.extern.ros.types import decode, topic
 from semmap.schemas import codec, errors, keys
 
-_COMPLAINT_S: Final = 10.0
+_REPORT_S: Final = 10.0
 _PLANES: Final[tuple[Literal["rgb", "depth"], ...]] = ("rgb", "depth")
 
 
@@ -33,7 +33,7 @@ class Inbound:
     ) -> None:
         """`frame` is what ROS calls the map's frame; `detections` are topics of Detection3DArray."""
         self._session, self._ros, self._base, self._tell = session, ros, frame, tell
-        self._told: dict[str, float] = {}
+        self._reported: dict[str, float] = {}
         self._frames = Frames()
         if cameras or detections:
             self._follow("/tf", "tf2_msgs/msg/TFMessage", lambda m: self._frames.take(m, static=False))
@@ -76,15 +76,15 @@ class Inbound:
             try:
                 take(decode(cdr, kind))
             except errors.BadRequest as error:
-                self._complain(f"{name}: {error.text}")
+                self._report(f"{name}: {error.text}")
 
         self._ros.subscribe(topic(name, kind, latched=latched), receive)
 
-    def _complain(self, text: str) -> None:
+    def _report(self, text: str) -> None:
         """Say what is wrong, once for as long as it goes on."""
         now_s = time.monotonic()
-        if now_s - self._told.get(text, -_COMPLAINT_S) >= _COMPLAINT_S:
-            if len(self._told) > 100:
-                self._told.clear()
-            self._told[text] = now_s
+        if now_s - self._reported.get(text, -_REPORT_S) >= _REPORT_S:
+            if len(self._reported) > 100:
+                self._reported.clear()
+            self._reported[text] = now_s
             self._tell(text)

@@ -14,7 +14,7 @@ from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.ros import messages
 from semmap.nodes.extern.ros.bridge import Topics
 from semmap.nodes.extern.ros.messages import Moment
-from semmap.nodes.extern.ros.things import Thing, things_of
+from semmap.nodes.extern.ros.things import Thing, located_things
 from semmap.nodes.extern.ros.types import encode, store
 from semmap.nodes.runtime.version import version
 from semmap.schemas import errors, keys
@@ -53,13 +53,13 @@ def _states(client: Client, seqs: list[int], began_ns: int) -> Iterator[State]:
     first = seqs[0]
     before = client.list(as_of=str(first - 1)) if first > 1 else ()
     entities = {entity.name: entity for entity in before}
-    yield State(first - 1, began_ns, things_of(entities.values(), {}, {}))
-    for commit in _recalled(client, seqs):
+    yield State(first - 1, began_ns, located_things(entities.values(), {}, {}))
+    for commit in _fetch_commits(client, seqs):
         if commit.abridged is not None or commit.tbox:
             entities = {entity.name: entity for entity in client.list(as_of=str(commit.seq))}
         else:
             _follow(entities, commit)
-        yield State(commit.seq, commit.stamp_ns, things_of(entities.values(), {}, {}))
+        yield State(commit.seq, commit.stamp_ns, located_things(entities.values(), {}, {}))
 
 
 def _follow(entities: dict[str, Entity], commit: Commit) -> None:
@@ -69,7 +69,7 @@ def _follow(entities: dict[str, Entity], commit: Commit) -> None:
         entities[entity.name] = entity
 
 
-def _recalled(client: Client, seqs: list[int]) -> Iterator[Commit]:
+def _fetch_commits(client: Client, seqs: list[int]) -> Iterator[Commit]:
     for start in range(0, len(seqs), _AT_ONCE):
         some = tuple(seqs[start : start + _AT_ONCE])
         commits: tuple[Commit, ...] = bus.ask(

@@ -144,10 +144,10 @@ def planning_scene(
     objects = [_gone(name, at) for name in was.keys() - solid.keys()]
     colours = []
     for name, thing in solid.items():
-        if name not in was or not thing.is_like(was[name]):
+        if name not in was or not thing.has_same_shape(was[name]):
             objects.append(_obstacle(thing, surfaces.get(name), at))
             colours.append(new("moveit_msgs/msg/ObjectColor", id=name, color=_colour(thing.class_, _OPAQUE)))
-        elif not thing.stands_as(was[name]):
+        elif not thing.has_same_pose(was[name]):
             objects.append(_moved(thing, at))
     if not objects:
         return None

@@ -27,18 +27,18 @@ class Thing(NamedTuple):
     place: bool
     resting: bool
 
-    def is_like(self, other: Thing) -> bool:
+    def has_same_shape(self, other: Thing) -> bool:
         """Is it the same but for where it stands?"""
         return self._replace(pose=_ORIGIN, resting=True) == other._replace(pose=_ORIGIN, resting=True)
 
-    def stands_as(self, other: Thing) -> bool:
+    def has_same_pose(self, other: Thing) -> bool:
         """Does it stand where the other does, to a millimetre?"""
         return _near(self.pose.position_m, other.pose.position_m, _STILL_M) and _near(
             self.pose.orientation_wxyz, other.pose.orientation_wxyz, _STILL
         )
 
 
-def things_of(
+def located_things(
     entities: Iterable[Entity], bodies: Mapping[str, Body], live: Mapping[str, Pose]
 ) -> dict[str, Thing]:
     """All entities that are somewhere, by name; of what is tracked the `live` pose counts."""

@@ -224,10 +224,10 @@ def test_no_system_is_no_answer(system, monkeypatch):
 def test_a_verb_that_only_asks_imports_nothing_heavy():
     heavy = {"mujoco", "numpy", "open3d", "owlrl", "rdflib", "rerun", "scipy", "supervisor", "trimesh"}
     code = (
-        "import sys; from semmap.nodes.extern.cli.all_verbs import app; app.get_command(None, 'sparql');"
+        "import sys; from semmap.nodes.extern.cli.all_commands import app; app.get_command(None, 'sparql');"
         " print(*sys.modules)"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "semmap.nodes.extern.cli.verbs.ask" in run.stdout.split()
-    assert "semmap.nodes.extern.cli.verbs.edit" not in run.stdout.split()
+    assert "semmap.nodes.extern.cli.commands.query" in run.stdout.split()
+    assert "semmap.nodes.extern.cli.commands.edit" not in run.stdout.split()
     assert not heavy & set(run.stdout.split())

@@ -3,7 +3,7 @@
 import click
 import pytest
 
-from semmap.nodes.extern.cli.all_verbs import app
+from semmap.nodes.extern.cli.all_commands import app
 
 _MOST = 60
 """Characters; as many fit beside the longest verb in a terminal of 80 columns."""

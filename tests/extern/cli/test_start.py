@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from semmap.nodes.extern.cli.all_verbs import _MODULE_OF
+from semmap.nodes.extern.cli.all_commands import _MODULE_OF
 from semmap.nodes.extern.cli.app import execute
 
 # Ctrl-C while the verbs are being imported.
@@ -16,7 +16,7 @@ INTERRUPTED = """
 import sys, importlib.abc
 class Interrupted(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path, target=None):
-        if name == "semmap.nodes.extern.cli.all_verbs":
+        if name == "semmap.nodes.extern.cli.all_commands":
             raise KeyboardInterrupt
 sys.meta_path.insert(0, Interrupted())
 from semmap.nodes.extern.cli.app import main
@@ -31,7 +31,7 @@ def test_ctrl_c_while_it_starts_is_quiet():
 
 def test_it_starts_without_numpy():
     code = (
-        "import sys; from semmap.nodes.extern.cli.all_verbs import app\n"
+        "import sys; from semmap.nodes.extern.cli.all_commands import app\n"
         "for verb in app.list_commands(None): app.get_command(None, verb)\n"
         "sys.exit('numpy' in sys.modules or len(app.commands) < 30)"
     )

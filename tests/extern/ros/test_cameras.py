@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from semmap.nodes.extern.ros.cameras import Camera, camera_topics
+from semmap.nodes.extern.ros.cameras import Camera, parse_camera
 from semmap.nodes.extern.ros.frames import Frames
 from semmap.schemas import errors
 from tests.extern.ros.made import image, info, transforms
@@ -55,11 +55,11 @@ def test_intrinsics_of_another_size_are_refused(camera):
 
 
 def test_three_topics_make_a_camera():
-    said = camera_topics("front=/a/color,/a/depth,/a/info")
+    said = parse_camera("front=/a/color,/a/depth,/a/info")
     assert said == ("front", "/a/color", "/a/depth", "/a/info")
 
 
 @pytest.mark.parametrize("said", ["front", "front=/a,/b", "=/a,/b,/c", "front=a,/b,/c", "front=/a,/b,/c d"])
 def test_anything_else_is_none(said):
     with pytest.raises(errors.BadRequest, match="is no camera; example: front="):
-        camera_topics(said)
+        parse_camera(said)

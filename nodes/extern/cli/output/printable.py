@@ -34,6 +34,6 @@ def write(document: str) -> None:
     sys.stdout.write(document)
 
 
-def say(text: str, *, file: TextIO | None = None) -> None:
+def print_escaped(text: str, *, file: TextIO | None = None) -> None:
     """Print lines of text, at once."""
     print("\n".join(map(escaped, text.split("\n"))), file=file or sys.stdout, flush=True)

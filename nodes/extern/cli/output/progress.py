@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from semmap.nodes import bus
-from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.client import Client
 from semmap.schemas import keys
 from semmap.schemas.health import WORKING, Health
@@ -31,7 +31,7 @@ def progress(client: Client) -> Iterator[None]:
             return
         if health.detail != said or now_s > said_s + _AGAIN_S:
             said, said_s = health.detail, now_s
-            say(f"semmap: {health.detail} ({now_s - began_s:.0f} s)", file=sys.stderr)
+            print_escaped(f"semmap: {health.detail} ({now_s - began_s:.0f} s)", file=sys.stderr)
 
     subscriber = bus.follow(client.session, keys.HEALTH, tell)
     try:

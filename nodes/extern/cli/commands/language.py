@@ -1,0 +1,111 @@
+"""The verbs that take words as people say them, `find` and `understand`; and `tell`, which says some."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import textwrap
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from semmap.nodes.extern.cli.angles import from_pose
+from semmap.nodes.extern.cli.common import print_error, print_json, print_lines, with_client
+from semmap.nodes.extern.cli.output import lines, lu4r
+from semmap.nodes.extern.cli.shell_completion import entity_names
+from semmap.schemas import errors
+
+if TYPE_CHECKING:
+    from semmap.nodes.extern.client import Client
+    from semmap.schemas.language import Language, Mood
+
+_WHY: Final[dict[Mood, str]] = {
+    "command": "no command is understood in '{text}'; try: take the cup from the table",
+    "question": "'{text}' asks something, and there is no command in it; try: take the cup from the table",
+    "past": "'{text}' tells what was done, and there is no command in it; try: take the cup from the table",
+}
+
+
+@click.command()
+@click.argument("name", required=False, shell_complete=entity_names)
+@click.option(
+    "--words",
+    type=click.IntRange(20, 5000),
+    default=150,
+    show_default=True,
+    help="Most words of the text.",
+)
+@click.option("--format", "format", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@with_client
+def tell(client: Client, name: str | None, words: int, format: str) -> None:
+    """Tell in a few words what is there.
+
+    Of the whole map, of a place, or of one thing: by its name, or by a reference or class that only one has.
+    """
+    found = client.tell(name, words=words)
+    if format == "json":
+        print_json(found)
+    else:
+        width = shutil.get_terminal_size().columns
+        print_lines(textwrap.wrap(found.text, width) if sys.stdout.isatty() else [found.text])
+
+
+@click.command()
+@click.argument("text")
+@click.option(
+    "--from", "viewer", metavar="VIEWER", help="Who looks: for left of, behind, the second from the left ..."
+)
+@from_pose
+@click.option("--for", "asker", metavar="NAME", help="Who asks: whose things *my* means.")
+@click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@with_client
+def find(client: Client, text: str, format: str, **fields: Any) -> None:
+    """Find the entities that words describe (English, Italian).
+
+    For example: semmap find "the red cup on the kitchen table". If several fit, it prints
+    the question to ask back. The exit status is 1 if nothing fits.
+    """
+    found = client.find(text=text, **fields)
+    if format == "json":
+        print_json(found)
+    else:
+        print_lines(list(lines.found(found)))
+    if found.outcome == "none":
+        sys.exit(errors.Refused.exit_status)
+
+
+@click.command()
+@click.argument("text")
+@click.option(
+    "--format",
+    "format",
+    type=click.Choice(["text", "json", "lu4r"]),
+    default="text",
+    show_default=True,
+    help="lu4r: as the LU4R interpreter writes frames.",
+)
+@click.option("--language", type=click.Choice(["english", "italian"]), help="Default: as the words tell.")
+@with_client
+def understand(client: Client, text: str, format: str, language: Language | None) -> None:
+    """Show what a spoken command asks for, and of which entities.
+
+    In English or Italian.
+
+    For example: semmap understand "take the bottle from the table". The frames and roles are FrameNet's. The
+    exit status is 1 if no frame is understood.
+    """
+    found = client.understand(text, language=language)
+    if format == "json":
+        print_json(found)
+    elif format == "lu4r":
+        print_json(lu4r.document(found))
+    else:
+        print_lines([frame.text for frame in found.frames] + ([found.question] if found.question else []))
+    for doubt in found.doubts:
+        print_error(doubt)
+    if found.unknown:
+        print_error(f"unknown {'verbs' if len(found.unknown) > 1 else 'verb'}: {', '.join(found.unknown)}")
+    if not found.frames:
+        if not found.unknown:
+            print_error(_WHY[found.mood].format(text=text))
+        sys.exit(errors.Refused.exit_status)

@@ -1,0 +1,118 @@
+"""The verbs `ros` and `mcap`: the map for robots that speak ROS 2."""
+
+from __future__ import annotations
+
+import functools
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from semmap.nodes.extern.cli.common import TIME, with_client
+from semmap.nodes.extern.cli.output.printable import print_escaped
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors, wording
+
+if TYPE_CHECKING:
+    from semmap.nodes.extern.client import Client
+
+
+def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
+    """A verb that says what it lacks before it with_client to a system."""
+
+    @functools.wraps(function)
+    def checked(**arguments: Any) -> None:
+        extras.require(f"semmap {click.get_current_context().info_name}", "ros")
+        function(**arguments)
+
+    return checked
+
+
+@click.command()
+@click.option(
+    "--router",
+    default="tcp/127.0.0.1:7447",
+    show_default=True,
+    metavar="EP",
+    help="Zenoh router of ROS.",
+)
+@click.option(
+    "--domain",
+    default=0,
+    show_default=True,
+    type=click.IntRange(0, 232),
+    envvar="ROS_DOMAIN_ID",
+    help="Domain of ROS.",
+)
+@click.option("--frame", default="map", show_default=True, help="What ROS calls the map's frame.")
+@click.option(
+    "--rate", default=10.0, show_default=True, type=click.FloatRange(0.1, 100.0), help="Transforms a second."
+)
+@click.option("--meshes", is_flag=True, help="Obstacles as they look instead of as boxes.")
+@click.option(
+    "--camera",
+    "cameras",
+    multiple=True,
+    metavar="NAME=COLOUR,DEPTH,INFO",
+    help="A camera of ROS for perception, by its three topics; may be given several times.",
+)
+@click.option(
+    "--detections",
+    multiple=True,
+    metavar="TOPIC",
+    help="A detector's vision_msgs/Detection3DArray, for perception; may be given several times.",
+)
+@_with_its_extra
+@with_client
+def ros(
+    client: Client,
+    router: str,
+    domain: int,
+    frame: str,
+    rate: float,
+    meshes: bool,
+    cameras: tuple[str, ...],
+    detections: tuple[str, ...],
+) -> None:
+    """Publish the map to ROS 2, and take its cameras.
+
+    It speaks the wire of rmw_zenoh and needs no ROS. Published are /semmap/detections and /semmap/markers
+    (latched), /tf with a frame for each entity, and diffs on /planning_scene.
+    """
+    from semmap.nodes.extern.ros.cameras import parse_camera
+    from semmap.nodes.extern.ros.runner import RosConfig, run
+
+    config = RosConfig(
+        router=router,
+        domain=domain,
+        frame=frame,
+        rate_hz=rate,
+        meshes=meshes,
+        cameras=tuple(map(parse_camera, cameras)),
+        detections=detections,
+    )
+    print_escaped(f"publishing to ROS at {router}, domain {domain}; Ctrl-C ends it")
+    run(client.session, client.prefix, config, lambda text: print_escaped(text, file=sys.stderr))
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--since", metavar="COMMIT|TIME", help=f"Where the span begins. {TIME}")
+@click.option("--until", metavar="COMMIT|TIME", help="Where it ends. Default: now.")
+@click.option("--frame", default="map", show_default=True, help="What ROS calls the map's frame.")
+@_with_its_extra
+@with_client
+def mcap(client: Client, file: Path, since: str | None, until: str | None, frame: str) -> None:
+    """Write a span of the map's history for ROS's tools.
+
+    FILE.mcap holds, as of each commit, the topics that semmap ros publishes; Foxglove and ros2 bag read it.
+    """
+    from semmap.nodes.extern.ros.bridge import topics
+    from semmap.nodes.extern.ros.mcap_file import states, write
+
+    if file.suffix != ".mcap":
+        raise errors.BadRequest(f"an MCAP file is written; name it {file.with_suffix('.mcap').name}")
+    count = write(file, states(client, since, until), topics(), frame=frame)
+    print_escaped(f"{wording.counted(count, 'message')} written to {file}")

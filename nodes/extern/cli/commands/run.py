@@ -1,0 +1,93 @@
+"""`semmap run`: a file of requests, one per line."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Any
+
+import click
+
+from semmap.nodes.extern.cli.common import (
+    connect_option,
+    identity_option,
+    namespace_option,
+    print_error,
+    print_lines,
+    run_arguments,
+)
+from semmap.nodes.extern.cli.output import lines
+from semmap.nodes.extern.cli.output.printable import print_escaped
+from semmap.nodes.extern.client import Client, connect
+from semmap.nodes.extern.files import read_file
+from semmap.schemas import codec, commands, errors, replies
+
+_BY_THEMSELVES = frozenset(
+    ("up", "down", "node", "repair", "restore", "replay", "movie", "run", "watch", "completion")
+)
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--keep-going", is_flag=True, help="Continue after a failed request.")
+@connect_option
+@identity_option
+@namespace_option
+def run(file: Path, keep_going: bool, where: str | None, identity: str | None, namespace: str | None) -> None:
+    """Execute a file of requests, one per line.
+
+    A request is a command line, or a JSON message with its verb.
+    """
+    lines = _decode_lines(file)
+    failed = 0
+    with connect(where, agent=f"run/{file.name}", identity=identity, namespace=namespace) as client:
+        for number, line in lines:
+            print_escaped(f"{number}: {line}")
+            status = _run_line(client, line.removeprefix("semmap "), f"line {number}: ")
+            failed += status != 0
+            if status and not keep_going:
+                raise SystemExit(status)
+    if failed:
+        raise errors.Refused(f"{failed} of {len(lines)} requests failed")
+
+
+def _run_line(client: Client, line: str, where: str) -> int:
+    if line.startswith("{"):
+        return _execute_message(client, line.encode(), where)
+    try:
+        words = shlex.split(line)
+    except ValueError as error:
+        print_error(f"{where}cannot read the line: {error}")
+        return errors.BadRequest.exit_status
+    if words and words[0] in _BY_THEMSELVES:
+        print_error(f"{where}'{words[0]}' cannot be used in a file of requests")
+        return errors.BadRequest.exit_status
+    return run_arguments(click.get_current_context().find_root().command, words, client, where)
+
+
+def _execute_message(client: Client, message: bytes, where: str) -> int:
+    """Send one JSON message that names its verb, print the reply, and return the exit status."""
+    try:
+        said: dict[str, Any] = codec.decode(message, dict[str, Any])
+        verb = str(said.get("verb", ""))
+        if verb not in commands.COMMANDS:
+            raise errors.UnknownVerb(f"unknown verb '{verb}'{errors.did_you_mean(verb, commands.COMMANDS)}")
+        reply: Any = client.send(codec.decode(message, commands.COMMANDS[verb]))
+    except errors.SemmapError as error:
+        print_error(f"{where}{error.text.removeprefix('malformed message: ')}")
+        return error.exit_status
+    if isinstance(reply, replies.Changed):
+        print_lines(lines.changed(reply))
+    else:
+        print(getattr(reply, "text", None) or codec.encode_json(reply).decode())
+    return 0
+
+
+def _decode_lines(file: Path) -> list[tuple[int, str]]:
+    """The requests of a file with their line numbers; empty lines and # comments are none."""
+    try:
+        lines = read_file(file).decode().splitlines()
+    except UnicodeDecodeError:
+        raise errors.BadFile(f"{file} is not a UTF-8 text file") from None
+    stripped = ((number, line.strip()) for number, line in enumerate(lines, start=1))
+    return [(number, line) for number, line in stripped if line and not line.startswith("#")]

@@ -1,0 +1,180 @@
+"""The verbs about the scene, from `move` and `attach` to `picture`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from semmap.nodes.extern.cli.angles import yaw_option
+from semmap.nodes.extern.cli.common import (
+    carry_options,
+    drop_unset,
+    frame_option,
+    print_lines,
+    vector_option,
+    with_client,
+)
+from semmap.nodes.extern.cli.negative_numbers import NegativeNumbers
+from semmap.nodes.extern.cli.output import lines
+from semmap.nodes.extern.cli.output.printable import print_escaped
+from semmap.nodes.extern.cli.shell_completion import entity_names
+from semmap.nodes.extern.files import write_atomically
+from semmap.schemas import errors
+
+if TYPE_CHECKING:
+    from semmap.nodes.extern.client import Client
+
+
+_WAIT = click.option(
+    "--wait/--no-wait",
+    default=True,
+    help="Return when the map has followed, or as soon as it moves.  [default: wait]",
+)
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@vector_option("--at", metavar="X Y Z", required=True, help="Where to put it: bottom centre [m].")
+@frame_option("The frame of --at and --yaw, instead of the map's")
+@yaw_option
+@carry_options
+@_WAIT
+@with_client
+def move(client: Client, wait: bool, **fields: Any) -> None:
+    """Move the body of an entity by hand.
+
+    The map follows when it comes to rest. While time is paused, nothing is waited for.
+    """
+    print_lines(lines.moved(client.move(**drop_unset(fields), wait=wait)))
+
+
+@click.command(cls=NegativeNumbers)
+@click.argument("name", shell_complete=entity_names)
+@click.option(
+    "--to", required=True, metavar="HOLDER", help="What is to hold it, such as a gripper or a tray."
+)
+@vector_option(
+    "--at", metavar="X Y Z", help="Where, in the frame of what holds it [m].  [default: where it is]"
+)
+@yaw_option
+@carry_options
+@click.option("--dry-run", is_flag=True, help="Only say what would be.")
+@with_client
+def attach(client: Client, **fields: Any) -> None:
+    """Have an entity held by another until it is detached.
+
+    With --carry, what stands on it or is inside it is taken along as it stands there, and is let go with it.
+    """
+    print_lines(lines.changed(client.attach(**drop_unset(fields))))
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@click.option("--dry-run", is_flag=True, help="Only say what would be.")
+@with_client
+def detach(client: Client, name: str, dry_run: bool) -> None:
+    """Let go of an entity that something holds.
+
+    What was taken along with it (--carry) is let go with it.
+    """
+    print_lines(lines.changed(client.detach(name, dry_run=dry_run)))
+
+
+_JOINT = click.option("--joint", metavar="JOINT", help="Only this one of its doors, drawers or switches.")
+
+
+@click.command("open")
+@click.argument("name", shell_complete=entity_names)
+@click.option("--to", type=float, default=1.0, help="How far, from 0 to 1.  [default: 1]")
+@_JOINT
+@_WAIT
+@with_client
+def open_(client: Client, name: str, to: float, joint: str | None, wait: bool) -> None:
+    """Open a door, lid or drawer by hand.
+
+    The map follows when it comes to rest.
+    """
+    print_lines(lines.moved(client.open(name, to=to, joint=joint, wait=wait)))
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@_JOINT
+@_WAIT
+@with_client
+def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
+    """Close a door, lid or drawer by hand.
+
+    The map follows when it comes to rest.
+    """
+    print_lines(lines.moved(client.close(name, joint=joint, wait=wait)))
+
+
+@click.command(cls=NegativeNumbers)
+@click.argument("name", shell_complete=entity_names)
+@click.option(
+    "--to",
+    nargs=2,
+    type=float,
+    multiple=True,
+    metavar="X Y",
+    help="A point of the floor [m]; several are driven through one after another.",
+)
+@frame_option("The frame of --to and --yaw, as it is at the start, instead of the map's")
+@yaw_option
+@click.option("--speed", type=float, default=0.4, show_default=True, help="At most so fast [m/s].")
+@click.option("--stop", is_flag=True, help="Stop where it is.")
+@_WAIT
+@with_client
+def drive(client: Client, wait: bool, **fields: Any) -> None:
+    """Drive a simulated robot to a point.
+
+    It goes in a straight line, to each point if there are several, and looks for no way around things.
+    """
+    print_lines(lines.moved(client.drive(**drop_unset(fields), wait=wait)))
+
+
+@click.command()
+@click.option("--off/--on", "off", default=False, help="Resume time, or stop it.  [default: on]")
+@with_client
+def pause(client: Client, off: bool) -> None:
+    """Pause simulated time, or resume it."""
+    print_escaped(client.pause(off=off).text)
+
+
+@click.command(cls=NegativeNumbers)
+@click.argument("seconds", type=float, default=0.1)
+@with_client
+def step(client: Client, seconds: float) -> None:
+    """Advance paused time by SECONDS (default 0.1, at most 60)."""
+    print_escaped(client.step(seconds).text)
+
+
+@click.command()
+@with_client
+def reset(client: Client) -> None:
+    """Put every body where the map says it stands.
+
+    Bodies that could not be created are tried again.
+    """
+    print_escaped(client.reset().text)
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--camera", metavar="NAME", help="A camera of the world; default: an overview from above.")
+@click.option("--place", metavar="NAME", help="Only this place, from above.")
+@click.option("--labels", is_flag=True, help="Write the names of things on it.")
+@click.option("--width", type=int, default=960, show_default=True)
+@click.option("--height", type=int, default=720, show_default=True)
+@with_client
+def picture(
+    client: Client, file: Path, camera: str | None, place: str | None, labels: bool, width: int, height: int
+) -> None:
+    """Write a picture of the scene to FILE (PNG)."""
+    if file.suffix.lower() != ".png":
+        raise errors.BadRequest(f"pictures are written as PNG; name the file {file.stem or 'scene'}.png")
+    write_atomically(file, client.picture(camera, place=place, labels=labels, width=width, height=height))
+    print(f"wrote {file}")
