@@ -1,6 +1,6 @@
-"""All commands of the command line, by what they are for. Each sends a request; only `watch` subscribes.
+"""All commands of the command line, in groups. Each command sends a request; only `watch` subscribes.
 
-The module of a command is imported when it is needed: importing all of them takes longer than most replies.
+The module of a command is imported when it is needed: importing all modules takes longer than most replies.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from typing import Final
 
 import click
 
+from semmap.nodes.extern.cli.command import CommandGroup
 from semmap.nodes.extern.cli.common import CONNECTION, before_any_command
 from semmap.schemas import errors
 
@@ -21,7 +22,7 @@ _GROUPS: Final = {
         "run": ("run",),
         "approve": ("approve",),
     },
-    "Ask": {
+    "Query": {
         "query": (
             *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
             *("classes", "properties", "sparql", "watch"),
@@ -54,7 +55,7 @@ _GROUPS: Final = {
         "completion": ("completion",),
     },
 }
-"""What each part of the help lists: the modules of `verbs/` with their commands."""
+"""The groups of `semmap --help`: the modules of `commands/` with their commands."""
 _MODULE_OF: Final = {
     name: module for modules in _GROUPS.values() for module, names in modules.items() for name in names
 }
@@ -62,10 +63,10 @@ _SYNONYMS: Final = {
     "delete": "remove", "rm": "remove", "del": "remove", "show": "get", "describe": "get", "ls": "list",
     "mv": "move", "stop": "down", "start": "up", "screenshot": "picture", "query": "sparql", "log": "history",
 }  # fmt: skip
-"""What people type who come from other tools, and the command that does it."""
+"""Command names of other tools, and the commands that correspond to them."""
 
 
-class _Group(click.Group):
+class _Group(CommandGroup):
     """Imports commands when they are needed, lists them by group, and suggests one for an unknown command."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -94,22 +95,22 @@ class _Group(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and self.get_command(ctx, args[0]) is None:
-            meant = _SYNONYMS.get(args[0])
-            hint = f"; did you mean {meant}?" if meant else errors.did_you_mean(args[0], _MODULE_OF)
+            synonym = _SYNONYMS.get(args[0])
+            hint = f"; did you mean {synonym}?" if synonym else errors.did_you_mean(args[0], _MODULE_OF)
             raise click.UsageError(f"unknown command '{args[0]}'{hint or '; see: semmap --help'}")
         name, command, rest = super().resolve_command(ctx, args)
         return name, command, [*_forwarded_options(ctx, command), *rest]
 
 
 def _forwarded_options(ctx: click.Context, command: click.Command | None) -> list[str]:
-    """Return the connection options that were given before the command, as its own options.
+    """Return the connection options before the command as arguments of the command.
 
-    Raises UsageError where the command has no such option.
+    Raises UsageError if the command does not have such an option.
     """
-    given = {option: ctx.params[option] for option in CONNECTION if ctx.params.get(option) is not None}
+    passed = {option: ctx.params[option] for option in CONNECTION if ctx.params.get(option) is not None}
     known = {parameter.name for parameter in command.params} if command is not None else set()
     words = []
-    for name, value in given.items():
+    for name, value in passed.items():
         if command is not None and name not in known:
             raise click.UsageError(
                 f"{CONNECTION[name]} is not an option of semmap {command.name}; see: --help"
@@ -122,14 +123,14 @@ def _forwarded_options(ctx: click.Context, command: click.Command | None) -> lis
 @click.version_option(package_name="semmap")
 @before_any_command
 def app(**_: str | None) -> None:
-    """Use a robot's semantic map: which objects exist, what they are, where they are, and what follows."""
+    """Use a robot's semantic map: objects, their classes and poses, and inferred facts."""
 
 
-@app.command(name="help")
+@app.command(name="help", example="semmap help add")
 @click.argument("names", nargs=-1, metavar="[COMMAND]")
 @click.pass_context
 def help_(ctx: click.Context, names: tuple[str, ...]) -> None:
-    """Show the help page of a command, or the list of all commands."""
+    """Show the help page of a command, or list all commands."""
     above = ctx.find_root()
     command: click.Command = above.command
     for name in names:

@@ -1,4 +1,4 @@
-"""What all verbs that talk to a running system share: the connection, errors, exit statuses."""
+"""Parts that the commands share: connection options, error messages and exit statuses."""
 
 from __future__ import annotations
 
@@ -18,28 +18,27 @@ if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
 
 TIME = (
-    "TIME is ISO 8601 like 2026-03-01T12:30:05, as history shows it, and denotes its written precision: that"
-    " whole second, 12:30 the minute (of today, without a date), the date alone the day. Or seconds since"
-    " 1970, or a stamp_ns of the JSON."
+    "TIME is ISO 8601, as printed by history: 2026-03-01T12:30:05 (that second), 12:30 (that minute of today)"
+    " or 2026-03-01 (that day). Seconds since 1970 and stamp_ns values are also accepted."
 )
-"""For the help of options that take a time."""
+"""The help of options that accept a time."""
 
 CONNECTION: Final = {"where": "--connect", "identity": "--identity", "namespace": "--namespace"}
 """The options that choose a system, by the names of their parameters."""
 _CONNECTION: Final[dict[str, dict[str, str]]] = {
     "where": {
         "metavar": "EP",
-        "help": f"Zenoh endpoint of the system. Default: {DEFAULT_ENDPOINT}, or the only one that runs here.",
+        "help": f"Zenoh endpoint of the system. Default: {DEFAULT_ENDPOINT}, or the only local system.",
         "envvar": CONNECT_VARIABLE,
     },
     "identity": {
         "metavar": "DIR/NAME",
-        "help": "Client certificate for a secure system: DIR/NAME.crt with its key.",
+        "help": "Client certificate for a secure system: DIR/NAME.crt and its key.",
         "envvar": IDENTITY_VARIABLE,
     },
     "namespace": {
         "metavar": "ROBOT",
-        "help": "Name of the robot, if several can be reached there.",
+        "help": "Name of the robot, if the endpoint reaches several.",
         "envvar": NAMESPACE_VARIABLE,
     },
 }
@@ -49,7 +48,7 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 
 
 class _ConnectionOption(click.Option):
-    """An option that every command has: its help page has one line for all of these."""
+    """A connection option. A help page lists all of them in one line."""
 
     def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
         if self.name != next(p.name for p in ctx.command.params if isinstance(p, _ConnectionOption)):
@@ -76,7 +75,7 @@ namespace_option = _connection_option("namespace")
 
 
 def before_any_command(function: Callable[..., None]) -> Callable[..., None]:
-    """Add the connection options to `semmap` itself; it passes them on to the command that follows."""
+    """Add the connection options to `semmap` itself, which forwards them to the command."""
     for name, option in reversed(CONNECTION.items()):
         about = _CONNECTION[name]
         text = f"{about['help']}  [env var: {about['envvar']}]"
@@ -87,27 +86,26 @@ def before_any_command(function: Callable[..., None]) -> Callable[..., None]:
 robots_option = click.option(
     "--robots",
     metavar="GLOB",
-    help="Ask all robots whose names match, such as '*' or arm*,lift1; EP may be several, with commas.",
+    help="Query all robots whose names match, such as '*' or arm*,lift1; --connect accepts EP,EP.",
 )
-"""Which robots are asked together."""
 
 
 def with_client(function: Callable[..., None]) -> Callable[..., None]:
-    """A verb that with_client to a running system: its first argument is a client."""
+    """Decorate a command that needs a running system: its first argument becomes a client."""
 
     @connect_option
     @identity_option
     @namespace_option
     @functools.wraps(function)
-    def with_client(where: str | None, identity: str | None, namespace: str | None, **arguments: Any) -> None:
+    def connected(where: str | None, identity: str | None, namespace: str | None, **arguments: Any) -> None:
         if (shared := click.get_current_context().obj) is not None:
             function(shared, **arguments)
             return
         from semmap.nodes.extern.client import (
-            connect,  # not needed for what only prints help or completes a word
+            connect,  # not needed for printing help and completing words
         )
 
-        # For one question a peer's shorter way saves less time than joining as one takes.
+        # Joining as a peer takes longer than one request gains by the direct link.
         joining = connect(where, agent=_agent(), identity=identity, namespace=namespace, mode="client")
         with joining as client:
             try:
@@ -115,15 +113,16 @@ def with_client(function: Callable[..., None]) -> Callable[..., None]:
             except errors.NoAnswer as error:
                 if not (others := _other_robots(where, identity, namespace)):
                     raise
-                raise errors.NoAnswer(f"{error.text}; robots that are there: {', '.join(others)}") from None
+                raise errors.NoAnswer(f"{error.text}; available robots: {', '.join(others)}") from None
 
-    return with_client
+    return connected
 
 
 def supports_robots(show: Callable[..., None]) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """A verb that, with `--robots`, several robots answer: `show(robots, **arguments)` is called then.
+    """Add `--robots` to a command: with it, `show(robots, **arguments)` is called instead of the command.
 
-    It stands above `with_client`. Raises SystemExit with 3 when a robot did not answer, after the others did.
+    The decorator goes above `with_client`. Raises SystemExit with status 3 if a robot does not respond, after
+    the replies of the others were printed.
     """
 
     def decorate(function: Callable[..., None]) -> Callable[..., None]:
@@ -137,9 +136,9 @@ def supports_robots(show: Callable[..., None]) -> Callable[[Callable[..., None]]
 
             where, who = arguments.pop("where"), arguments.pop("identity")
             arguments.pop("namespace")
-            said = click.get_current_context().get_parameter_source("namespace")
-            if said is click.core.ParameterSource.COMMANDLINE:
-                raise errors.BadRequest("give either --robots or --namespace")
+            source = click.get_current_context().get_parameter_source("namespace")
+            if source is click.core.ParameterSource.COMMANDLINE:
+                raise errors.BadRequest("--robots and --namespace exclude each other; remove one of them")
             with connect_robots(robots, where, identity_=who, agent=_agent()) as found:
                 show(found, **arguments)
 
@@ -149,7 +148,7 @@ def supports_robots(show: Callable[..., None]) -> Callable[[Callable[..., None]]
 
 
 def _other_robots(where: str | None, identity: str | None, namespace: str | None) -> tuple[str, ...]:
-    """The robots that can be asked where the one that is meant has no node."""
+    """Return the other robots at the endpoint, if the robot `namespace` has no node there."""
     from semmap.nodes.extern.fleet.robots import robot_names
 
     try:
@@ -164,9 +163,9 @@ def _agent() -> str:
 
 
 def run_arguments(app: click.Command, words: list[str], client: Client | None = None, where: str = "") -> int:
-    """Run a command line, over `client` if there is one; its exit status.
+    """Run a command line, with `client` if there is one, and return its exit status.
 
-    Errors are one line on stderr, which says `where` first.
+    An error is printed to stderr in one line that begins with `where`.
     """
     try:
         app.main(words, prog_name="semmap", standalone_mode=False, obj=client)
@@ -195,7 +194,7 @@ def run_arguments(app: click.Command, words: list[str], client: Client | None = 
 
 
 def print_json(message: Any) -> None:
-    """A reply as JSON."""
+    """Print a reply as JSON."""
     import json
 
     from semmap.schemas import codec
@@ -205,7 +204,7 @@ def print_json(message: Any) -> None:
 
 
 def print_lines(lines: Iterable[str]) -> None:
-    """A reply in words."""
+    """Print the lines of a reply."""
     for line in lines:
         print_escaped(line)
 
@@ -219,33 +218,33 @@ class _Metres(click.ParamType[float]):
         try:
             return float(value)
         except ValueError:
-            self.fail(f"'{value}' is not a number; write metres without a unit, as in 0.76", param, ctx)
+            self.fail(f"'{value}' is not a number; use metres without a unit, as in 0.76", param, ctx)
 
 
 _METRES: Final = _Metres()
 
 
 def vector_option(*names: str, **options: Any) -> Callable[[Any], Any]:
-    """An option of three numbers [m]."""
+    """Return an option with three numbers [m]."""
     return click.option(*names, nargs=3, type=_METRES, **options)
 
 
-def frame_option(what: str) -> Callable[[Any], Any]:
-    """In which frame positions are given or told."""
-    return click.option("--frame", metavar="NAME", help=f"{what}; see: semmap frames.")
+def frame_option(meaning: str) -> Callable[[Any], Any]:
+    """Return the option that names the frame of positions."""
+    return click.option("--frame", metavar="NAME", help=f"{meaning}; see: semmap frames.")
 
 
 def carry_options(function: Callable[..., None]) -> Callable[..., None]:
-    """The options of a verb that moves a thing with what is on it."""
+    """Add the options of a command that moves an object together with its contents."""
     leave = click.option(
-        "--leave", multiple=True, metavar="NAME", help="With --carry: not this one; may be repeated."
+        "--leave", multiple=True, metavar="NAME", help="With --carry: exclude this object; may be repeated."
     )
-    carry = click.option("--carry", is_flag=True, help="Take along what stands on it or is inside it.")
+    carry = click.option("--carry", is_flag=True, help="Also move the objects on it and inside it.")
     return carry(leave(function))
 
 
 def drop_unset(fields: dict[str, Any]) -> dict[str, Any]:
-    """The options that were given; 0 is a value, though it equals False."""
+    """Return the options that were set. Zero is a value, although it equals False."""
     return {
         name: value
         for name, value in fields.items()
@@ -254,28 +253,28 @@ def drop_unset(fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def print_error(text: str) -> None:
-    """What is wrong, in one line on stderr."""
+    """Print an error, a warning or a note to stderr in one line."""
     print_escaped(f"semmap: {' '.join(text.split())}", file=sys.stderr)
 
 
 def _strip_prefix(text: str) -> str:
-    """A user knows of no message."""
+    """Remove the prefix of decoding errors: a user of the command line did not write a message."""
     return text.removeprefix("malformed message: ")
 
 
-def _missing_values(error: click.BadOptionUsage, app: click.Command, verb: str) -> str:
-    """What an option of several values takes that was given fewer; click does not say of which command."""
-    command = app.get_command(click.Context(app), verb) if isinstance(app, click.Group) else app
+def _missing_values(error: click.BadOptionUsage, app: click.Command, name: str) -> str:
+    """Return the error text for an option with too few values. Click does not report the command."""
+    command = app.get_command(click.Context(app), name) if isinstance(app, click.Group) else app
     for option in command.params if command is not None else ():
         if option.nargs > 1 and error.option_name in option.opts:
             values = f"{error.option_name} {option.metavar}"
-            return f"{error.option_name} takes {option.nargs} values, with spaces between: {values}"
+            return f"{error.option_name} requires {option.nargs} values, separated by spaces: {values}"
     return error.format_message()
 
 
 def _unknown_option(error: click.NoSuchOption) -> str:
-    """Which option may have been meant: `--format json` for `--json`."""
-    text = f"there is no option '{error.option_name}'"
+    """Return the error text for an unknown option, with a suggestion: `--format json` for `--json`."""
+    text = f"unknown option '{error.option_name}'"
     options = [p for p in error.ctx.command.params if isinstance(p, click.Option)] if error.ctx else []
     word = error.option_name.lstrip("-")
     for option in options:

@@ -1,6 +1,6 @@
-"""Completion of the command line in a shell: verbs and options by click, and names by asking the system.
+"""Completion of the command line in a shell: commands and options by click, names by querying the system.
 
-A system that does not answer at once has nothing to complete with; nothing is ever said of that.
+If the system does not respond in time, there are no completions and no error message.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _VARIABLE = "_SEMMAP_COMPLETE"
 
 
 def script(app: click.Command, shell: str) -> str:
-    """What a shell must evaluate so that it completes `semmap`."""
+    """Return the script that a shell evaluates to complete `semmap`."""
     found = get_completion_class(shell)
     if found is None:
         raise errors.InternalError(f"no completion for the shell '{shell}'")
@@ -30,7 +30,7 @@ def _completer(
     kind: Literal["entities", "classes"],
 ) -> Callable[[click.Context, click.Parameter, str], list[CompletionItem]]:
     def complete(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
-        from semmap.nodes.extern.cli import known_names  # most words are completed without asking
+        from semmap.nodes.extern.cli import known_names  # most words are completed without a query
 
         with suppress(errors.SemmapError):
             found = known_names.KINDS[kind](context.params.get("where"))
@@ -42,6 +42,6 @@ def _completer(
 
 
 entity_names = _completer("entities")
-"""For a parameter that names an entity."""
+"""The completion of a parameter that names an entity."""
 class_names = _completer("classes")
-"""For a parameter that names a class of things in space."""
+"""The completion of a parameter that names a class of objects or places."""

@@ -139,4 +139,4 @@ def test_what_no_robot_can_be_called(two_robots, name):
 
 def test_robots_and_namespace_exclude_one_another(two_robots):
     said = two_robots[0].cli("list", "--robots", "*", "--namespace", "arm1", status=2)
-    assert "give either --robots or --namespace" in said
+    assert "--robots and --namespace exclude each other" in said

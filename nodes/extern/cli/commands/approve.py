@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import print_json, print_lines, with_client
 from semmap.nodes.extern.cli.output.printable import escaped, quoted
 from semmap.schemas import errors
@@ -20,7 +21,7 @@ _FEW = 4
 _A_NAME = re.compile(r"[\w./@-]{1,100}")
 
 
-@click.command()
+@command(example="semmap approve 3")
 @click.argument("number", type=int, required=False)
 @click.option("--reject", is_flag=True, help="Reject it instead.")
 @click.option("--all", "all_", is_flag=True, help="With --reject: reject all that wait.")

@@ -10,6 +10,7 @@ from typing import Any, Final, NoReturn
 
 import click
 
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.commands.edit import set_, unset, update
 from semmap.nodes.extern.cli.common import print_lines, with_client
 from semmap.nodes.extern.cli.output import lines
@@ -22,7 +23,7 @@ from semmap.schemas.commands import Command, Set, Unset, Update
 _VERBS: Final[dict[str, click.Command]] = {"update": update, "set": set_, "unset": unset}
 
 
-@click.command()
+@command(example='semmap batch changes.txt --reason "tidy up"')
 @click.argument("file", type=click.Path(path_type=Path, allow_dash=True))
 @click.option("--reason", default="", metavar="TEXT", help="Why, for the history.")
 @click.option("--id", "id", default="", metavar="ID", help="Command id; a batch sent twice is executed once.")

@@ -5,9 +5,10 @@ from __future__ import annotations
 import click
 
 from semmap.nodes.extern.cli import shell_completion
+from semmap.nodes.extern.cli.command import command
 
 
-@click.command()
+@command(example="semmap completion bash")
 @click.argument("shell", type=click.Choice(shell_completion.SHELLS))
 def completion(shell: str) -> None:
     r"""Print what a shell needs to complete what you type.

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from semmap.nodes.extern.cli.angles import yaw_option
+from semmap.nodes.extern.cli.command import NegativeNumbers, command
 from semmap.nodes.extern.cli.common import (
     carry_options,
     drop_unset,
@@ -18,7 +19,6 @@ from semmap.nodes.extern.cli.common import (
     vector_option,
     with_client,
 )
-from semmap.nodes.extern.cli.negative_numbers import NegativeNumbers
 from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
 from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.cli.output.printable import print_escaped
@@ -64,7 +64,7 @@ _describing = _options(
 )
 
 
-@click.command()
+@command(example='semmap add Cup cup1 --at 2.5 1 0.75 --ref "coffee cup"')
 @click.argument("class_", metavar="CLASS", shell_complete=class_names)
 @click.argument("name", required=False)
 @_describing
@@ -83,7 +83,7 @@ def add(client: Client, **fields: Any) -> None:
     print_lines(lines.changed(client.add(**drop_unset(fields))))
 
 
-@click.command()
+@command(example="semmap update cup1 --at 2.5 1 0.75 --yaw 90deg")
 @click.argument("name", shell_complete=entity_names)
 @_describing
 @click.option("--class", "class_", metavar="CLASS", shell_complete=class_names)
@@ -108,7 +108,7 @@ def update(client: Client, **fields: Any) -> None:
     print_lines(lines.changed(client.update(**drop_unset(fields))))
 
 
-@click.command("set", cls=NegativeNumbers)
+@command("set", example="semmap set door1 isOpen true", cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.argument("property", metavar="PROPERTY")
 @click.argument("values", metavar="VALUE...", nargs=-1, required=True)
@@ -126,7 +126,7 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
     print_lines(lines.changed(client.set(name, property, *values, **_drop_none(fields))))
 
 
-@click.command(cls=NegativeNumbers)
+@command(example="semmap unset cup1 hasColor", cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.argument("property", metavar="PROPERTY")
 @click.argument("value", required=False)
@@ -139,7 +139,7 @@ def unset(client: Client, **fields: Any) -> None:
     print_lines(lines.changed(client.unset(**_drop_none(fields))))
 
 
-@click.command()
+@command(example="semmap track robot1 --from stream")
 @click.argument("name", shell_complete=entity_names)
 @click.option(
     "--from",
@@ -161,7 +161,7 @@ def track(client: Client, **fields: Any) -> None:
     print_lines(lines.changed(client.track(**drop_unset(fields))))
 
 
-@click.command()
+@command(example="semmap remove cup1 cup2")
 @click.argument("names", nargs=-1, required=True, shell_complete=entity_names)
 @_dry_run
 @with_client
@@ -170,7 +170,7 @@ def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
     print_lines(lines.changed(client.remove(*names, dry_run=dry_run)))
 
 
-@click.command()
+@command(example="semmap clear --dry-run")
 @_dry_run
 @with_client
 def clear(client: Client, dry_run: bool) -> None:
@@ -182,7 +182,7 @@ def clear(client: Client, dry_run: bool) -> None:
     print_lines(lines.changed(reply))
 
 
-@click.command()
+@command(example="semmap load demo/flat.ttl --replace")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--replace", is_flag=True, help="Replace the present entities.")
 @click.option("--skip-unknown", is_flag=True, help="Skip entities of unknown classes.")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from semmap.nodes.extern.cli.command import group
 from semmap.nodes.extern.cli.commands import sparql_output
 from semmap.nodes.extern.cli.common import connect_option, identity_option, print_json
 from semmap.nodes.extern.cli.output.printable import print_escaped
@@ -26,12 +27,12 @@ _robots = click.option(
 _query_url = functools.partial(click.option, "--sparql-query", "query_url", metavar="URL")
 
 
-@click.group()
+@group(example="semmap fleet mirror --sparql-update http://127.0.0.1:7878/update")
 def fleet() -> None:
     """Mirror robots' maps into a SPARQL server, and ask there."""
 
 
-@fleet.command()
+@fleet.command(example="semmap fleet mirror --sparql-update http://127.0.0.1:7878/update")
 @click.option(
     "--sparql-update", "update_url", metavar="URL", required=True, help="The server's update endpoint."
 )
@@ -74,7 +75,9 @@ def mirror(
     running.run(once=once)
 
 
-@fleet.command("sparql")
+@fleet.command(
+    "sparql", example='semmap fleet sparql --sparql-query http://server/query "ASK { ?c a dm:Cup }"'
+)
 @click.argument("query")
 @_query_url(required=True, help="The server's query endpoint.")
 @_robots

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from semmap.nodes.extern.cli import output
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import drop_unset, print_error, print_json, with_client
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import entity_names
@@ -76,7 +77,7 @@ _OPTIONS = ("every", "within", "rgb_topic", "depth_topic", "base", "intrinsics")
 _SUFFIXES = (".bag", ".db3", ".mcap")
 
 
-@click.command()
+@command(example="semmap frames robot1")
 @click.argument("name", metavar="[NAME | RECORDING DIR]", required=False, shell_complete=entity_names)
 @click.argument("folder", metavar="", required=False, type=click.Path(path_type=Path))
 @click.option("--format", "format", type=click.Choice(["tree", "json"]), help="[default: tree]")

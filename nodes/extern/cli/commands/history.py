@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import click
 
 from semmap.nodes.extern.cli import output
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import TIME, print_json, print_lines, with_client
 from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.cli.shell_completion import entity_names
@@ -28,7 +29,7 @@ _PIPED_WIDTH = 120
 """Columns: what commits change may be a long story."""
 
 
-@click.command()
+@command(example="semmap history cup1 --since 12:30")
 @click.argument("name", required=False, shell_complete=entity_names)
 @click.option("--since", metavar="COMMIT|TIME", help="Commits from here on, inclusive.")
 @click.option("--until", metavar="COMMIT|TIME", help=f"Commits up to here, inclusive. {TIME}")
@@ -50,7 +51,7 @@ def history(
     print(f"{len(commits)} {'commit' if len(commits) == 1 else 'commits'}")
 
 
-@click.command("last-seen")
+@command("last-seen", example="semmap last-seen cup1")
 @click.argument("name", shell_complete=entity_names)
 @_format
 @with_client
@@ -67,7 +68,7 @@ def last_seen(client: Client, name: str, format: str) -> None:
         output.show.console().print(output.show_past.sighting_card(sighting))
 
 
-@click.command()
+@command(example="semmap diff 12:30")
 @click.argument("since", metavar="COMMIT|TIME")
 @click.argument("until", metavar="[COMMIT|TIME]", required=False)
 @_text_or_json
@@ -84,7 +85,7 @@ def diff(client: Client, since: str, until: str | None, format: str) -> None:
         print_lines(lines.difference(found))
 
 
-@click.command()
+@command(example="semmap when cup1 isOn table1")
 @click.argument("name", shell_complete=entity_names)
 @click.argument("relation", metavar="RELATION", type=click.Choice(get_args(KeptRelation)))
 @click.argument("other", shell_complete=entity_names)
@@ -105,7 +106,7 @@ def when(client: Client, name: str, relation: Any, other: str, format: str) -> N
         sys.exit(errors.Refused.exit_status)
 
 
-@click.command()
+@command(example="semmap undo --dry-run")
 @click.argument("commit", type=int, required=False)
 @click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
 @with_client

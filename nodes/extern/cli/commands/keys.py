@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from semmap.nodes.extern.cli.command import group
 from semmap.nodes.extern.cli.output import show
 from semmap.nodes.extern.cli.output.tables import table
 from semmap.nodes.identity.register import Member, Register
@@ -30,13 +31,13 @@ _host = click.option(
 )
 
 
-@click.group()
+@group(example="semmap keys init keys --host robot1.local")
 def keys() -> None:
     """Make, renew and revoke the certificates of a secure system."""
     extras.require("semmap keys", "keys")
 
 
-@keys.command()
+@keys.command(example="semmap keys init keys --host robot1.local")
 @click.argument("folder", type=_path, default=Path("keys"))
 @_host
 @_days
@@ -54,7 +55,7 @@ def init(folder: Path, hosts: tuple[str, ...], days: int) -> None:
     click.echo(f"start:        semmap up --secure {folder}")
 
 
-@keys.command()
+@keys.command(example="semmap keys add ann --role operator")
 @click.argument("name")
 @click.option("--role", type=click.Choice(ROLES), required=True, help="What NAME may do.")
 @_folder
@@ -70,7 +71,7 @@ def add(name: str, role: Role, folder: Path, days: int) -> None:
     click.echo(f"use it: semmap status --identity {folder / name}")
 
 
-@keys.command()
+@keys.command(example="semmap keys renew ann --days 365")
 @click.argument("name")
 @click.option("--role", type=click.Choice(ROLES), help="What NAME may do from now on. Default: as before.")
 @_host
@@ -86,7 +87,7 @@ def renew(name: str, role: Role | None, hosts: tuple[str, ...], folder: Path, da
     _told("renewed", folder, authority.renew(folder, name, hosts, days, role))
 
 
-@keys.command()
+@keys.command(example="semmap keys revoke ann")
 @click.argument("name")
 @_folder
 def revoke(name: str, folder: Path) -> None:
@@ -100,7 +101,7 @@ def revoke(name: str, folder: Path) -> None:
     click.echo(f"revoked {member.name} ({member.role}); the name is not given again")
 
 
-@keys.command("list")
+@keys.command("list", example="semmap keys list --dir keys")
 @_folder
 def list_(folder: Path) -> None:
     """Show who has a certificate, in which role and until when."""
@@ -112,7 +113,7 @@ def list_(folder: Path) -> None:
     show.console().print(rows)
 
 
-@keys.command()
+@keys.command(example="semmap keys zenohd --listen tls/0.0.0.0:7447")
 @_folder
 @click.option(
     "--listen",

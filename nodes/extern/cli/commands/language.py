@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from semmap.nodes.extern.cli.angles import from_pose
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import print_error, print_json, print_lines, with_client
 from semmap.nodes.extern.cli.output import lines, lu4r
 from semmap.nodes.extern.cli.shell_completion import entity_names
@@ -26,7 +27,7 @@ _WHY: Final[dict[Mood, str]] = {
 }
 
 
-@click.command()
+@command(example="semmap tell kitchen1 --words 50")
 @click.argument("name", required=False, shell_complete=entity_names)
 @click.option(
     "--words",
@@ -50,7 +51,7 @@ def tell(client: Client, name: str | None, words: int, format: str) -> None:
         print_lines(textwrap.wrap(found.text, width) if sys.stdout.isatty() else [found.text])
 
 
-@click.command()
+@command(example='semmap find "the red cup on the kitchen table"')
 @click.argument("text")
 @click.option(
     "--from", "viewer", metavar="VIEWER", help="Who looks: for left of, behind, the second from the left ..."
@@ -74,7 +75,7 @@ def find(client: Client, text: str, format: str, **fields: Any) -> None:
         sys.exit(errors.Refused.exit_status)
 
 
-@click.command()
+@command(example='semmap understand "take the bottle from the table"')
 @click.argument("text")
 @click.option(
     "--format",

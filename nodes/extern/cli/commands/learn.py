@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import (
     connect_option,
     identity_option,
@@ -55,7 +56,7 @@ def _where(function: Callable[..., None]) -> Callable[..., None]:
     return with_options
 
 
-@click.command()
+@command(example="semmap learn Cup --frames frames/mug")
 @click.argument("class_", metavar="CLASS", shell_complete=class_names)
 @click.option("--frames", metavar="DIR", type=_path, help="Folders of frames, as perceive --frames has them.")
 @click.option("--entity", metavar="NAME", shell_complete=entity_names, help="What perception sees there now.")
@@ -112,7 +113,7 @@ def learn(
     print_escaped(f"learned {told.class_} from {told.shown} ({size} m); to undo: semmap forget {told.number}")
 
 
-@click.command()
+@command(example="semmap learned")
 @_where
 def learned(data: Path | None, format: str, **system: Any) -> None:
     """List what perception was shown."""
@@ -134,7 +135,7 @@ def learned(data: Path | None, format: str, **system: Any) -> None:
     show.console().print(rows)
 
 
-@click.command()
+@command(example="semmap forget 3")
 @click.argument("number", type=click.IntRange(min=1))
 @_where
 def forget(number: int, data: Path | None, format: str, **system: Any) -> None:

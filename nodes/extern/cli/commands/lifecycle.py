@@ -14,6 +14,7 @@ import click
 from msgspec import structs
 
 from semmap.nodes import bus
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import print_error
 from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
 from semmap.nodes.extern.cli.output.printable import print_escaped
@@ -203,7 +204,7 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     return with_settings
 
 
-@click.command()
+@command(example="semmap up --data maps/flat --world scene.xml --web")
 @settings_options
 def up(settings: Settings) -> None:
     """Start the system in the foreground; Ctrl-C stops it."""
@@ -218,7 +219,7 @@ def up(settings: Settings) -> None:
     run_up(settings, say=print_escaped)
 
 
-@click.command()
+@command(example="semmap down --data maps/flat")
 @click.option("--data", type=_path, default=None, help="Data folder of the system.")
 @click.option("--connect", envvar=CONNECT_VARIABLE, metavar="EP", help="Endpoint that the system listens on.")
 def down(data: Path | None, connect: str | None) -> None:
@@ -237,7 +238,7 @@ def down(data: Path | None, connect: str | None) -> None:
     click.echo("stopped")
 
 
-@click.command()
+@command(example="semmap repair --data maps/flat")
 @click.option("--data", type=_path, default=None, help="Data folder of the map; its system must be stopped.")
 @click.option("--tbox", type=_path, default=None, help="TBox file to use if the stored one is damaged, too.")
 def repair(data: Path | None, tbox: Path | None) -> None:
@@ -251,7 +252,7 @@ def repair(data: Path | None, tbox: Path | None) -> None:
     click.echo(repair_journal((data or default_data()).resolve(), print_error, tbox=tbox))
 
 
-@click.command()
+@command(example="semmap node sim_node --connect tcp/192.168.1.10:7447")
 @click.argument("name", type=click.Choice((*NODES, ROUTER)))
 @settings_options
 def node(name: str, settings: Settings) -> None:

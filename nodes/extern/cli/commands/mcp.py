@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import with_client
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.runtime import extras
@@ -36,7 +37,7 @@ def _names(_: click.Context, __: click.Parameter, said: str | None) -> frozenset
     return frozenset(filter(None, (word.strip() for word in (said or "").split(","))))
 
 
-@click.command()
+@command(example="semmap mcp --allow change --places kitchen1 --approve")
 @click.option("--allow", type=click.Choice(["change"]), help="Let agents change the map, too.")
 @click.option(
     "--classes", callback=_names, metavar="CLASSES", help="Only entities of these, such as Cup,Book."

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import TIME, connect_option, identity_option, namespace_option
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.runtime import rhythm
@@ -17,7 +18,7 @@ _path = click.Path(path_type=Path)
 _SIZE, _FPS = (960, 640), 20
 
 
-@click.command()
+@command(example="semmap movie morning.mp4 --since 08:00 --until 09:00 --speed 10")
 @click.argument("file", type=_path)
 @click.option("--since", metavar="COMMIT|TIME", help="Begin with the map as it was then. Default: the first.")
 @click.option("--until", metavar="COMMIT|TIME", help=f"End with the map as it was then. Default: now. {TIME}")

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from semmap.nodes.extern.cli.command import NegativeNumbers, command
 from semmap.nodes.extern.cli.common import print_json, with_client
-from semmap.nodes.extern.cli.negative_numbers import NegativeNumbers
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import entity_names
 from semmap.schemas.plans import HEIGHTS_M, RADIUS_M
@@ -29,7 +29,7 @@ _height_range = click.option(
 )
 
 
-@click.command()
+@command(example="semmap floorplan flat.png --resolution 0.05")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option(
     "--resolution", type=float, default=0.05, show_default=True, metavar="M", help="Metres a pixel."
@@ -51,7 +51,7 @@ def floorplan(client: Client, file: Path, no_furniture: bool, **how: Any) -> Non
         print_escaped(f"wrote {path}")
 
 
-@click.command(cls=NegativeNumbers)
+@command(example="semmap route bedroom1 kitchen1 --radius 0.3", cls=NegativeNumbers)
 @click.argument("start", metavar="FROM", shell_complete=entity_names)
 @click.argument("end", metavar="TO", shell_complete=entity_names)
 @click.option(

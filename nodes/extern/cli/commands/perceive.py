@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import print_error, print_json
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.output.show import console
@@ -38,7 +39,7 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
     return click.option(name, *also, metavar=metavar, type=click.Path(path_type=Path), help=help)
 
 
-@click.command()
+@command(example="semmap perceive --frames recording --format json")
 @click.argument("files", metavar="[FILE...]", nargs=-1, type=click.Path(path_type=Path))
 @_path_option(
     "--frames",

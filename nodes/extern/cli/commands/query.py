@@ -12,6 +12,7 @@ import click
 
 from semmap.nodes.extern.cli import output
 from semmap.nodes.extern.cli.angles import from_pose
+from semmap.nodes.extern.cli.command import NegativeNumbers, command
 from semmap.nodes.extern.cli.commands import robots as of_robots
 from semmap.nodes.extern.cli.commands import sparql_output
 from semmap.nodes.extern.cli.common import (
@@ -23,7 +24,6 @@ from semmap.nodes.extern.cli.common import (
     supports_robots,
     with_client,
 )
-from semmap.nodes.extern.cli.negative_numbers import NegativeNumbers
 from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.cli.output.formats import FORMATS
 from semmap.nodes.extern.cli.output.printable import print_escaped
@@ -41,7 +41,7 @@ _STATUS_S = 20.0
 """Seconds: whoever asks how things stand is told of a system that is too busy to say."""
 
 
-@click.command("list")
+@command("list", example="semmap list --class Cup --on table1")
 @click.option(
     "--class",
     "class_",
@@ -101,7 +101,7 @@ def _left_out(client: Client, words: Iterable[str]) -> Iterator[str]:
             yield f"  note: not listed is what would contradict the map, about {word}; semmap check tells why"
 
 
-@click.command()
+@command(example="semmap get cup1")
 @click.argument("name", shell_complete=entity_names)
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @_as_of
@@ -118,7 +118,7 @@ def get(client: Client, name: str, format: str, as_of: str | None, frame: str | 
         output.show.console().print(output.show.entity_card(entity, labels))
 
 
-@click.command()
+@command(example="semmap check")
 @click.option("--engine", type=click.Choice(["semmap", "owlrl"]), default="semmap", show_default=True)
 @with_client
 def check(client: Client, engine: Any) -> None:
@@ -131,7 +131,7 @@ def check(client: Client, engine: Any) -> None:
         sys.exit(errors.Inconsistent.exit_status)
 
 
-@click.command()
+@command(example="semmap infer cup1")
 @click.argument("name", required=False, shell_complete=entity_names)
 @with_client
 def infer(client: Client, name: str | None) -> None:
@@ -139,7 +139,7 @@ def infer(client: Client, name: str | None) -> None:
     print_lines(lines.inferred(client.infer(name)))
 
 
-@click.command(cls=NegativeNumbers)
+@command(example="semmap explain cup1 isLocatedIn kitchen1", cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.argument("predicate")
 @click.argument("value")
@@ -159,7 +159,7 @@ def explain(client: Client, name: str, predicate: str, value: str, negated: bool
         print_lines(lines.explanation(explanation))
 
 
-@click.command(cls=NegativeNumbers)
+@command(example="semmap could milk1 isInside oven1", cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.argument("predicate")
 @click.argument("value")
@@ -180,7 +180,7 @@ def could(client: Client, name: str, predicate: str, value: str, format: str) ->
         sys.exit(errors.Inconsistent.exit_status)
 
 
-@click.command()
+@command(example="semmap relations cup1 --from person1")
 @click.argument("name", shell_complete=entity_names)
 @click.argument("other", required=False, shell_complete=entity_names)
 @click.option("--from", "viewer", metavar="ENTITY", help="Also left of, behind ... as seen from there.")
@@ -211,7 +211,7 @@ def _beside_nothing(client: Client, name: str) -> str:
     return f"{name} is on, in and near nothing"
 
 
-@click.command()
+@command(example="semmap export map.ttl --inferred")
 @click.argument("file", type=click.Path(path_type=Path))
 @_format(type=click.Choice(commands.RDF_FORMATS), help="Default: by the file's suffix, else rdfxml.")
 @click.option("--inferred", is_flag=True, help="Include inferred facts.")
@@ -224,7 +224,7 @@ def export(client: Client, file: Path, format: Any, inferred: bool, as_of: str |
     print(f"wrote {document.triples} triples to {file} (commit {document.seq})")
 
 
-@click.command()
+@command(example="semmap classes")
 @_format(type=click.Choice(["tree", "json"]), default="tree", show_default=True)
 @with_client
 def classes(client: Client, format: str) -> None:
@@ -235,7 +235,7 @@ def classes(client: Client, format: str) -> None:
         output.show.console().print(output.show.class_tree(client.classes()))
 
 
-@click.command()
+@command(example="semmap properties --format json")
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @with_client
 def properties(client: Client, format: str) -> None:
@@ -247,7 +247,7 @@ def properties(client: Client, format: str) -> None:
         output.show.console().print(output.show.property_table(found))
 
 
-@click.command()
+@command(example="semmap status")
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @supports_robots(of_robots.status)
 @with_client
@@ -263,7 +263,7 @@ def status(client: Client, format: str) -> None:
     print_lines(output.show.status_notes(status))
 
 
-@click.command()
+@command(example='semmap sparql "SELECT ?cup { ?cup a dm:Cup }" --inferred')
 @click.argument("query")
 @click.option("--inferred", is_flag=True, help="Query inferred facts, too.")
 @_format(
@@ -298,7 +298,7 @@ def sparql(client: Client, query: str, **options: Any) -> None:
     sparql_output.ask(client, query, **options)
 
 
-@click.command()
+@command(example="semmap watch --in kitchen1 --class Cup")
 @click.argument("keyexpr", default=keys.COMMIT.key)
 @click.option("--sparql", "query", metavar="QUERY", help="Watch the rows of a SELECT query instead.")
 @click.option("--inferred", is_flag=True, help="With --sparql: query inferred facts, too.")

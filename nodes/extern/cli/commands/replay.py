@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import (
     TIME,
     connect_option,
@@ -21,7 +22,7 @@ from semmap.schemas import errors
 _path = click.Path(path_type=Path)
 
 
-@click.command()
+@command(example="semmap replay maps/flat --since 08:00 --speed 10")
 @click.argument("what", metavar="FILE.rrd|DATA_DIR", type=_path)
 @click.option("--since", metavar="COMMIT|TIME", help="Begin with the map as it was then. Default: the first.")
 @click.option("--until", metavar="COMMIT|TIME", help=f"End with the map as it was then. Default: now. {TIME}")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import TIME, with_client
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.runtime import extras
@@ -30,7 +31,7 @@ def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
     return checked
 
 
-@click.command()
+@command(example="semmap ros --router tcp/127.0.0.1:7447 --domain 0")
 @click.option(
     "--router",
     default="tcp/127.0.0.1:7447",
@@ -97,7 +98,7 @@ def ros(
     run(client.session, client.prefix, config, lambda text: print_escaped(text, file=sys.stderr))
 
 
-@click.command()
+@command(example="semmap mcap morning.mcap --since 08:00 --until 09:00")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--since", metavar="COMMIT|TIME", help=f"Where the span begins. {TIME}")
 @click.option("--until", metavar="COMMIT|TIME", help="Where it ends. Default: now.")

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import (
     connect_option,
     identity_option,
@@ -27,7 +28,7 @@ _BY_THEMSELVES = frozenset(
 )
 
 
-@click.command()
+@command(example="semmap run requests.txt --keep-going")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--keep-going", is_flag=True, help="Continue after a failed request.")
 @connect_option

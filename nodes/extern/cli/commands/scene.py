@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from semmap.nodes.extern.cli.angles import yaw_option
+from semmap.nodes.extern.cli.command import NegativeNumbers, command
 from semmap.nodes.extern.cli.common import (
     carry_options,
     drop_unset,
@@ -16,7 +17,6 @@ from semmap.nodes.extern.cli.common import (
     vector_option,
     with_client,
 )
-from semmap.nodes.extern.cli.negative_numbers import NegativeNumbers
 from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import entity_names
@@ -34,7 +34,7 @@ _WAIT = click.option(
 )
 
 
-@click.command()
+@command(example="semmap move cup1 --at 2.5 1 0.75")
 @click.argument("name", shell_complete=entity_names)
 @vector_option("--at", metavar="X Y Z", required=True, help="Where to put it: bottom centre [m].")
 @frame_option("The frame of --at and --yaw, instead of the map's")
@@ -50,7 +50,7 @@ def move(client: Client, wait: bool, **fields: Any) -> None:
     print_lines(lines.moved(client.move(**drop_unset(fields), wait=wait)))
 
 
-@click.command(cls=NegativeNumbers)
+@command(example="semmap attach cup1 --to robot1_gripper", cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.option(
     "--to", required=True, metavar="HOLDER", help="What is to hold it, such as a gripper or a tray."
@@ -70,7 +70,7 @@ def attach(client: Client, **fields: Any) -> None:
     print_lines(lines.changed(client.attach(**drop_unset(fields))))
 
 
-@click.command()
+@command(example="semmap detach cup1")
 @click.argument("name", shell_complete=entity_names)
 @click.option("--dry-run", is_flag=True, help="Only say what would be.")
 @with_client
@@ -85,7 +85,7 @@ def detach(client: Client, name: str, dry_run: bool) -> None:
 _JOINT = click.option("--joint", metavar="JOINT", help="Only this one of its doors, drawers or switches.")
 
 
-@click.command("open")
+@command("open", example="semmap open fridge1 --to 0.5")
 @click.argument("name", shell_complete=entity_names)
 @click.option("--to", type=float, default=1.0, help="How far, from 0 to 1.  [default: 1]")
 @_JOINT
@@ -99,7 +99,7 @@ def open_(client: Client, name: str, to: float, joint: str | None, wait: bool) -
     print_lines(lines.moved(client.open(name, to=to, joint=joint, wait=wait)))
 
 
-@click.command()
+@command(example="semmap close fridge1")
 @click.argument("name", shell_complete=entity_names)
 @_JOINT
 @_WAIT
@@ -112,7 +112,7 @@ def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
     print_lines(lines.moved(client.close(name, joint=joint, wait=wait)))
 
 
-@click.command(cls=NegativeNumbers)
+@command(example="semmap drive robot1 --to 2 1 --to 4 1.5 --yaw 90deg", cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.option(
     "--to",
@@ -136,7 +136,7 @@ def drive(client: Client, wait: bool, **fields: Any) -> None:
     print_lines(lines.moved(client.drive(**drop_unset(fields), wait=wait)))
 
 
-@click.command()
+@command(example="semmap pause")
 @click.option("--off/--on", "off", default=False, help="Resume time, or stop it.  [default: on]")
 @with_client
 def pause(client: Client, off: bool) -> None:
@@ -144,7 +144,7 @@ def pause(client: Client, off: bool) -> None:
     print_escaped(client.pause(off=off).text)
 
 
-@click.command(cls=NegativeNumbers)
+@command(example="semmap step 0.5", cls=NegativeNumbers)
 @click.argument("seconds", type=float, default=0.1)
 @with_client
 def step(client: Client, seconds: float) -> None:
@@ -152,7 +152,7 @@ def step(client: Client, seconds: float) -> None:
     print_escaped(client.step(seconds).text)
 
 
-@click.command()
+@command(example="semmap reset")
 @with_client
 def reset(client: Client) -> None:
     """Put every body where the map says it stands.
@@ -162,7 +162,7 @@ def reset(client: Client) -> None:
     print_escaped(client.reset().text)
 
 
-@click.command()
+@command(example="semmap picture kitchen.png --place kitchen1 --labels")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--camera", metavar="NAME", help="A camera of the world; default: an overview from above.")
 @click.option("--place", metavar="NAME", help="Only this place, from above.")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import print_error, print_json, with_client
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.restore import restore as restore_map
@@ -20,7 +21,7 @@ _format = click.option(
 )
 
 
-@click.command()
+@command(example="semmap backup flat.backup")
 @click.argument("file", type=_path)
 @click.option("--overwrite", is_flag=True, help="Replace FILE if it exists.")
 @_format
@@ -39,7 +40,7 @@ def backup(client: Client, file: Path, overwrite: bool, format: str) -> None:
     print_escaped(f"map {opening.map_id[:12]} up to commit {opening.last}, {size:,.1f} MB, verified: {file}")
 
 
-@click.command()
+@command(example="semmap restore flat.backup --data maps/restored")
 @click.argument("file", type=_path)
 @click.option("--data", type=_path, required=True, help="Data folder to restore the map to.")
 @click.option("--replace", is_flag=True, help="Move a map that is there to DIR/kept.")
@@ -51,7 +52,7 @@ def restore(file: Path, data: Path, replace: bool) -> None:
     print_escaped(restore_map(file, data, replace=replace, tell=print_error).text)
 
 
-@click.command()
+@command(example="semmap compact --keep 30d --dry-run")
 @click.option(
     "--keep", default="30d", show_default=True, metavar="AGE", help="Keep commits younger than 12h, 30d, ..."
 )

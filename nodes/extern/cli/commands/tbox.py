@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from semmap.nodes.extern.cli.command import group
 from semmap.nodes.extern.cli.common import print_json, print_lines
 from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
 from semmap.nodes.extern.cli.output import show_tbox
@@ -14,12 +15,12 @@ from semmap.nodes.runtime import extras
 from semmap.schemas import errors
 
 
-@click.group()
+@group(example="semmap tbox check household.ttl")
 def tbox() -> None:
     """Look at ontologies, without a running system."""
 
 
-@tbox.command()
+@tbox.command(example="semmap tbox check household.ttl")
 @click.argument("files", type=click.Path(path_type=Path), nargs=-1, required=True)
 @import_option
 @spatial_root_option

@@ -6,6 +6,7 @@ import os
 
 import click
 
+from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import connect_option, identity_option, namespace_option, print_error
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.runtime import extras
@@ -17,7 +18,7 @@ _PORT = 8080
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 
-@click.command()
+@command(example="semmap web --port 8080")
 @click.option(
     "--port",
     type=click.IntRange(0, 65_535),

@@ -2,7 +2,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from semmap.nodes.extern.cli.negative_numbers import NegativeNumbers
+from semmap.nodes.extern.cli.command import NegativeNumbers
 
 
 @click.command(cls=NegativeNumbers, context_settings={"help_option_names": ["-h", "--help"]})
