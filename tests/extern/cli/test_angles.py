@@ -32,4 +32,4 @@ def test_what_is_no_angle(text):
 
 def test_who_writes_degrees_without_a_unit_is_told_how_they_are_read(capsys):
     assert ANGLE.convert("90", None, None) == 90.0
-    assert "90 is read as radians, which is 116.6°; for degrees write 90deg" in capsys.readouterr().err
+    assert "90 is read as radians (116.6°); for degrees use 90deg" in capsys.readouterr().err

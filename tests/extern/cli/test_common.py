@@ -22,11 +22,11 @@ def test_zero_is_given():
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--at", "1,2,3"], "--at takes 3 values, with spaces between: --at X Y Z"),
-        (["--at", "1", "2"], "--at takes 3 values, with spaces between: --at X Y Z"),
+        (["--at", "1,2,3"], "--at requires 3 values, separated by spaces: --at X Y Z"),
+        (["--at", "1", "2"], "--at requires 3 values, separated by spaces: --at X Y Z"),
         (
             ["--at", "1m", "2m", "0"],
-            "Invalid value for '--at': '1m' is not a number; write metres without a unit",
+            "Invalid value for '--at': '1m' is not a number; use metres without a unit",
         ),
         (["--ref"], "Option '--ref' requires an argument."),
     ],

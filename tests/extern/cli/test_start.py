@@ -62,10 +62,10 @@ def test_a_verb_imports_only_what_it_needs(words, needless):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("list", "--json"), "there is no option '--json'; did you mean --format json?"),
-        (("sparql", "ASK {}", "--csv"), "there is no option '--csv'; did you mean --format csv?"),
-        (("list", "--clas"), "there is no option '--clas'; did you mean --class?"),
-        (("status", "--xyz"), "there is no option '--xyz'; see: --help"),
+        (("list", "--json"), "unknown option '--json'; did you mean --format json?"),
+        (("sparql", "ASK {}", "--csv"), "unknown option '--csv'; did you mean --format csv?"),
+        (("list", "--clas"), "unknown option '--clas'; did you mean --class?"),
+        (("status", "--xyz"), "unknown option '--xyz'; see: --help"),
     ],
 )
 def test_an_unknown_option_says_which_one_may_be_meant(words, said, capsys):
