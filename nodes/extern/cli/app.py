@@ -1,6 +1,7 @@
 """The entry point of the command line, `semmap`.
 
-It imports the commands only when it is called, so that Ctrl-C during the start also ends it without a traceback.
+It imports the commands only when it is called, so that Ctrl-C during the start also ends it without a
+traceback.
 """
 
 from __future__ import annotations

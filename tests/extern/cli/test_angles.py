@@ -25,8 +25,8 @@ def test_radians_or_degrees(text, radians, capsys):
 
 
 @pytest.mark.parametrize("text", ["", "ninety", "90 degrees", "nan", "1.5.7", "deg"])
-def test_what_is_no_angle(text):
-    with pytest.raises(click.BadParameter, match=r"write radians \(1.57\) or degrees \(90deg\)"):
+def test_another_text_is_an_error(text):
+    with pytest.raises(click.BadParameter, match=r"use radians \(1.57\) or degrees \(90deg\)"):
         ANGLE.convert(text, None, None)
 
 

@@ -78,7 +78,7 @@ BAD = [
     (("load", "nowhere.owl"), 2, "there is no file nowhere.owl"),
     (("load", "/"), 2, "is a directory"),
     (("export", "/nowhere/map.owl"), 2, "cannot be written"),
-    (("export", "map.foo"), 2, "cannot tell the format of map.foo"),
+    (("export", "map.foo"), 2, "map.foo: unknown suffix"),
     (("undo", "9" * 30), 2, "commit"),
     (("run", "nowhere.txt"), 2, "there is no file"),
     (("watch", "semmap//x"), 2, "is not a valid key expression"),

@@ -48,7 +48,7 @@ def test_its_help_ends_with_an_example_that_begins_with_the_command(name, comman
 @pytest.mark.parametrize(("name", "command"), COMMANDS)
 def test_the_arguments_and_options_of_its_example_exist(name, command):
     words = shlex.split(command.example)[1 + len(name.split()) :]
-    context = command.make_context(name, words)  # raises a UsageError otherwise
+    command.make_context(name, words)  # raises a UsageError otherwise
     if not isinstance(command, click.Group):
         options = {
             option for parameter in command.params for option in (*parameter.opts, *parameter.secondary_opts)

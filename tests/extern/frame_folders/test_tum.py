@@ -64,7 +64,7 @@ def test_a_frame_that_cannot_be_read_is_told_and_the_others_go_on(recording, cap
     first.write_bytes(first.read_bytes()[:60])
     assert len(converted()) == 2
     error = capsys.readouterr().err
-    assert "1 frame could not be used, the first: " in error
+    assert "1 frame skipped; first error: " in error
     assert "not an image, or a truncated one" in error
 
 
@@ -73,13 +73,13 @@ def test_a_frame_that_cannot_be_read_is_told_and_the_others_go_on(recording, cap
     [
         (["desk", "out"], "does not say what its camera is like; add --intrinsics"),
         (["desk", "desk", "--intrinsics", "lens.json"], "desk is not empty"),
-        (["nowhere.bag", "out"], "there is no file nowhere.bag"),
-        (["lens.json", "out"], "is no recording; there are .bag, .db3, .mcap"),
+        (["nowhere.bag", "out"], "there is no file or folder nowhere.bag"),
+        (["lens.json", "out"], "is not a recording; supported: .bag, .db3, .mcap"),
         (["empty", "out"], "no rgb.txt and no folder rgb"),
-        (["desk", "out", "--depth-topic", "/d"], "is no bag"),
+        (["desk", "out", "--depth-topic", "/d"], "is not a rosbag"),
         (["desk.bag"], "semmap frames desk.bag DIR"),
-        (["--every", "2"], "--every goes with a recording"),
-        (["desk", "out", "--format", "json"], "--format goes with the tree"),
+        (["--every", "2"], "--every requires a recording"),
+        (["desk", "out", "--format", "json"], "--format applies to the frame tree only"),
         (["desk", "out", "--intrinsics", "lens.json", "--within", "0.001"], "--within takes more"),
         (["desk", "out", "--intrinsics", "small.json"], "do not fit a picture of"),
     ],

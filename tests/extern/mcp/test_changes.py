@@ -297,7 +297,7 @@ def test_an_agent_cannot_forge_lines_of_what_a_person_reads(client, flat):
     assert f"cup2 (Cup) would be removed (the reason given for it was {written}); then no longer: " in undo
     assert undo.strip().endswith('; reason: "oops"')
     assert "has rejected it" in refused
-    assert flat.cli("approve", "--reject", "--all").strip() == "nothing waited for approval"
+    assert flat.cli("approve", "--reject", "--all").strip() == "no pending requests"
 
 
 def test_commits_that_wait_for_a_person_hold_up_nobody(client, flat):
@@ -424,4 +424,4 @@ def test_over_stdio_with_limits_from_the_command_line(flat, client):
 
 def test_limits_without_changes_are_a_mistake(flat):
     said = flat.cli("mcp", "--classes", "Cup", status=2)
-    assert "--classes limits changes; to allow them at all: --allow change" in said
+    assert "--classes requires --allow change" in said

@@ -1,1 +1,1 @@
-"""The verbs, a file for each group."""
+"""The commands, a module for each group."""

@@ -1,4 +1,4 @@
-"""The verb `batch`: changes that are written a line each, made in one commit."""
+"""The command `batch`: several changes, one per line, in one commit."""
 
 from __future__ import annotations
 
@@ -20,68 +20,68 @@ from semmap.nodes.extern.files import read_file
 from semmap.schemas import errors
 from semmap.schemas.commands import Command, Set, Unset, Update
 
-_VERBS: Final[dict[str, click.Command]] = {"update": update, "set": set_, "unset": unset}
+_COMMANDS: Final[dict[str, click.Command]] = {"update": update, "set": set_, "unset": unset}
 
 
 @command(example='semmap batch changes.txt --reason "tidy up"')
 @click.argument("file", type=click.Path(path_type=Path, allow_dash=True))
-@click.option("--reason", default="", metavar="TEXT", help="Why, for the history.")
+@click.option("--reason", default="", metavar="TEXT", help="Reason for the change, stored in the history.")
 @click.option("--id", "id", default="", metavar="ID", help="Command id; a batch sent twice is executed once.")
 @click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
 @with_client
 def batch(client: Client, file: Path, **fields: Any) -> None:
-    """Make several changes in one commit, or none.
+    """Apply several changes in one commit, or none of them.
 
-    FILE has one update, set or unset a line, as on the command line: set door1 isOpen true. Empty lines
-    and those that begin with # do not count; - reads standard input. One undo takes all back.
+    FILE, or - for standard input, has one update, set or unset command per line, as on the command line:
+    set door1 isOpen true. Empty lines and lines that begin with # are ignored. One undo reverts the batch.
     """
     content = sys.stdin.buffer.read() if str(file) == "-" else read_file(file)
     try:
-        changes = tuple(written(content.decode()))
+        changes = tuple(read_changes(content.decode()))
     except UnicodeDecodeError:
-        raise errors.BadFile(f"{file} is no text in UTF-8") from None
+        raise errors.BadFile(f"{file} is not a UTF-8 text file") from None
     if not changes:
-        raise errors.BadRequest("there is no change: write one update, set or unset a line")
+        raise errors.BadRequest(f"{file}: no changes found; write one update, set or unset command per line")
     print_lines(lines.changed(client.batch(*changes, **fields)))
 
 
-def written(text: str) -> Iterator[Update | Set | Unset]:
-    """The changes that a text has, a line each. Raises BadRequest, which names the line."""
+def read_changes(text: str) -> Iterator[Update | Set | Unset]:
+    """Yield the changes in a text, one per line. Raises BadRequest with the number of the line."""
     for number, line in enumerate(text.splitlines(), start=1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         try:
             yield _change(shlex.split(line))
         except (ValueError, click.ClickException, errors.SemmapError) as error:
-            said = error.format_message() if isinstance(error, click.ClickException) else str(error)
-            raise errors.BadRequest(f"line {number}: {said[:1].lower()}{said[1:].rstrip('.')}") from None
+            fault = error.format_message() if isinstance(error, click.ClickException) else str(error)
+            raise errors.BadRequest(f"line {number}: {fault[:1].lower()}{fault[1:].rstrip('.')}") from None
 
 
 def _change(words: list[str]) -> Update | Set | Unset:
     words = words[1:] if words[:1] == ["semmap"] else words
-    if not words or words[0] not in _VERBS:
-        raise errors.BadRequest(f"'{' '.join(words[:1])}' is none of {', '.join(_VERBS)}")
-    verb = _VERBS[words[0]]
+    if not words or words[0] not in _COMMANDS:
+        raise errors.BadRequest(f"'{' '.join(words[:1])}' is not one of {', '.join(_COMMANDS)}")
+    command = _COMMANDS[words[0]]
     try:
-        with verb.make_context(words[0], words[1:], obj=_Writer()) as context:
-            verb.invoke(context)
-    except _Written as written:
-        return written.change
+        with command.make_context(words[0], words[1:], obj=_Recorder()) as context:
+            command.invoke(context)
+    except _Recorded as recorded:
+        return recorded.change
     except click.exceptions.Exit:
         pass
-    raise errors.BadRequest(f"'{words[0]} {' '.join(words[1:])}' is no change")
+    raise errors.BadRequest(f"'{words[0]} {' '.join(words[1:])}' is not a change")
 
 
-class _Written(Exception):
-    """What a verb would have sent."""
+class _Recorded(Exception):
+    """The command that would have been sent."""
 
     def __init__(self, change: Any) -> None:
         self.change: Update | Set | Unset = change
 
 
-class _Writer(CommandMethods):
-    """A client that sends nothing: it hands over what it was to send."""
+class _Recorder(CommandMethods):
+    """A client that raises the command instead of sending it."""
 
     def request(self, make: Callable[[], Command[Any]], read: object = None) -> NoReturn:
-        """Raises `_Written` with the command."""
-        raise _Written(make())
+        """Raise `_Recorded` with the command."""
+        raise _Recorded(make())

@@ -1,4 +1,4 @@
-"""The verb `completion`."""
+"""The command `completion`."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from semmap.nodes.extern.cli.command import command
 @command(example="semmap completion bash")
 @click.argument("shell", type=click.Choice(shell_completion.SHELLS))
 def completion(shell: str) -> None:
-    r"""Print what a shell needs to complete what you type.
+    r"""Print the completion script for a shell.
 
-    That is verbs, options, files, and the names of entities and classes.
+    It completes commands, options, files, and the names of entities and classes.
 
     \b
     bash:  eval "$(semmap completion bash)"      (in ~/.bashrc)

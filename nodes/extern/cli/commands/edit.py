@@ -1,4 +1,4 @@
-"""The verbs that change the map: `add`, `update`, `set`, `unset`, `track`, `remove`, `clear`, `load`."""
+"""The commands that change the map: `add`, `update`, `set`, `unset`, `track`, `remove`, `clear`, `load`."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _options(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
 
 
 def _drop_none(fields: dict[str, Any]) -> dict[str, Any]:
-    """The options that were given; a value may be an empty text."""
+    """Return the options that were set; an empty text is a value."""
     return {name: value for name, value in fields.items() if value not in (None, False)}
 
 
@@ -46,20 +46,22 @@ _dry_run = click.option(
     "--dry-run", is_flag=True, help="Report what would change, without changing anything."
 )
 _set = click.option(
-    "--set", "set", multiple=True, metavar="PROPERTY=VALUE", help="State a property; may be repeated."
+    "--set", "set", multiple=True, metavar="PROPERTY=VALUE", help="Set a property; may be repeated."
 )
-_if_is = click.option("--if-is", metavar="VALUE", help="Only if this is a value now (compare and set).")
+_if_is = click.option(
+    "--if-is", metavar="VALUE", help="Only if the property has this value (compare and set)."
+)
 _describing = _options(
     vector_option("--at", metavar="X Y Z", help="Position of the bottom centre [m]."),
-    frame_option("The frame of --at and the angle, instead of the map's"),
+    frame_option("Frame of --at and of the rotation. Default: map"),
     yaw_option,
     click.option("--orientation", nargs=4, type=float, metavar="W X Y Z", help="Unit quaternion."),
     vector_option("--size", metavar="X Y Z", help="Size along its own axes [m]."),
-    click.option("--extent", metavar="WKT", help="What a place covers: 'POLYGON ((X Y, ...))' [m]."),
-    click.option("--ref", metavar="TEXT", help="Preferred reference: what people call it."),
-    click.option("--alt", multiple=True, metavar="TEXT", help="Alternative reference; may be repeated."),
+    click.option("--extent", metavar="WKT", help="Area of a place: 'POLYGON ((X Y, ...))' [m]."),
+    click.option("--ref", metavar="TEXT", help="Label (skos:prefLabel)."),
+    click.option("--alt", multiple=True, metavar="TEXT", help="Alias (skos:altLabel); may be repeated."),
     click.option("--confidence", type=float, metavar="P", help="Confidence, 0 to 1."),
-    click.option("--wait", is_flag=True, help="Wait until its body stands in the scene."),
+    click.option("--wait", is_flag=True, help="Wait until its body is in the scene."),
     _id,
 )
 
@@ -72,13 +74,13 @@ _describing = _options(
 @click.option(
     "--track", type=click.Choice(["stream", "sim"]), help="Track it from the start (see: semmap track)."
 )
-@click.option("--default", is_flag=True, help="Fill in the class's label as reference, too.")
+@click.option("--default", is_flag=True, help="Use the label of the class as its label.")
 @_dry_run
 @with_client
 def add(client: Client, **fields: Any) -> None:
     """Add an entity to the map.
 
-    Without --at it goes to the next free place.
+    Without --at, it is placed at the next free position.
     """
     print_lines(lines.changed(client.add(**drop_unset(fields))))
 
@@ -90,14 +92,14 @@ def add(client: Client, **fields: Any) -> None:
 @click.option(
     "--conflict",
     metavar="TEXT",
-    help="Record an observation that contradicts the map; an empty text clears it.",
+    help="Store an observation that contradicts the map; an empty text clears it.",
 )
 @_set
 @click.option(
     "--unset",
     multiple=True,
     metavar="PROPERTY[=VALUE]",
-    help="Remove a value of a property, or all; with --set of the same property they are replaced.",
+    help="Remove one value of a property, or all. With --set of the same property, replace them.",
 )
 @click.option("--force", is_flag=True, help="Allow an object to become a place, or a place an object.")
 @carry_options
@@ -119,9 +121,9 @@ def update(client: Client, **fields: Any) -> None:
 @_dry_run
 @with_client
 def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fields: Any) -> None:
-    """State a property of an entity: semmap set door1 isOpen true.
+    """Set a property of an entity.
 
-    The value of a functional property replaces the one before; other properties get more values.
+    The value of a functional property replaces the previous one. Other properties keep their previous values.
     """
     print_lines(lines.changed(client.set(name, property, *values, **_drop_none(fields))))
 
@@ -135,7 +137,7 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
 @_dry_run
 @with_client
 def unset(client: Client, **fields: Any) -> None:
-    """Take back one value of an entity's property, or all."""
+    """Remove one value of a property of an entity, or all."""
     print_lines(lines.changed(client.unset(**_drop_none(fields))))
 
 
@@ -147,16 +149,16 @@ def unset(client: Client, **fields: Any) -> None:
     type=click.Choice(["stream", "sim"]),
     default="stream",
     show_default=True,
-    help="Who tells its pose: programs that publish it, or the simulator.",
+    help="Source of its pose: programs that publish it, or the simulator.",
 )
-@click.option("--off", is_flag=True, help="Stop tracking it; it stays where it was last.")
+@click.option("--off", is_flag=True, help="Stop tracking; the entity keeps its last pose.")
 @_id
 @_dry_run
 @with_client
 def track(client: Client, **fields: Any) -> None:
-    """Let an entity's pose come live, on semmap/live/NAME.
+    """Receive live poses of an entity on semmap/live/NAME.
 
-    The newest pose wins and costs no commit; where the entity stops, its pose is committed.
+    The newest pose is used and is not committed. When the entity stops, its pose is committed.
     """
     print_lines(lines.changed(client.track(**drop_unset(fields))))
 
@@ -184,10 +186,10 @@ def clear(client: Client, dry_run: bool) -> None:
 
 @command(example="semmap load demo/flat.ttl --replace")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--replace", is_flag=True, help="Replace the present entities.")
+@click.option("--replace", is_flag=True, help="Replace the current entities.")
 @click.option("--skip-unknown", is_flag=True, help="Skip entities of unknown classes.")
-@click.option("--strict", is_flag=True, help="Refuse files that refer to undescribed things.")
-@click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) that replaces the present one.")
+@click.option("--strict", is_flag=True, help="Reject files that refer to undescribed entities.")
+@click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) that replaces the current one.")
 @click.option("--parts", is_flag=True, help="Load in several commits, for files of any size.")
 @import_option
 @spatial_root_option
@@ -196,8 +198,9 @@ def clear(client: Client, dry_run: bool) -> None:
 def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
     """Load a map, a scene or a TBox from a file.
 
-    A map is an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; a TBox comes with its imports.
-    A plan is the .yaml of an occupancy grid of ROS's map server: its free space becomes rooms and doors.
+    A map is an ABox in any RDF or OWL syntax, a JSON scene or a HuRIC map. A TBox is loaded with its imports.
+    A plan is the .yaml file of an occupancy grid of the ROS map server: its free space becomes rooms and
+    doors.
     """
     from semmap.nodes.extern.cli.output.progress import progress
 
@@ -206,7 +209,7 @@ def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **ho
             reply = client.load(file, imports=dict(imports), **how)
         except errors.NoAnswer as error:
             raise errors.NoAnswer(
-                f"{error.text}; whether {file.name} was loaded is unknown; to find out: semmap history"
+                f"{error.text}; {file.name} may or may not have been loaded; see: semmap history"
             ) from None
     print_lines(lines.changed(reply))
     if is_plan(file) and not how["tbox"]:

@@ -1,4 +1,4 @@
-"""The verb `fleet`: robots mirrored into a SPARQL server, and asked there."""
+"""The command `fleet`: robots are mirrored to a SPARQL server, and queried there."""
 
 from __future__ import annotations
 
@@ -22,30 +22,30 @@ _robots = click.option(
     default="*",
     show_default=True,
     metavar="GLOB",
-    help="The robots whose names match, such as 'arm*,lift1'.",
+    help="Robots whose names match, such as 'arm*,lift1'.",
 )
 _query_url = functools.partial(click.option, "--sparql-query", "query_url", metavar="URL")
 
 
 @group(example="semmap fleet mirror --sparql-update http://127.0.0.1:7878/update")
 def fleet() -> None:
-    """Mirror robots' maps into a SPARQL server, and ask there."""
+    """Mirror the maps of robots to a SPARQL server and query it."""
 
 
 @fleet.command(example="semmap fleet mirror --sparql-update http://127.0.0.1:7878/update")
 @click.option(
-    "--sparql-update", "update_url", metavar="URL", required=True, help="The server's update endpoint."
+    "--sparql-update", "update_url", metavar="URL", required=True, help="Update endpoint of the server."
 )
-@_query_url(help="Its query endpoint. Default: as for updates, with query for update.")
+@_query_url(help="Query endpoint of the server. Default: the update URL with query instead of update.")
 @_robots
 @click.option(
     "--frame",
     "frames",
     multiple=True,
     metavar="ROBOT=X,Y,Z,YAW",
-    help="Where a robot's map is in the fleet's frame [m, rad]; it is kept. May be repeated.",
+    help="Pose of a robot's map in the fleet frame [m, rad]; stored. May be repeated.",
 )
-@click.option("--once", is_flag=True, help="Catch up with the robots that are there, and end.")
+@click.option("--once", is_flag=True, help="Synchronize with the available robots, then exit.")
 @connect_option
 @identity_option
 def mirror(
@@ -57,10 +57,10 @@ def mirror(
     where: str | None,
     identity: str | None,
 ) -> None:
-    """Copy robots' maps into named graphs of a SPARQL server.
+    """Copy the maps of robots to named graphs of a SPARQL server.
 
-    One graph for each robot. It follows their commits until Ctrl-C, goes on where it was when it is started
-    again, and waits for robots and servers that are down. The URL may have a user and a password.
+    Each robot has one graph, which is updated with its commits until Ctrl-C. A restarted mirror resumes at
+    the last commit. It waits for robots and servers that are down. The URL may include a user and a password.
     """
     from semmap.nodes.extern.fleet import mirror_config
 
@@ -79,7 +79,7 @@ def mirror(
     "sparql", example='semmap fleet sparql --sparql-query http://server/query "ASK { ?c a dm:Cup }"'
 )
 @click.argument("query")
-@_query_url(required=True, help="The server's query endpoint.")
+@_query_url(required=True, help="Query endpoint of the server.")
 @_robots
 @click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
 @connect_option
@@ -87,11 +87,11 @@ def mirror(
 def sparql_(
     query: str, query_url: str, robots: str, format: str, where: str | None, identity: str | None
 ) -> None:
-    """Run a SELECT or ASK across the mirrored robots.
+    """Run a SELECT or ASK query across the mirrored robots.
 
-    The default graph is what all of them say, and GRAPH ?robot { ... } what one of them says. Beside the
-    answer is the commit that each robot's graph is as of, and how many the robot is ahead if it can be
-    reached. Predefined prefixes: dm: (TBox), : (ABox), fleet:, rdf:, rdfs:, owl:, xsd:.
+    The default graph is the union of the graphs of all robots; GRAPH ?robot { ... } is the graph of one
+    robot. The result includes the commit of each graph and, for a robot that can be reached, how many commits
+    the graph is behind. Predefined prefixes: dm: (TBox), : (ABox), fleet:, rdf:, rdfs:, owl:, xsd:.
     """
     from semmap.nodes.extern.fleet.query import sparql
 

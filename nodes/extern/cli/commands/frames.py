@@ -1,4 +1,4 @@
-"""The verb `frames`: the tree of coordinate frames, or a recording's pictures as folders of frames."""
+"""The command `frames`: the tree of coordinate frames, or the conversion of recordings to frame folders."""
 
 from __future__ import annotations
 
@@ -24,50 +24,48 @@ if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
     from semmap.nodes.extern.frame_folders.frames import Recording
 
-_SAY_S = 5.0
-"""After this time it is told again how far a recording is."""
+_PROGRESS_S = 5.0
+"""Period of progress messages [s]."""
 _WITHIN_S = 0.03
 
 
 def _or_folders(function: Callable[..., None]) -> Callable[..., None]:
-    """With two words it is about a recording, and no system is asked."""
+    """Add the conversion of a recording to a command: with two arguments, no system is needed."""
 
     @click.option(
         "--every",
         type=click.FloatRange(min=0.0),
         metavar="SECONDS",
-        help="Of a recording: take fewer frames.",
+        help="Recording: minimum time between two frames.",
     )
     @click.option(
         "--within",
         type=click.FloatRange(min=0.0),
         metavar="SECONDS",
-        help=f"Colour and depth no farther apart are one frame. Default: {_WITHIN_S}.",
+        help=f"Recording: maximum time between colour and depth of a frame. Default: {_WITHIN_S}.",
     )
-    @click.option("--rgb-topic", metavar="TOPIC", help="Where a bag has colour on several topics.")
-    @click.option("--depth-topic", metavar="TOPIC", help="Where a bag has depth on several topics.")
-    @click.option("--base", metavar="FRAME", help="In which frame of /tf poses are told, z up.")
+    @click.option("--rgb-topic", metavar="TOPIC", help="Recording: colour topic, if there are several.")
+    @click.option("--depth-topic", metavar="TOPIC", help="Recording: depth topic, if there are several.")
+    @click.option("--base", metavar="FRAME", help="Recording: frame on /tf for camera poses, z up.")
     @click.option(
         "--intrinsics",
         metavar="FILE.json",
         type=click.Path(path_type=Path),
-        help="The recording's camera: fx, fy, cx, cy [pixel] and, optionally, depth_scale [m].",
+        help="Recording: camera with fx, fy, cx, cy [pixel] and, optionally, depth_scale [m].",
     )
     @functools.wraps(function)
     def chosen(name: str | None, folder: Path | None, format: str | None, **arguments: Any) -> None:
         options = {option: arguments.pop(option) for option in _OPTIONS}
         if folder is not None and name is not None:
             if format is not None:
-                raise errors.BadRequest(
-                    "--format goes with the tree; a recording becomes folders of pictures"
-                )
+                raise errors.BadRequest("--format applies to the frame tree only; remove it for a recording")
             _folders(Path(name), folder, **options)
             return
-        if said := list(drop_unset(options)):
-            option = said[0].replace("_", "-")
-            raise errors.BadRequest(f"--{option} goes with a recording: semmap frames RECORDING DIR")
+        if passed := list(drop_unset(options)):
+            option = passed[0].replace("_", "-")
+            raise errors.BadRequest(f"--{option} requires a recording: semmap frames RECORDING DIR")
         if name is not None and ("/" in name or Path(name).suffix in _SUFFIXES):
-            raise errors.BadRequest(f"name the new folder for its frames, too: semmap frames {name} DIR")
+            raise errors.BadRequest(f"missing argument DIR; usage: semmap frames {name} DIR")
         function(name=name, format=format, **arguments)
 
     return chosen
@@ -84,14 +82,14 @@ _SUFFIXES = (".bag", ".db3", ".mcap")
 @_or_folders
 @with_client
 def frames(client: Client, name: str | None, format: str | None) -> None:
-    """Show the tree of frames, each with its pose in its parent.
+    """Show the frame tree, or convert a recording.
 
-    Frames are the map, entities, cameras, and what others publish. With NAME that frame, those above it and
-    those below it.
+    Each frame is shown with its pose in its parent. Frames are the map, entities, cameras, and published
+    frames. With NAME, only that frame, its ancestors and its descendants are shown.
 
-    With RECORDING and DIR something else is done, without a system: the frames that a depth camera recorded
-    become folders in DIR, for perceive --frames. A recording is a rosbag (.bag, .db3 or a folder), an MCAP
-    file, or a folder as TUM's tools write it (rgb, depth, rgb.txt, depth.txt, maybe groundtruth.txt).
+    With RECORDING and DIR, the frames of a depth camera are written to folders in DIR, for perceive --frames.
+    This needs no running system. A recording is a rosbag (.bag, .db3 or a folder), an MCAP file, or a folder
+    in the TUM format (rgb, depth, rgb.txt, depth.txt and, optionally, groundtruth.txt).
     """
     found = client.frames(name)
     if format == "json":
@@ -111,13 +109,13 @@ def _folders(
     base: str | None,
     intrinsics: Path | None,
 ) -> None:
-    """Write the frames of a recording; what is wrong with one is told, and the others go on."""
+    """Write the frames of a recording. Frames that cannot be used are skipped and reported."""
     extras.require("semmap frames RECORDING DIR", "ros", "perception")
     from semmap.nodes.extern.frame_folders import bag, bag_frames, tum
     from semmap.nodes.extern.frame_folders.frames import make, require_empty
 
     if not path.exists():
-        raise errors.BadFile(f"there is no file {path}, nor a folder")
+        raise errors.BadFile(f"there is no file or folder {path}")
     require_empty(folder)
     common: dict[str, Any] = {
         "within_s": _WITHIN_S if within is None else within,
@@ -128,11 +126,13 @@ def _folders(
         found = bag_frames.read(path, colour=rgb_topic, depth=depth_topic, base=base, **common)
     elif path.is_dir():
         if rgb_topic or depth_topic or base:
-            raise errors.BadRequest(f"{path} is no bag: it has no topics and no /tf")
+            raise errors.BadRequest(
+                f"{path} is not a rosbag; --rgb-topic, --depth-topic and --base require a rosbag or MCAP file"
+            )
         found = tum.read(path, **common)
     else:
         raise errors.BadFile(
-            f"{path} is no recording; there are {', '.join(_SUFFIXES)}, and folders as TUM's tools write them"
+            f"{path} is not a recording; supported: {', '.join(_SUFFIXES)} and folders in the TUM format"
         )
     make(folder)
     _write(found, path, folder)
@@ -141,7 +141,7 @@ def _folders(
 def _write(found: Recording, path: Path, folder: Path) -> None:
     from semmap.nodes.extern.frame_folders.frames import write
 
-    began_s = said_s = time.monotonic()
+    began_s = printed_s = time.monotonic()
     bad: list[errors.SemmapError] = []
     posed = 0
     for number, frame in enumerate(found.frames, 1):
@@ -150,20 +150,18 @@ def _write(found: Recording, path: Path, folder: Path) -> None:
         else:
             write(frame, folder)
             posed += frame.map_from_camera is not None
-        if (now_s := time.monotonic()) > said_s + _SAY_S:
-            said_s = now_s
+        if (now_s := time.monotonic()) > printed_s + _PROGRESS_S:
+            printed_s = now_s
             print_escaped(
                 f"semmap: {number} of {found.count} frames ({now_s - began_s:.0f} s)", file=sys.stderr
             )
     written = found.count - len(bad)
     if not written:
-        raise errors.BadFile(f"{path}: no frame can be used, the first because: {bad[0].text}")
+        raise errors.BadFile(f"{path}: no usable frames; first error: {bad[0].text}")
     for note in found.notes:
         print_escaped(note)
     if 0 < posed < written:
-        print_escaped(
-            f"{counted(written - posed, 'frame')} without a camera pose: nobody said where it was then"
-        )
+        print_escaped(f"{counted(written - posed, 'frame')} without a camera pose (no pose at that time)")
     print_escaped(f"{counted(written, 'frame')} of {path} in {folder} ({time.monotonic() - began_s:.1f} s)")
     if bad:
-        print_error(f"{counted(len(bad), 'frame')} could not be used, the first: {bad[0].text}")
+        print_error(f"{counted(len(bad), 'frame')} skipped; first error: {bad[0].text}")

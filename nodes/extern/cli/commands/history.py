@@ -1,4 +1,4 @@
-"""The verbs about the past: `history`, `last-seen`, `diff`, `when`, `undo`."""
+"""The commands about the history: `history`, `last-seen`, `diff`, `when`, `undo`."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ _text_or_json = click.option(
     "--format", "format", type=click.Choice(["text", "json"]), default="text", show_default=True
 )
 _PIPED_WIDTH = 120
-"""Columns: what commits change may be a long story."""
+"""Columns, if the output is not a terminal: the list of changes can be long."""
 
 
 @command(example="semmap history cup1 --since 12:30")
 @click.argument("name", required=False, shell_complete=entity_names)
-@click.option("--since", metavar="COMMIT|TIME", help="Commits from here on, inclusive.")
-@click.option("--until", metavar="COMMIT|TIME", help=f"Commits up to here, inclusive. {TIME}")
+@click.option("--since", metavar="COMMIT|TIME", help="First commit.")
+@click.option("--until", metavar="COMMIT|TIME", help=f"Last commit. {TIME}")
 @click.option(
-    "--limit", type=int, default=20, show_default=True, help="Maximum number of commits, the newest ones."
+    "--limit", type=int, default=20, show_default=True, help="Number of commits; the newest are shown."
 )
 @_format
 @with_client
 def history(
     client: Client, name: str | None, since: str | None, until: str | None, limit: int, format: str
 ) -> None:
-    """Show the newest commits, or those of an entity, in order."""
+    """Show the newest commits, or those of one entity, in order."""
     commits = client.history(name, since=since, until=until, limit=limit)
     if format == "json":
         print_json(commits)
@@ -58,8 +58,8 @@ def history(
 def last_seen(client: Client, name: str, format: str) -> None:
     """Show where and when an entity was last seen or placed.
 
-    It may have been removed since. What was seen to be gone is told from what
-    has merely not been seen since.
+    The entity may have been removed since. The status distinguishes entities that were observed to be gone
+    from entities that were not observed again.
     """
     sighting = client.last_seen(name)
     if format == "json":
@@ -76,7 +76,7 @@ def last_seen(client: Client, name: str, format: str) -> None:
 def diff(client: Client, since: str, until: str | None, format: str) -> None:
     """Show what changed between two commits or times.
 
-    Without a second one: what has changed since the first.
+    Without a second argument, show what has changed since the first.
     """
     found = client.diff(since, until)
     if format == "json":
@@ -92,10 +92,9 @@ def diff(client: Client, since: str, until: str | None, format: str) -> None:
 @_text_or_json
 @with_client
 def when(client: Client, name: str, relation: Any, other: str, format: str) -> None:
-    """Show when one thing was on, in or attached to another.
+    """Show when one entity was on, in or attached to another.
 
-    RELATION is isOn, isInside, isLocatedIn or isAttachedTo: semmap when cup1
-    isOn table1. The exit status is 1 if it never was.
+    RELATION is isOn, isInside, isLocatedIn or isAttachedTo. The exit status is 1 if the relation never held.
     """
     found = client.when(name, relation, other)
     if format == "json":
@@ -113,7 +112,7 @@ def when(client: Client, name: str, relation: Any, other: str, format: str) -> N
 def undo(client: Client, commit: int | None, dry_run: bool) -> None:
     """Undo a commit, unless later ones depend on it.
 
-    Without COMMIT it is the newest that a client requested.
+    Without COMMIT, undo the newest commit that a client requested.
     """
     from semmap.nodes.extern.cli.output.progress import progress
 

@@ -1,4 +1,4 @@
-"""`semmap keys`: certificates that say who somebody is and what they may do."""
+"""The command `keys`: certificates that identify clients and their roles."""
 
 from __future__ import annotations
 
@@ -17,23 +17,27 @@ from semmap.schemas.roles import ROLES, Role
 
 _path = click.Path(path_type=Path)
 _folder = click.option(
-    "--dir", "folder", type=_path, default=Path("keys"), show_default=True, help="Folder of the keys."
+    "--dir", "folder", type=_path, default=Path("keys"), show_default=True, help="Folder of the certificates."
 )
 _days = click.option(
-    "--days", type=click.IntRange(1, 3650), default=365, show_default=True, help="How long it is valid."
+    "--days",
+    type=click.IntRange(1, 3650),
+    default=365,
+    show_default=True,
+    help="Validity of the certificate.",
 )
 _host = click.option(
     "--host",
     "hosts",
     multiple=True,
     metavar="HOST",
-    help="Another name or address at which the router is found; may be repeated.",
+    help="Additional host name or address of the router; may be repeated.",
 )
 
 
 @group(example="semmap keys init keys --host robot1.local")
 def keys() -> None:
-    """Make, renew and revoke the certificates of a secure system."""
+    """Create, renew and revoke certificates of a secure system."""
     extras.require("semmap keys", "keys")
 
 
@@ -42,69 +46,69 @@ def keys() -> None:
 @_host
 @_days
 def init(folder: Path, hosts: tuple[str, ...], days: int) -> None:
-    """Make an authority in FOLDER.
+    """Create a certificate authority in FOLDER.
 
-    With it come the certificates of the system's own processes.
+    The certificates of the nodes and the router are created as well.
     """
     from semmap.nodes.identity import authority
 
     register = authority.init(folder, hosts, days)
-    click.echo(f"made an authority in {folder}, for a router at {', '.join(register.hosts)}")
-    click.echo(f"keep {folder / 'ca.key'} secret: whoever has it can be anybody")
-    click.echo(f"add yourself: semmap keys add NAME --role operator --dir {folder}")
-    click.echo(f"start:        semmap up --secure {folder}")
+    click.echo(f"created a certificate authority in {folder} for a router at {', '.join(register.hosts)}")
+    click.echo(f"keep {folder / 'ca.key'} secret: its holder can issue any identity")
+    click.echo(f"create your certificate: semmap keys add NAME --role operator --dir {folder}")
+    click.echo(f"start the system:        semmap up --secure {folder}")
 
 
 @keys.command(example="semmap keys add ann --role operator")
 @click.argument("name")
-@click.option("--role", type=click.Choice(ROLES), required=True, help="What NAME may do.")
+@click.option("--role", type=click.Choice(ROLES), required=True, help="Permissions of NAME.")
 @_folder
 @_days
 def add(name: str, role: Role, folder: Path, days: int) -> None:
-    """Make a certificate for NAME.
+    """Create a certificate for NAME.
 
-    A running system admits it within a second.
+    A running system accepts it within a second.
     """
     from semmap.nodes.identity import authority
 
-    _told("made", folder, authority.add(folder, name, role, days))
-    click.echo(f"use it: semmap status --identity {folder / name}")
+    _print_member("created", folder, authority.add(folder, name, role, days))
+    click.echo(f"to use it: semmap status --identity {folder / name}")
 
 
 @keys.command(example="semmap keys renew ann --days 365")
 @click.argument("name")
-@click.option("--role", type=click.Choice(ROLES), help="What NAME may do from now on. Default: as before.")
+@click.option("--role", type=click.Choice(ROLES), help="New permissions of NAME. Default: unchanged.")
 @_host
 @_folder
 @_days
 def renew(name: str, role: Role | None, hosts: tuple[str, ...], folder: Path, days: int) -> None:
-    """Make NAME a new key and certificate.
+    """Create a new key and certificate for NAME.
 
-    The old one stays valid until it expires.
+    The previous certificate stays valid until it expires.
     """
     from semmap.nodes.identity import authority
 
-    _told("renewed", folder, authority.renew(folder, name, hosts, days, role))
+    _print_member("renewed", folder, authority.renew(folder, name, hosts, days, role))
 
 
 @keys.command(example="semmap keys revoke ann")
 @click.argument("name")
 @_folder
 def revoke(name: str, folder: Path) -> None:
-    """Admit NAME no longer.
+    """Revoke the certificates of NAME.
 
-    A running system shuts them out within a second.
+    A running system closes its connections within a second.
     """
     from semmap.nodes.identity import authority
 
     member = authority.revoke(folder, name)
-    click.echo(f"revoked {member.name} ({member.role}); the name is not given again")
+    click.echo(f"revoked {member.name} ({member.role}); this name cannot be reused")
 
 
 @keys.command("list", example="semmap keys list --dir keys")
 @_folder
 def list_(folder: Path) -> None:
-    """Show who has a certificate, in which role and until when."""
+    """List the certificates with their roles and expiry dates."""
     rows = table("name", "role", "valid until", "state", fold=())
     for member in Register.read(folder).members.values():
         expired = member.expires < datetime.now(UTC)
@@ -123,12 +127,13 @@ def list_(folder: Path) -> None:
     help="Zenoh endpoint that the router listens on.",
 )
 @click.option("--connect", multiple=True, metavar="EP", help="Another router to connect to; may be repeated.")
-@click.option("--namespace", default="", metavar="ROBOT", help="The robot whose keys it routes; * is all.")
+@click.option(
+    "--namespace", default="", metavar="ROBOT", help="Robot whose Zenoh keys are routed; * for all."
+)
 def zenohd(folder: Path, listen: str, connect: tuple[str, ...], namespace: str) -> None:
-    """Print a configuration that makes zenohd a router.
+    """Print a zenohd configuration for a secure system.
 
-    It is for a secure system, with the rules for everybody who is admitted now: print it again after each
-    change.
+    It contains the access rules for all current certificates. Print it again after each change.
     """
     from semmap.nodes import bus
     from semmap.nodes.identity import Identity
@@ -147,6 +152,6 @@ def zenohd(folder: Path, listen: str, connect: tuple[str, ...], namespace: str) 
     click.echo(network.as_file())
 
 
-def _told(done: str, folder: Path, member: Member) -> None:
+def _print_member(action: str, folder: Path, member: Member) -> None:
     files = f"{folder / member.name}.crt and .key"
-    click.echo(f"{done} {files}: {member.name}, {member.role}, until {member.expires:%Y-%m-%d}")
+    click.echo(f"{action} {files}: {member.name}, {member.role}, until {member.expires:%Y-%m-%d}")

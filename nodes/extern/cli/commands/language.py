@@ -1,4 +1,4 @@
-"""The verbs that take words as people say them, `find` and `understand`; and `tell`, which says some."""
+"""The commands of natural language: `find`, `understand` and `tell`."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ if TYPE_CHECKING:
     from semmap.schemas.language import Language, Mood
 
 _WHY: Final[dict[Mood, str]] = {
-    "command": "no command is understood in '{text}'; try: take the cup from the table",
-    "question": "'{text}' asks something, and there is no command in it; try: take the cup from the table",
-    "past": "'{text}' tells what was done, and there is no command in it; try: take the cup from the table",
+    "command": "'{text}': no command recognized; example: take the cup from the table",
+    "question": "'{text}' is a question, not a command; example of a command: take the cup from the table",
+    "past": "'{text}' is a statement about the past, not a command; example of a command: take the cup from"
+    " the table",
 }
 
 
@@ -34,14 +35,14 @@ _WHY: Final[dict[Mood, str]] = {
     type=click.IntRange(20, 5000),
     default=150,
     show_default=True,
-    help="Most words of the text.",
+    help="Maximum number of words.",
 )
 @click.option("--format", "format", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @with_client
 def tell(client: Client, name: str | None, words: int, format: str) -> None:
-    """Tell in a few words what is there.
+    """Describe the map, a place or an object in a short text.
 
-    Of the whole map, of a place, or of one thing: by its name, or by a reference or class that only one has.
+    NAME is a name, or a label or class that only one entity has. Without it, the whole map is described.
     """
     found = client.tell(name, words=words)
     if format == "json":
@@ -54,17 +55,17 @@ def tell(client: Client, name: str | None, words: int, format: str) -> None:
 @command(example='semmap find "the red cup on the kitchen table"')
 @click.argument("text")
 @click.option(
-    "--from", "viewer", metavar="VIEWER", help="Who looks: for left of, behind, the second from the left ..."
+    "--from", "viewer", metavar="VIEWER", help="Viewer, for left of, behind, the second from the left ..."
 )
 @from_pose
-@click.option("--for", "asker", metavar="NAME", help="Who asks: whose things *my* means.")
+@click.option("--for", "asker", metavar="NAME", help="Speaker: the person that 'my' refers to.")
 @click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @with_client
 def find(client: Client, text: str, format: str, **fields: Any) -> None:
-    """Find the entities that words describe (English, Italian).
+    """Find the entities that a noun phrase describes.
 
-    For example: semmap find "the red cup on the kitchen table". If several fit, it prints
-    the question to ask back. The exit status is 1 if nothing fits.
+    The phrase is English or Italian. If several entities match, a clarification question is printed. The exit
+    status is 1 if none matches.
     """
     found = client.find(text=text, **fields)
     if format == "json":
@@ -83,17 +84,16 @@ def find(client: Client, text: str, format: str, **fields: Any) -> None:
     type=click.Choice(["text", "json", "lu4r"]),
     default="text",
     show_default=True,
-    help="lu4r: as the LU4R interpreter writes frames.",
+    help="lu4r: the format of the LU4R interpreter.",
 )
-@click.option("--language", type=click.Choice(["english", "italian"]), help="Default: as the words tell.")
+@click.option("--language", type=click.Choice(["english", "italian"]), help="Default: detected.")
 @with_client
 def understand(client: Client, text: str, format: str, language: Language | None) -> None:
-    """Show what a spoken command asks for, and of which entities.
+    """Parse a spoken command to semantic frames.
 
-    In English or Italian.
-
-    For example: semmap understand "take the bottle from the table". The frames and roles are FrameNet's. The
-    exit status is 1 if no frame is understood.
+    The command is English or Italian. The arguments of its FrameNet frames are resolved to entities of the
+    map. Unknown verbs, and arguments that do not match the map, are reported on stderr. The exit status is 1
+    if no frame is recognized.
     """
     found = client.understand(text, language=language)
     if format == "json":

@@ -1,4 +1,4 @@
-"""The verbs by which perception is shown things of one's own: `learn`, `learned`, `forget`."""
+"""The commands that add exemplars to perception: `learn`, `learned`, `forget`."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ _path = click.Path(path_type=Path)
 
 
 def _where(function: Callable[..., None]) -> Callable[..., None]:
-    """Options that say whose lessons are meant: a running system's, or those of a data folder."""
+    """Add the options that select the exemplars: those of a running system, or of a data folder."""
 
     @click.option(
         "--data",
         type=_path,
-        help="Lessons of this data folder, for perceive --data. Default: a running system.",
+        help="Use the exemplars in this data folder, for perceive --data. Default: a running system.",
     )
     @click.option(
         "--format", "format", type=click.Choice(["text", "json"]), default="text", show_default=True
@@ -58,14 +58,16 @@ def _where(function: Callable[..., None]) -> Callable[..., None]:
 
 @command(example="semmap learn Cup --frames frames/mug")
 @click.argument("class_", metavar="CLASS", shell_complete=class_names)
-@click.option("--frames", metavar="DIR", type=_path, help="Folders of frames, as perceive --frames has them.")
-@click.option("--entity", metavar="NAME", shell_complete=entity_names, help="What perception sees there now.")
+@click.option("--frames", metavar="DIR", type=_path, help="Folders of frames, as for perceive --frames.")
+@click.option(
+    "--entity", metavar="NAME", shell_complete=entity_names, help="Entity that perception currently observes."
+)
 @click.option(
     "--box",
     nargs=4,
     type=int,
     metavar="X0 Y0 X1 Y1",
-    help="With --frames: the thing in this box [pixel]. Default: the largest compact one.",
+    help="With --frames: object in this box [pixel]. Default: the largest compact object.",
 )
 @_where
 def learn(
@@ -77,59 +79,61 @@ def learn(
     format: str,
     **system: Any,
 ) -> None:
-    """Show perception a thing, to be recognised from now on.
+    """Add an object as an exemplar that perception recognizes.
 
-    One frame will do; more, from other sides and distances, are better. The thing stands by itself on a
-    table or the floor. CLASS is any class of the TBox of things, also one that perception has never learnt.
-    Nothing is trained anew: what looks like it is called so, beside all that was known before.
+    One frame is enough; more frames from other sides and distances improve recognition. The object must stand
+    by itself on a table or the floor. CLASS is any object class of the TBox, including classes without
+    training data. No model is retrained: similar objects are assigned to CLASS in addition to known classes.
     """
     if (frames is None) == (entity is None):
-        raise errors.BadRequest("say what is shown: --frames DIR or --entity NAME")
+        raise errors.BadRequest("use either --frames DIR or --entity NAME")
     if box is not None and frames is None:
-        raise errors.BadRequest("--box goes with --frames")
+        raise errors.BadRequest("--box requires --frames")
     if data is not None and frames is None:
-        raise errors.BadRequest("--entity is seen by a running system; with --data show --frames DIR")
+        raise errors.BadRequest("--entity requires a running system; with --data, use --frames DIR")
     views: list[View] = []
     notes: tuple[str, ...] = ()
     shown = ""
     if data is not None:
         book, class_ = _book(data), _known(class_)
     if frames is not None:
-        views, notes = _seen(frames, box)
+        views, notes = _read_views(frames, box)
         shown = f"{counted(len(views), 'frame')} in {frames}"
     if data is not None:
         from semmap.nodes.perception_node.recognition.shipped_votes import shipped
 
-        told = book.add(class_, shipped().ancestors[class_], views, shown)
+        lesson = book.add(class_, shipped().ancestors[class_], views, shown)
     else:
         with _client(**system) as client:
-            told = _learnt(client, class_, entity, views, shown)
+            lesson = _learn(client, class_, entity, views, shown)
     for note in notes:
         print_error(note)
     if format == "json":
-        print_json(told)
+        print_json(lesson)
         return
-    size = " x ".join(f"{side:.3f}" for side in told.size_m)
-    print_escaped(f"learned {told.class_} from {told.shown} ({size} m); to undo: semmap forget {told.number}")
+    size = " x ".join(f"{side:.3f}" for side in lesson.size_m)
+    print_escaped(
+        f"learned {lesson.class_} from {lesson.shown} ({size} m); to undo: semmap forget {lesson.number}"
+    )
 
 
 @command(example="semmap learned")
 @_where
 def learned(data: Path | None, format: str, **system: Any) -> None:
-    """List what perception was shown."""
+    """List the exemplars of perception."""
     if data is not None:
-        told = _book(data).lessons
+        lessons = _book(data).lessons
     else:
         with _client(**system) as client:
-            told = client.learned()
+            lessons = client.learned()
     if format == "json":
-        print_json(told)
+        print_json(lessons)
         return
-    if not told:
-        print_escaped("nothing was shown")
+    if not lessons:
+        print_escaped("no exemplars")
         return
-    rows = table("number", "class", "size [m]", "views", "shown", fold=("shown",))
-    for lesson in told:
+    rows = table("number", "class", "size [m]", "views", "source", fold=("source",))
+    for lesson in lessons:
         size = " x ".join(f"{side:.3f}" for side in lesson.size_m)
         rows.add(str(lesson.number), lesson.class_, size, str(lesson.views), lesson.shown)
     show.console().print(rows)
@@ -139,16 +143,16 @@ def learned(data: Path | None, format: str, **system: Any) -> None:
 @click.argument("number", type=click.IntRange(min=1))
 @_where
 def forget(number: int, data: Path | None, format: str, **system: Any) -> None:
-    """Undo what perception was shown; learned tells the NUMBER."""
+    """Remove an exemplar; semmap learned lists the numbers."""
     if data is not None:
-        told = _book(data).forget(number)
+        lesson = _book(data).forget(number)
     else:
         with _client(**system) as client:
-            told = client.forget(number=number)
+            lesson = client.forget(number=number)
     if format == "json":
-        print_json(told)
+        print_json(lesson)
     else:
-        print_escaped(f"forgot {told.class_} from {told.shown}")
+        print_escaped(f"forgot {lesson.class_} from {lesson.shown}")
 
 
 @contextmanager
@@ -159,7 +163,7 @@ def _client(where: str | None, identity: str | None, namespace: str | None) -> I
         yield client
 
 
-def _learnt(client: Client, class_: str, entity: str | None, views: list[View], shown: str) -> LessonTold:
+def _learn(client: Client, class_: str, entity: str | None, views: list[View], shown: str) -> LessonTold:
     if entity is not None:
         return client.learn(class_, entity=entity)
     from semmap.nodes.perception_node.teaching import view_told
@@ -168,14 +172,14 @@ def _learnt(client: Client, class_: str, entity: str | None, views: list[View], 
 
 
 def _book(data: Path) -> LessonBook:
-    """The lessons of a data folder whose system does not run."""
+    """Return the exemplars of a data folder. Raises Refused if its system is running."""
     extras.require("semmap learn --data", "perception")
     from semmap.nodes.perception_node.lesson_book import FILENAME, LessonBook
     from semmap.nodes.perception_node.recognition.shipped_votes import shipped
     from semmap.nodes.supervisor import registry
 
     if any(Path(system.data) == data.resolve() for system in registry.systems()):
-        raise errors.Refused(f"a system runs on {data}, which learns by itself: leave out --data")
+        raise errors.Refused(f"a system is running on {data}; remove --data to use it")
     return LessonBook(data / FILENAME, shipped())
 
 
@@ -186,7 +190,7 @@ def _known(class_: str) -> str:
     return known_class(class_, shipped().ancestors)
 
 
-def _seen(frames: Path, box: tuple[int, int, int, int] | None) -> tuple[list[View], tuple[str, ...]]:
+def _read_views(frames: Path, box: tuple[int, int, int, int] | None) -> tuple[list[View], tuple[str, ...]]:
     extras.require("semmap learn --frames", "perception")
     from semmap.nodes.perception_node.recognition.shipped_votes import shipped
     from semmap.nodes.perception_node.showing import shown_in_frames

@@ -1,4 +1,4 @@
-"""The verbs that start, stop and repair a system: `up`, `down`, `node`, `repair`."""
+"""The commands that start, stop and repair a system: `up`, `down`, `node`, `repair`."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from semmap.schemas.endpoints import robot_name as checked_namespace
 from semmap.schemas.keys import NODES, ROUTER
 
 _ROBOTS = Path(__file__).parents[3] / "sim_node" / "robots"
-"""Where those are that come with semmap."""
+"""The folder of the robot models that are included in semmap."""
 _path = click.Path(path_type=Path)
 
 _PERCEPTION_HZ = 5.0
@@ -39,23 +39,24 @@ _PERCEPTION_HZ = 5.0
 
 
 def settings_options(function: Callable[..., None]) -> Callable[..., None]:
-    """The options of `up` and `node`; the function gets them as Settings."""
+    """Add the options of `up` and `node`, which the function receives as Settings."""
 
     @click.option(
         "--tbox",
         type=_path,
         multiple=True,
-        help="Ontology (file or folder), with its imports; may be repeated. Default: the household's.",
+        help="Ontology (file or folder) with its imports; may be repeated. Default: the household ontology.",
     )
     @import_option
     @spatial_root_option
     @click.option(
         "--abox",
-        help="ABox file, or none for an empty map. Default: the flat; none if perceived, with --tbox, or with"
-        " --truth scene and a --world.",
+        help="ABox file, or none for an empty map. Default: the flat; none with --tbox, with --truth perceived,"
+        " or with --truth scene and --world.",
     )
     @click.option(
-        "--world", help="MJCF file, JSON scene, or the word empty. Default: as before, else the flat's."
+        "--world",
+        help="MJCF file, JSON scene, or empty. Default: the previous world, or the world of the flat.",
     )
     @click.option(
         "--data",
@@ -68,7 +69,7 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         "--truth",
         type=click.Choice(["map", "scene", "perceived"]),
         default=None,
-        help="What decides which entities exist. Default: as before, else map.",
+        help="Source of truth for which entities exist. Default: the previous value, or map.",
     )
     @click.option(
         "--threshold",
@@ -76,23 +77,30 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         default=0.05,
         show_default=True,
         metavar="M",
-        help="A body has moved when it is displaced by more.",
+        help="Minimum displacement of a body that updates the map.",
     )
-    @click.option("--angle-threshold", type=float, default=5.0, show_default=True, metavar="DEG")
+    @click.option(
+        "--angle-threshold",
+        type=float,
+        default=5.0,
+        show_default=True,
+        metavar="DEG",
+        help="Minimum rotation of a body that updates the map.",
+    )
     @click.option(
         "--stale",
         type=float,
         default=2.0,
         show_default=True,
         metavar="SECONDS",
-        help="A live pose is stale when no other follows for so long.",
+        help="Timeout of live poses.",
     )
     @click.option(
         "--journal-every",
         type=float,
         default=0.0,
         metavar="SECONDS",
-        help="Commit the poses of what is tracked and moves this often. Default: only where it stops.",
+        help="Commit interval of tracked poses. Default: commit only when an entity stops.",
     )
     @click.option(
         "--listen",
@@ -106,7 +114,7 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         "--only",
         metavar="NODES",
         default=None,
-        help="Run only these nodes here, such as kb,coordinator; the others run on other hosts.",
+        help="Run only these nodes, such as kb,coordinator; the others run on other hosts.",
     )
     @click.option(
         "--namespace",
@@ -114,41 +122,42 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         show_envvar=True,
         default="",
         metavar="ROBOT",
-        help="Name of this robot: its keys begin with it, so that robots can share a network.",
+        help="Name of this robot: the prefix of its Zenoh keys, so that robots can share a network.",
     )
     @click.option(
         "--secure",
         type=_path,
         default=None,
         metavar="DIR",
-        help="Let in only those with a certificate of this folder of keys (see: semmap keys).",
+        help="Require a certificate of this folder from every client (see: semmap keys).",
     )
     @click.option(
         "--zenoh-config",
         type=_path,
         default=None,
         metavar="FILE",
-        help="Zenoh configuration for what semmap does not set itself.",
+        help="Zenoh configuration for settings that semmap does not set.",
     )
-    @click.option("--insecure", is_flag=True, help="Listen beyond this machine without certificates.")
+    @click.option(
+        "--insecure", is_flag=True, help="Accept connections from other hosts without certificates."
+    )
     @click.option(
         "--robot",
         metavar="FILE",
         default=None,
-        help="Put a robot into the world: an MJCF file, or porter, which comes with semmap.",
+        help="Add a robot to the world: an MJCF file, or porter, which is included in semmap.",
     )
-    @click.option("--robot-name", default="robot1", show_default=True, help="What it is called in the map.")
+    @click.option("--robot-name", default="robot1", show_default=True, help="Name of the robot in the map.")
     @click.option(
         "--robot-at",
         nargs=3,
         type=float,
         default=None,
         metavar="X Y Z",
-        help="Where a robot that the map does not know yet stands [m]; any other begins where it last stood."
-        "  [default: 0 0 0]",
+        help="Position of a new robot [m]; a robot in the map starts at its last pose.  [default: 0 0 0]",
     )
-    @click.option("--robot-yaw", type=float, default=0.0, metavar="RAD", help="How a new robot is turned.")
-    @click.option("--window", is_flag=True, help="Open a window that shows the scene (needs a display).")
+    @click.option("--robot-yaw", type=float, default=0.0, metavar="RAD", help="Yaw of a new robot.")
+    @click.option("--window", is_flag=True, help="Show the scene in a window (needs a display).")
     @click.option(
         "--models",
         type=_path,
@@ -162,7 +171,15 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         metavar="HZ",
         help="Frame rate of the simulated cameras. Default: 0 (off), 5 with --perception.",
     )
-    @click.option("--camera-size", nargs=2, type=int, default=(640, 480), metavar="W H", show_default=True)
+    @click.option(
+        "--camera-size",
+        nargs=2,
+        type=int,
+        default=(640, 480),
+        metavar="W H",
+        show_default=True,
+        help="Image size of the simulated cameras [pixel].",
+    )
     @click.option("--camera-noise", is_flag=True, help="Add Kinect-like noise to depth images.")
     @click.option("--perception", is_flag=True, help="Update the map from camera frames.")
     @click.option(
@@ -170,14 +187,14 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         type=click.Choice(["remove", "mark"]),
         default="remove",
         show_default=True,
-        help="What to do with entities that perception added and no longer sees.",
+        help="What to do with perceived entities that are no longer observed.",
     )
     @click.option(
         "--label-map",
         type=click.Path(path_type=Path),
         default=None,
         metavar="FILE.json",
-        help='With a detector of your own: what its labels are called here, {"coffee mug": "Cup"}.',
+        help='Labels of an external detector and their classes, as in {"coffee mug": "Cup"}.',
     )
     @click.option("--no-sim", is_flag=True, help="Do not start the simulator.")
     @click.option("--no-record", is_flag=True, help="Do not start the recorder.")
@@ -187,7 +204,7 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         default=None,
         help="Delete recordings older than 12h or 7d, or beyond 500MB or 20GB. Default: keep all.",
     )
-    @click.option("--web", is_flag=True, help="Start the page, too: the map in a browser.")
+    @click.option("--web", is_flag=True, help="Also start the page: the map in a browser.")
     @click.option(
         "--web-port",
         type=click.IntRange(0, 65_535),
@@ -195,11 +212,11 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         metavar="N",
         help="Port of the page; 0 is any free one. Default: 8080.",
     )
-    @click.option("--web-as", metavar="NAME", help="With --secure: whose certificate the page acts under.")
+    @click.option("--web-as", metavar="NAME", help="With --secure: certificate that the page uses.")
     @functools.wraps(function)
     def with_settings(name: str | None = None, **options: Any) -> None:
-        own = {} if name is None else {"name": name}
-        function(settings=_settings(single=name is not None, **options), **own)
+        node_name = {} if name is None else {"name": name}
+        function(settings=_settings(single=name is not None, **options), **node_name)
 
     return with_settings
 
@@ -215,7 +232,7 @@ def up(settings: Settings) -> None:
     from semmap.nodes.supervisor.up import up as run_up
 
     if settings.truth == "perceived" and not settings.perception and not settings.only:
-        print_error("no perception node started; add --perception or publish your own observations")
+        print_error("warning: no perception node started; add --perception or publish observations")
     run_up(settings, say=print_escaped)
 
 
@@ -229,20 +246,20 @@ def down(data: Path | None, connect: str | None) -> None:
     from semmap.nodes.supervisor.control import Supervisor
 
     if data is None and connect is not None:
-        meant = {connect, bus.over_tls(connect)}
-        there = [Path(s.data) for s in registry.systems() if meant & {s.listen, s.reachable}]
-        if not there:
+        wanted = {connect, bus.over_tls(connect)}
+        found = [Path(s.data) for s in registry.systems() if wanted & {s.listen, s.reachable}]
+        if not found:
             raise errors.NoAnswer(f"no system of this user listens on {connect}")
-        (data,) = there
+        (data,) = found
     Supervisor((data or default_data()).resolve()).shut_down()
     click.echo("stopped")
 
 
 @command(example="semmap repair --data maps/flat")
 @click.option("--data", type=_path, default=None, help="Data folder of the map; its system must be stopped.")
-@click.option("--tbox", type=_path, default=None, help="TBox file to use if the stored one is damaged, too.")
+@click.option("--tbox", type=_path, default=None, help="TBox file to use if the stored TBox is damaged.")
 def repair(data: Path | None, tbox: Path | None) -> None:
-    """Restore the last good commit of a damaged map.
+    """Recover a damaged map up to its last intact commit.
 
     The damaged file is kept.
     """
@@ -258,11 +275,11 @@ def repair(data: Path | None, tbox: Path | None) -> None:
 def node(name: str, settings: Settings) -> None:
     """Run a single node in the foreground.
 
-    The coordinator (with --secure the router) listens on --listen; the other nodes connect to it there, or
-    to the router at --connect. A router with --namespace '*' is shared by several robots.
+    The coordinator (with --secure, the router) listens on --listen. The other nodes connect to that endpoint,
+    or to the router at --connect. A router with --namespace '*' is shared by several robots.
     """
     if settings.namespace == ALL_ROBOTS and name != ROUTER:
-        raise errors.BadRequest("--namespace '*' is for a router that robots share: semmap node router")
+        raise errors.BadRequest("--namespace '*' requires a shared router: semmap node router")
     extras.require(f"semmap node {name}", extras.OF_NODE[name])
     from semmap.nodes.supervisor.launch import run_node, seed
     from semmap.nodes.supervisor.privacy import UMASK, make_private
@@ -287,7 +304,7 @@ def _settings(
     zenoh_config: Path | None, insecure: bool, namespace: str,
     web: bool, web_port: int | None, web_as: str | None,
 ) -> Settings:  # fmt: skip
-    """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
+    """Return settings with absolute paths to existing files. Raises BadFile, BadRequest."""
     folder = (data or default_data()).resolve()
     nodes: tuple[str, ...] = ()
     if only is not None:
@@ -301,10 +318,10 @@ def _settings(
     _require_for_web(web=web, port=web_port, name=web_as, secure=secure, single=single)
     before = None if fresh else _settings_before(folder)
     if abox is not None and (folder / JOURNAL).exists() and not fresh:
-        print_error(f"--abox is ignored: there is a map in {folder}; --fresh starts a new one")
+        print_error(f"warning: --abox is ignored: {folder} has a map; add --fresh to start a new one")
     if spatial_root and (folder / JOURNAL).exists() and not fresh:
         print_error(
-            f"--spatial-root is ignored: there is a map in {folder}; for its TBox use:"
+            f"warning: --spatial-root is ignored: {folder} has a map; for its TBox use:"
             " semmap load --tbox FILE --spatial-root CLASS"
         )
     of_the_flat = abox is None and not tbox
@@ -364,79 +381,80 @@ def _settings(
 
 
 def _robot_file(word: str) -> str:
-    """The file of a robot, or of the one of that name that comes with semmap. Raises BadFile."""
+    """Return the file of a robot, which is a path or the name of an included robot. Raises BadFile."""
     shipped = _ROBOTS / f"{word}.xml"
     if word.isidentifier() and shipped.is_file():
         return str(shipped)
     if not Path(word).exists():
         names = ", ".join(sorted(path.stem for path in _ROBOTS.glob("*.xml")))
-        raise errors.BadFile(f"there is no file {word}; the robots that come with semmap: {names}")
+        raise errors.BadFile(f"there is no file {word}; included robots: {names}")
     return _existing(Path(word))
 
 
 def _part(only: str, *, single: bool, without: dict[str, bool]) -> tuple[str, ...]:
-    """The nodes that `--only` names. Raises BadRequest where another option says which nodes run."""
+    """Return the nodes that `--only` names. Raises BadRequest if another option also selects nodes."""
     if single:
-        raise errors.BadRequest("semmap node runs one node; --only is for semmap up")
-    for option, is_given in without.items():
-        if is_given:
-            raise errors.BadRequest(f"--only names the nodes to run; leave out {option}")
+        raise errors.BadRequest("--only applies to semmap up; semmap node runs a single node")
+    for option, is_set in without.items():
+        if is_set:
+            raise errors.BadRequest(f"--only and {option} exclude each other; remove {option}")
     return nodes_of(only)
 
 
 def _require_for_web(
     *, web: bool, port: int | None, name: str | None, secure: Path | None, single: bool
 ) -> None:
-    """Raises BadRequest for options of the page that do not go together."""
+    """Raise BadRequest for options of the page that exclude each other."""
     if not web:
         if port is not None or name is not None:
-            raise errors.BadRequest(
-                f"{'--web-as' if port is None else '--web-port'} is of the page: add --web"
-            )
+            raise errors.BadRequest(f"{'--web-as' if port is None else '--web-port'} requires --web")
         return
     if single:
-        raise errors.BadRequest("semmap node runs one node; --web is for semmap up, or use: semmap web")
+        raise errors.BadRequest("--web applies to semmap up; for a single page use: semmap web")
     if secure is None and name is not None:
-        raise errors.BadRequest("--web-as names a certificate; it goes with --secure")
+        raise errors.BadRequest("--web-as requires --secure")
     if secure is not None and name is None:
         raise errors.BadRequest(
-            "say under whose certificate the page acts: --web-as NAME (to make one:"
+            "--web with --secure requires --web-as NAME (to create a certificate:"
             f" semmap keys add NAME --role operator --dir {shlex.quote(str(secure))})"
         )
 
 
 def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
-    """Without certificates a system listens on this machine only. Raises BadRequest, BadFile, NoAnswer."""
+    """Reject a system without certificates that other hosts can reach.
+
+    Raises BadRequest, BadFile, NoAnswer.
+    """
     listen, secure, config = values["listen"], values["secure"], values["zenoh_config"]
     if not is_endpoint(listen):
-        return  # which the settings refuse
+        return  # the settings reject it
     if config is not None:
         bus.own_config.require_sound(config, secure=secure is not None)
     if secure is not None:
         if insecure:
-            raise errors.BadRequest("give either --secure or --insecure")
+            raise errors.BadRequest("--secure and --insecure exclude each other; remove one of them")
         for endpoint in (listen, *values["connect"]):
             bus.require_tls(endpoint)
         if values["single"] and values["connect"]:
-            return  # the router is elsewhere
+            return  # the router runs on another host
         register = Register.read(Path(secure))
         host = bus.host_of(listen)
         if host not in ("0.0.0.0", "::", *register.hosts):
             raise errors.BadRequest(
-                f"the router's certificate is for {', '.join(register.hosts)}, not for {host}; add it:"
+                f"the router's certificate is valid for {', '.join(register.hosts)}, not for {host}; add it:"
                 f" semmap keys renew router --host {host} --dir {shlex.quote(secure)}"
             )
     elif not bus.is_local(listen) and not (config is not None and bus.own_config.is_protected(config)):
         if not insecure:
             raise errors.BadRequest(
-                f"without certificates everybody who reaches {listen} could read and change the map; make"
-                " some (semmap keys init DIR) and add --secure DIR, or say --insecure"
+                f"{listen} can be reached from other hosts, which could read and change the map; create"
+                " certificates (semmap keys init DIR) and add --secure DIR, or add --insecure"
             )
-        print_error(f"warning: everybody who reaches {listen} may read and change the map (--insecure)")
+        print_error(f"warning: every host that reaches {listen} can read and change the map (--insecure)")
 
 
 def _option_of(field: str) -> str:
-    """The word of the command line that a setting comes from, if it begins a complaint: `threshold_m`."""
+    """Return the option of the setting that begins an error text: `--threshold` for `threshold_m`."""
     name = field.removesuffix(":")
     if name not in Settings.__struct_fields__:
         return field
@@ -445,9 +463,9 @@ def _option_of(field: str) -> str:
 
 
 def _settings_before(data: Path) -> Settings | None:
-    """What was last run in `data`, if there is a map, or it was a part whose map is on another host.
+    """Return the previous settings of the data folder, if it has a map or its map is on another host.
 
-    What of it is lost is told.
+    Settings that can no longer be used are reported on stderr.
     """
     has_map = (data / JOURNAL).exists()
     try:
@@ -456,7 +474,9 @@ def _settings_before(data: Path) -> Settings | None:
         return None
     except errors.BadRequest:
         if has_map:
-            print_error(f"{data / SETTINGS} cannot be read; --truth and --world are reset to their defaults")
+            print_error(
+                f"warning: {data / SETTINGS} cannot be read; --truth and --world are reset to their defaults"
+            )
         return None
     if not has_map and (not settings.only or "kb_node" in settings.only):
         return None
@@ -464,7 +484,7 @@ def _settings_before(data: Path) -> Settings | None:
         shipped = {path.name: path for path in (FLAT_WORLD, EMPTY_WORLD)}
         if world.parent.name == FLAT_WORLD.parent.name and world.name in shipped:  # of another installation
             return structs.replace(settings, world=str(shipped[world.name]))
-        print_error(f"the world {settings.world} no longer exists; using the flat's")
+        print_error(f"warning: the world {settings.world} no longer exists; using the world of the flat")
         return structs.replace(settings, world=str(FLAT_WORLD))
     return settings
 

@@ -1,4 +1,4 @@
-"""The verb `mcp`: the map for language-model agents."""
+"""The command `mcp`: the map for language-model agents."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
-    """A verb that says what it lacks before it with_client to a system."""
+    """Check that the extra `mcp` is installed before the command connects to a system."""
 
     @functools.wraps(function)
     def checked(**arguments: Any) -> None:
@@ -32,27 +32,37 @@ def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
     return checked
 
 
-def _names(_: click.Context, __: click.Parameter, said: str | None) -> frozenset[str]:
-    """Words with commas between them."""
-    return frozenset(filter(None, (word.strip() for word in (said or "").split(","))))
+def _names(_: click.Context, __: click.Parameter, value: str | None) -> frozenset[str]:
+    """Split a comma-separated list of names."""
+    return frozenset(filter(None, (word.strip() for word in (value or "").split(","))))
 
 
 @command(example="semmap mcp --allow change --places kitchen1 --approve")
-@click.option("--allow", type=click.Choice(["change"]), help="Let agents change the map, too.")
+@click.option("--allow", type=click.Choice(["change"]), help="Also let agents change the map.")
 @click.option(
-    "--classes", callback=_names, metavar="CLASSES", help="Only entities of these, such as Cup,Book."
+    "--classes", callback=_names, metavar="CLASSES", help="Changes only to these classes, such as Cup,Book."
 )
-@click.option("--places", callback=_names, metavar="PLACES", help="Only entities in these, such as kitchen1.")
-@click.option("--rate", type=click.FloatRange(min=0.1, max=6000.0), help="Changes a minute. Default: 30.")
-@click.option("--approve", is_flag=True, help="Changes wait for a person: semmap approve.")
-@click.option("--agent", default="agent", show_default=True, metavar="NAME", help="Name that signs changes.")
+@click.option(
+    "--places", callback=_names, metavar="PLACES", help="Changes only in these places, such as kitchen1."
+)
+@click.option(
+    "--rate", type=click.FloatRange(min=0.1, max=6000.0), help="Changes per minute, at most. Default: 30."
+)
+@click.option("--approve", is_flag=True, help="Changes require approval by a person: semmap approve.")
+@click.option(
+    "--agent",
+    default="agent",
+    show_default=True,
+    metavar="NAME",
+    help="Author of the changes in the history.",
+)
 @click.option(
     "--http",
     type=click.IntRange(0, 65_535),
     is_flag=False,
     flag_value=7448,
     metavar="[PORT]",
-    help="Serve over HTTP on this machine (port 7448), for whoever sends the token that it prints.",
+    help="Serve over HTTP on this machine (port 7448), for clients with the printed token.",
 )
 @_with_its_extra
 @with_client
@@ -66,28 +76,28 @@ def mcp(
     agent: str,
     http: int | None,
 ) -> None:
-    """Serve the map to language-model agents, over MCP.
+    """Serve the map to language-model agents over MCP.
 
-    It speaks the Model Context Protocol on standard input and output, as hosts that start it expect. It only
-    reads, unless changes are allowed: then an agent proposes a change, reads what would follow, and commits.
+    The server uses the Model Context Protocol on standard input and output; the host of the agent starts it.
+    It is read-only by default. With --allow change, an agent proposes a change, reads its consequences, and
+    commits it.
     """
-    limited = [
+    limits = [
         option
-        for option, given in (
+        for option, value in (
             ("--classes", classes),
             ("--places", places),
             ("--rate", rate),
             ("--approve", approve),
         )
-        if given
+        if value
     ]
-    if limited and allow is None:
-        raise errors.BadRequest(f"{limited[0]} limits changes; to allow them at all: --allow change")
+    if limits and allow is None:
+        raise errors.BadRequest(f"{limits[0]} requires --allow change")
     from semmap.nodes.extern.mcp.server import run_stdio
     from semmap.nodes.extern.mcp.tools import Tools
 
-    further = _changing(client, agent, classes, places, rate, approve) if allow else ()
-    tools = Tools(client, further)
+    tools = Tools(client, _change_tools(client, agent, classes, places, rate, approve) if allow else ())
     if http is None:
         run_stdio(tools)
         return
@@ -101,7 +111,7 @@ def mcp(
     )
 
 
-def _changing(
+def _change_tools(
     client: Client,
     agent: str,
     classes: frozenset[str],

@@ -1,4 +1,4 @@
-"""The verb `movie`: a span of the map's history as a video."""
+"""The command `movie`: a video of a period of the history."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _SIZE, _FPS = (960, 640), 20
 
 @command(example="semmap movie morning.mp4 --since 08:00 --until 09:00 --speed 10")
 @click.argument("file", type=_path)
-@click.option("--since", metavar="COMMIT|TIME", help="Begin with the map as it was then. Default: the first.")
-@click.option("--until", metavar="COMMIT|TIME", help=f"End with the map as it was then. Default: now. {TIME}")
+@click.option("--since", metavar="COMMIT|TIME", help="Start of the period. Default: the first commit.")
+@click.option("--until", metavar="COMMIT|TIME", help=f"End of the period. Default: now. {TIME}")
 @click.option(
-    "--speed", type=float, default=1.0, show_default=True, metavar="X", help="So many times as fast."
+    "--speed", type=float, default=1.0, show_default=True, metavar="X", help="Playback speed factor."
 )
 @click.option(
     "--longest",
@@ -31,14 +31,16 @@ _SIZE, _FPS = (960, 640), 20
     default=rhythm.LONGEST_S,
     show_default=True,
     metavar="S",
-    help="Show no commit for longer than S seconds.",
+    help="Maximum duration of a commit in the video.",
 )
-@click.option("--size", nargs=2, type=int, default=_SIZE, show_default=True, metavar="W H")
-@click.option("--fps", type=int, default=_FPS, show_default=True, help="Pictures a second.")
-@click.option("--camera", default="", metavar="NAME", help="A camera of the world. Default: all from above.")
+@click.option(
+    "--size", nargs=2, type=int, default=_SIZE, show_default=True, metavar="W H", help="Size [pixel]."
+)
+@click.option("--fps", type=int, default=_FPS, show_default=True, help="Frames per second.")
+@click.option("--camera", default="", metavar="NAME", help="Camera of the world. Default: view from above.")
 @click.option("--place", metavar="NAME", help="Only this place, from above.")
-@click.option("--world", type=_path, help="Scene file. Default: the one that the map was last run with.")
-@click.option("--data", type=_path, help="The map's data folder. Default: a running system.")
+@click.option("--world", type=_path, help="Scene file. Default: the last world of the map.")
+@click.option("--data", type=_path, help="Data folder of the map. Default: a running system.")
 @click.option("--overwrite", is_flag=True, help="Replace FILE if it exists.")
 @connect_option
 @identity_option
@@ -54,11 +56,11 @@ def movie(
     namespace: str | None,
     **wanted: Any,
 ) -> None:
-    """Film a span of the map's history (MP4).
+    """Export a video of a period of the history (MP4).
 
-    Things glide, come and go as the commits say, with names of what changes and
-    a caption for each commit. With OpenGL where there is one, else ray-cast,
-    which takes longer. The map is only read, and may be in use meanwhile.
+    The video shows how objects move, appear and disappear, with the names of changed objects and a caption
+    for each commit. It is rendered with OpenGL or, where OpenGL is not available, by slower ray casting. The
+    map is only read; its system may be running.
     """
     from semmap.nodes.extern.movie import Film
     from semmap.nodes.extern.movie import movie as make
@@ -66,11 +68,11 @@ def movie(
     if world is not None and not world.is_file():
         raise errors.BadFile(f"there is no file {world}")
     film = Film(longest_s=longest, world=world, **wanted)
-    of_whom = {"where": where, "identity": identity, "namespace": namespace}
-    print_escaped(make(file, film, data=data, overwrite=overwrite, tell=_progress, **of_whom))
+    system = {"where": where, "identity": identity, "namespace": namespace}
+    print_escaped(make(file, film, data=data, overwrite=overwrite, tell=_progress, **system))
 
 
 def _progress(text: str) -> None:
-    """How far it is, on one line that is written over; nothing where nobody looks."""
+    """Print the progress in a terminal, on a line that the next text overwrites."""
     if sys.stderr.isatty():
         print(f"\r{text}\x1b[K", end="\r", file=sys.stderr, flush=True)

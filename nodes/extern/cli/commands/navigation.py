@@ -1,4 +1,4 @@
-"""The verbs for robots that drive: `floorplan`, `route`."""
+"""The commands for robot navigation: `floorplan`, `route`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from semmap.schemas.plans import HEIGHTS_M, RADIUS_M
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
 
-_as_of = click.option("--as-of", metavar="COMMIT|TIME", help="The map as it was then.")
+_as_of = click.option("--as-of", metavar="COMMIT|TIME", help="State of the map at a commit or time.")
 _height_range = click.option(
     "--height-range",
     "heights",
@@ -25,15 +25,13 @@ _height_range = click.option(
     default=HEIGHTS_M,
     show_default=True,
     metavar="LOW HIGH",
-    help="What has a part between these heights above the floor [m] is in the robot's way.",
+    help="Objects with a part between these heights above the floor [m] are obstacles.",
 )
 
 
 @command(example="semmap floorplan flat.png --resolution 0.05")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option(
-    "--resolution", type=float, default=0.05, show_default=True, metavar="M", help="Metres a pixel."
-)
+@click.option("--resolution", type=float, default=0.05, show_default=True, metavar="M", help="Cell size [m].")
 @_height_range
 @click.option("--no-furniture", is_flag=True, help="Walls only.")
 @_as_of
@@ -41,9 +39,9 @@ _height_range = click.option(
 def floorplan(client: Client, file: Path, no_furniture: bool, **how: Any) -> None:
     """Write a floor plan to FILE.
 
-    A .png or .pgm is an occupancy grid with a .yaml beside it, as ROS's map server takes them, furniture
-    as it stands; if places are forbidden (isForbidden), with a mask of them. A .svg is for people, a
-    .geojson for programs.
+    A .png or .pgm file is an occupancy grid with a .yaml file, as the ROS map server reads them. It includes
+    the furniture; forbidden places (isForbidden) are written to a separate mask. A .svg file is a drawing for
+    people, a .geojson file is for programs.
     """
     from semmap.nodes.extern.floorplans import write_floorplan
 
@@ -55,24 +53,24 @@ def floorplan(client: Client, file: Path, no_furniture: bool, **how: Any) -> Non
 @click.argument("start", metavar="FROM", shell_complete=entity_names)
 @click.argument("end", metavar="TO", shell_complete=entity_names)
 @click.option(
-    "--radius", type=float, default=RADIUS_M, show_default=True, metavar="M", help="Half the robot's width."
+    "--radius", type=float, default=RADIUS_M, show_default=True, metavar="M", help="Radius of the robot [m]."
 )
 @_height_range
 @_as_of
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @with_client
 def route(client: Client, start: str, end: str, form: str, **how: Any) -> None:
-    """Find the shortest way over places and through doors.
+    """Find the shortest route through places and doors.
 
-    FROM and TO are places, things or persons, by name, reference or class, or positions: 2.5,1. Ends with
-    status 1 where there is no way, or none is open.
+    FROM and TO are positions, such as 2.5,1, or entities, by name, label or class. The exit status is 1 if
+    there is no route, or if doors on the route are closed.
     """
-    way = client.route(start, end, **how)
+    found = client.route(start, end, **how)
     if form == "json":
-        print_json(way)
+        print_json(found)
     else:
-        print_escaped(way.text)
-        for note in way.notes:
+        print_escaped(found.text)
+        for note in found.notes:
             print_escaped(f"  note: {note}")
-    if way.closed:
+    if found.closed:
         raise SystemExit(1)

@@ -1,4 +1,4 @@
-"""The verb `perceive`: finds objects in files; it needs no running system."""
+"""The command `perceive`: object detection in files, without a running system."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
     from semmap.nodes.perception_node.detector import Detector
     from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
 
-_SAY_S = 5.0
-"""After this time it is told again how far a dataset is."""
-_CLUTTER = "?: too little to tell, or a part of furniture, whose parts are put together with --frames"
+_PROGRESS_S = 5.0
+"""Period of progress messages [s]."""
+_CLUTTER = "?: too few points to classify, or a part of furniture (with --frames, parts are combined)"
 _FRAMES = {
     "map": "map frame",
-    "plane": "frame: the floor, or else the largest plane, is z = 0, the camera above its origin",
+    "plane": "frame: z = 0 is the floor or the largest plane, the origin is below the camera",
 }
 
 
 def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[Any], Any]:
-    """An option that names a file or a folder."""
+    """Return an option whose value is a file or a folder."""
     return click.option(name, *also, metavar=metavar, type=click.Path(path_type=Path), help=help)
 
 
@@ -44,14 +44,16 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
 @_path_option(
     "--frames",
     "DIR",
-    "A dataset instead, or a frame of one: a folder with rgb.png, depth.png [mm] and camera.json.",
+    "Dataset, or one of its frames: a folder with rgb.png, depth.png [mm] and camera.json.",
 )
 @_path_option(
     "--labels",
     "OUT",
-    "Write the object label of each point to this .npy file, or of each frame into this folder.",
+    "Write the object label of each point to this .npy file or, with --frames, to files in this folder.",
 )
-@_path_option("--json", "OUT", "With --frames: write a row for each frame to this file.", "rows")
+@_path_option(
+    "--json", "OUT", "With --frames: write the results to this JSON file, one row per frame.", "rows"
+)
 @_path_option(
     "--intrinsics",
     "FILE.json",
@@ -60,14 +62,14 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
 @_path_option(
     "--masks",
     "FILE",
-    "Masks of a detector: COCO's JSON or a label image; with --frames, their name in each folder.",
+    "Masks of a detector (COCO JSON or label image); with --frames, their file name in each folder.",
 )
 @_path_option(
-    "--label-map", "FILE.json", 'With --masks: what its labels are called here, {"coffee mug": "Cup"}.'
+    "--label-map", "FILE.json", 'With --masks: labels and their classes, as in {"coffee mug": "Cup"}.'
 )
-@click.option("--masks-only", is_flag=True, help="With --masks: find nothing but what they show.")
-@click.option("--fit", is_flag=True, help="Fit the models of classes to what is found: full poses (Open3D).")
-@_path_option("--data", "DIR", "Know also what was shown: the data folder of semmap learn --data.")
+@click.option("--masks-only", is_flag=True, help="With --masks: report only the objects in the masks.")
+@click.option("--fit", is_flag=True, help="Fit class models to the objects, for full poses (needs Open3D).")
+@_path_option("--data", "DIR", "Also use the exemplars in this data folder (semmap learn --data).")
 @click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
 def perceive(
     files: tuple[Path, ...],
@@ -84,9 +86,9 @@ def perceive(
 ) -> None:
     """Find the objects in point clouds, depth images or datasets.
 
-    Clouds are PCD or PLY files, with Open3D .xyz, .xyzrgb and .pts, too; images are one in colour and one of
-    depth (PNG). Labels are integers in the cloud's own shape, (height, width), or (1, points) when it is not
-    organised: 0 for background, 1 to n for the objects.
+    Point clouds are PCD or PLY files and, with Open3D, .xyz, .xyzrgb and .pts files. Images are a colour and
+    a depth image (PNG). The labels are integers in the shape of the cloud: (height, width), or (1, points)
+    for unorganized clouds. 0 is the background, 1 to n are the objects.
     """
     extras.require("semmap perceive", "perception")
     if fit:
@@ -95,19 +97,19 @@ def perceive(
     if frames is not None:
         if files or intrinsics is not None:
             raise errors.BadRequest(
-                "--frames takes neither files nor --intrinsics; each frame has its own camera.json"
+                "--frames excludes FILE and --intrinsics; each frame has its own camera.json"
             )
         _dataset(frames, labels, rows, detector, _learnt(data), format, fit=fit)
         return
     if rows is not None:
-        raise errors.BadRequest("--json goes with --frames; for files use --format json")
+        raise errors.BadRequest("--json requires --frames; for files use --format json")
     if not files:
-        raise errors.BadRequest("name at least one FILE, or a dataset with --frames DIR")
+        raise errors.BadRequest("missing argument FILE; name a file, or a dataset with --frames DIR")
     if labels is not None and labels.suffix != ".npy":
         raise errors.BadRequest(
-            f"labels are written as a NumPy array; name the file {labels.with_suffix('.npy').name}"
+            f"--labels {labels.name}: the suffix must be .npy, as in {labels.with_suffix('.npy').name}"
         )
-    import numpy as np  # half of what the command line would take to start
+    import numpy as np  # importing it takes half of the start of the command line
 
     from semmap.nodes.perception_node.fitting.model_surfaces import shipped as surfaces
     from semmap.nodes.perception_node.fitting.things import fitted_in_sight
@@ -118,9 +120,9 @@ def perceive(
 
     learnt = _learnt(data)
     clouds = list(read_frames(files, intrinsics))
-    for option, given in (("--labels", labels), ("--masks", masks)):
-        if given is not None and len(clouds) != 1:
-            raise errors.BadRequest(f"{option} takes one frame, and these are {len(clouds)}")
+    for option, value in (("--labels", labels), ("--masks", masks)):
+        if value is not None and len(clouds) != 1:
+            raise errors.BadRequest(f"{option} requires a single frame, not {len(clouds)}")
     records = []
     for file, cloud in clouds:
         sight = see(cloud)
@@ -156,13 +158,13 @@ def _require_open3d() -> None:
 
     if not available():
         raise errors.BadRequest(
-            "--fit needs Open3D, which is not installed (semmap's extra `perception` brings it for"
-            " Python up to 3.12); go without it for boxes"
+            "--fit requires Open3D (installed by the extra semmap[perception] for Python up to 3.12); without"
+            " it, boxes are reported"
         )
 
 
 def _learnt(data: Path | None) -> Learnt:
-    """What ships with perception, and what a data folder has of what was shown."""
+    """Return the trained classifiers, with the exemplars of a data folder."""
     from semmap.nodes.perception_node.lesson_book import FILENAME, LessonBook
     from semmap.nodes.perception_node.recognition.shipped_votes import shipped
 
@@ -170,16 +172,16 @@ def _learnt(data: Path | None) -> Learnt:
         return shipped()
     if not (data / FILENAME).exists():
         raise errors.BadFile(
-            f"nothing was shown to {data}; first: semmap learn CLASS --frames DIR --data {data}"
+            f"no exemplars in {data}; to add one: semmap learn CLASS --frames DIR --data {data}"
         )
     return LessonBook(data / FILENAME, shipped()).learnt
 
 
 def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -> Detector | None:
-    """What a detector of one's own has found."""
+    """Return the results of an external detector, if there are any."""
     if masks is None:
         if label_map is not None or masks_only:
-            raise errors.BadRequest("--label-map and --masks-only go with --masks")
+            raise errors.BadRequest("--label-map and --masks-only require --masks")
         return None
     from semmap.nodes.perception_node.detector import Detector
     from semmap.nodes.perception_node.recognition.shipped_votes import shipped
@@ -187,9 +189,9 @@ def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -
 
     classes = read_label_map(label_map) if label_map is not None else {}
     labels = Labels(shipped(), classes)
-    if strange := sorted({name for name in classes.values() if not labels.is_learnt(name)}):
-        hint = errors.did_you_mean(strange[0], shipped().ancestors)
-        print_error(f"classes of the label map that perception never learnt: {wording.few(strange)}{hint}")
+    if untrained := sorted({name for name in classes.values() if not labels.is_learnt(name)}):
+        hint = errors.did_you_mean(untrained[0], shipped().ancestors)
+        print_error(f"note: classes of the label map without training data: {wording.few(untrained)}{hint}")
     return Detector(masks, labels, masks_only)
 
 
@@ -203,7 +205,7 @@ def _dataset(
     *,
     fit: bool,
 ) -> None:
-    """What each frame of a dataset shows; what is wrong with one is told in its row, and the others go on."""
+    """Find the objects in each frame of a dataset. The error of a frame is in its row."""
     import msgspec
     import numpy as np
 
@@ -213,13 +215,13 @@ def _dataset(
 
     folders = frames_in(folder)
     if out is not None and (out.is_dir() or not out.absolute().parent.is_dir()):
-        raise errors.BadFile(f"{out} cannot be written: it is a folder, or in one that is not there")
+        raise errors.BadFile(f"{out} cannot be written: it is a folder, or its parent folder does not exist")
     if labels is not None:
         try:
             labels.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise errors.BadFile(f"{labels} cannot be made a folder of labels: {error.strerror}") from None
-    rows, unknown, said, began_s = [], set[str](), 0.0, time.monotonic()
+            raise errors.BadFile(f"{labels} cannot be created: {error.strerror}") from None
+    rows, unknown, printed_s, began_s = [], set[str](), 0.0, time.monotonic()
     for told in perceived(folders, learnt, detector, surfaces() if fit else None):
         rows.append(told.row)
         unknown.update(told.unknown_labels)
@@ -229,10 +231,10 @@ def _dataset(
             write_atomically(labels / f"{told.row.frame}.npy", buffer.getvalue())
         if out is None and format == "table":
             show_frame(told.row)
-        elif time.monotonic() > said + _SAY_S:
-            said = time.monotonic()
+        elif time.monotonic() > printed_s + _PROGRESS_S:
+            printed_s = time.monotonic()
             print_escaped(
-                f"semmap: {len(rows)} of {len(folders)} frames ({said - began_s:.0f} s)", file=sys.stderr
+                f"semmap: {len(rows)} of {len(folders)} frames ({printed_s - began_s:.0f} s)", file=sys.stderr
             )
     if out is not None:
         lines = b",\n".join(msgspec.json.encode(row) for row in rows)
@@ -246,7 +248,7 @@ def _dataset(
             _summary(rows, time.monotonic() - began_s, [path for path in (out, labels) if path is not None])
         )
     if all(row.error for row in rows):
-        raise errors.BadFile(f"{folder} holds no frame that can be used, so there is nothing to tell of it")
+        raise errors.BadFile(f"{folder}: no usable frames")
 
 
 def _summary(rows: Sequence[FrameRow], took_s: float, written: Sequence[Path]) -> str:
@@ -255,5 +257,5 @@ def _summary(rows: Sequence[FrameRow], took_s: float, written: Sequence[Path]) -
     speed = f"{took_s:.1f} s ({len(rows) / took_s:.1f} frames/s)"
     lines = [f"{wording.counted(len(rows), 'frame')}, {objects} in {speed}"]
     if bad:
-        lines.append(f"{wording.counted(len(bad), 'frame')} could not be used, the first: {bad[0].error}")
+        lines.append(f"{wording.counted(len(bad), 'frame')} skipped; first error: {bad[0].error}")
     return "\n".join([*lines, *(f"wrote {path}" for path in written)])

@@ -1,4 +1,4 @@
-"""The verbs that query: `list`, `get`, `check`, `infer`, `explain`, `sparql` and others, and `watch`."""
+"""The commands that query: `list`, `get`, `check`, `infer`, `explain`, `sparql` and others, and `watch`."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 _format = functools.partial(click.option, "--format", "format")
 _as_of = click.option("--as-of", metavar="COMMIT|TIME", help=f"The map after a commit or at a time. {TIME}")
 _STATUS_S = 20.0
-"""Seconds: whoever asks how things stand is told of a system that is too busy to say."""
+"""Timeout of `status` [s]: it also reports a system that is too busy to reply."""
 
 
 @command("list", example="semmap list --class Cup --on table1")
@@ -47,28 +47,28 @@ _STATUS_S = 20.0
     "class_",
     metavar="CLASS",
     shell_complete=class_names,
-    help="Only entities of this class, inferred types included.",
+    help="Only entities of this class, including inferred types.",
 )
 @click.option(
-    "--on", metavar="THING", shell_complete=entity_names, help="Only what stands on it, or on what is on it."
+    "--on", metavar="THING", shell_complete=entity_names, help="Only objects on it, directly or indirectly."
 )
 @click.option(
     "--in",
     "in_",
     metavar="PLACE",
     shell_complete=entity_names,
-    help="Only what is in that place, or inside that container.",
+    help="Only objects in this place or container.",
 )
 @click.option(
     "--near",
     metavar="THING|X,Y,Z",
     shell_complete=entity_names,
-    help="Only what is near it, or within M of a position.",
+    help="Only objects near it, or within M metres of a position.",
 )
 @click.option("--within", type=float, metavar="M", help="With --near: maximum distance [m].")
 @click.option("--nearest", type=int, metavar="N", help="With --to: only the N nearest, nearest first.")
 @click.option("--to", metavar="THING|X,Y,Z", shell_complete=entity_names, help="See --nearest.")
-@frame_option("The frame of positions, of those that are listed too, instead of the map's")
+@frame_option("Frame of all positions, in the arguments and in the output. Default: map")
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
 @_as_of
 @supports_robots(of_robots.entities)
@@ -76,7 +76,7 @@ _STATUS_S = 20.0
 def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **where: Any) -> None:
     """List the entities.
 
-    THING and PLACE are a name, a reference or a class; X,Y,Z is a position [m].
+    THING and PLACE are a name, a label or a class. X,Y,Z is a position [m].
     """
     if format in ("lu4r", "legacy"):
         print_json(client.send(commands.List(class_=class_, format=format, as_of=as_of, **where)))
@@ -87,29 +87,29 @@ def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **
         return
     _print_entities(entities)
     if as_of is None:
-        print_lines(_left_out(client, filter(None, (where["on"], where["in_"]))))
+        print_lines(_suppressed_notes(client, filter(None, (where["on"], where["in_"]))))
 
 
-def _left_out(client: Client, words: Iterable[str]) -> Iterator[str]:
-    """A note for each thing of that name about which something measured is withheld, and so is not listed."""
-    for word in words:
+def _suppressed_notes(client: Client, names: Iterable[str]) -> Iterator[str]:
+    """Yield a note for each of these entities that has suppressed facts, which the list does not include."""
+    for name in names:
         try:
-            withheld = client.get(word, where=True).withheld
-        except errors.UnknownName:  # a reference or a class
+            suppressed = client.get(name, where=True).withheld
+        except errors.UnknownName:  # a label or a class
             continue
-        if withheld:
-            yield f"  note: not listed is what would contradict the map, about {word}; semmap check tells why"
+        if suppressed:
+            yield f"  note: some relations of {name} are suppressed: they contradict the map; see: semmap check"
 
 
 @command(example="semmap get cup1")
 @click.argument("name", shell_complete=entity_names)
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @_as_of
-@frame_option("Tell its pose in this frame")
+@frame_option("Frame of the printed pose")
 @supports_robots(of_robots.entity)
 @with_client
 def get(client: Client, name: str, format: str, as_of: str | None, frame: str | None) -> None:
-    """Show one entity, and where it is."""
+    """Show one entity and its location."""
     entity = client.get(name, where=True, as_of=as_of, frame=frame)
     if format == "json":
         print_json(entity)
@@ -122,7 +122,7 @@ def get(client: Client, name: str, format: str, as_of: str | None, frame: str | 
 @click.option("--engine", type=click.Choice(["semmap", "owlrl"]), default="semmap", show_default=True)
 @with_client
 def check(client: Client, engine: Any) -> None:
-    """Check whether the map is consistent, and explain why not."""
+    """Check whether the map is consistent; if not, explain why."""
     checked = client.check(engine)
     print_escaped(f"{checked.text} ({checked.engine}, {checked.triples} triples, {checked.elapsed_s:.3f} s)")
     print_lines(f"  note: {relation.text}" for relation in checked.denied)
@@ -135,7 +135,7 @@ def check(client: Client, engine: Any) -> None:
 @click.argument("name", required=False, shell_complete=entity_names)
 @with_client
 def infer(client: Client, name: str | None) -> None:
-    """List the inferred facts about one entity, or about all."""
+    """List the inferred facts of one entity, or of all."""
     print_lines(lines.inferred(client.infer(name)))
 
 
@@ -143,14 +143,14 @@ def infer(client: Client, name: str | None) -> None:
 @click.argument("name", shell_complete=entity_names)
 @click.argument("predicate")
 @click.argument("value")
-@click.option("--not", "negated", is_flag=True, help="Why it cannot hold.")
+@click.option("--not", "negated", is_flag=True, help="Explain why the fact cannot hold.")
 @_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
 @with_client
 def explain(client: Client, name: str, predicate: str, value: str, negated: bool, format: str) -> None:
-    """Explain why a fact holds: semmap explain cup1 type Object.
+    """Explain why a fact holds or, with --not, cannot hold.
 
-    PREDICATE is a property, or type, sameAs, differentFrom, subClassOf, equivalentClass, disjointWith. With
-    --not, why it cannot hold: semmap explain --not cup1 type Room.
+    PREDICATE is a property, or type, sameAs, differentFrom, subClassOf, equivalentClass, disjointWith. For
+    example, semmap explain --not cup1 type Room explains why cup1 cannot be a room.
     """
     explanation = client.explain(name, predicate, value, negated=negated)
     if format == "json":
@@ -166,59 +166,61 @@ def explain(client: Client, name: str, predicate: str, value: str, negated: bool
 @_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
 @with_client
 def could(client: Client, name: str, predicate: str, value: str, format: str) -> None:
-    """Could something hold without contradicting the map?
+    """Test whether a statement is consistent with the map.
 
-    For example: semmap could milk1 isInside oven1. PREDICATE is a property, or type, sameAs, differentFrom.
-    Nothing is changed. The exit status is 0 if it could, and 1 if it could not; then the answer says why.
+    PREDICATE is a property, or type, sameAs, differentFrom. The map is not changed. The exit status is 0 if
+    the statement is possible. Otherwise it is 1, and the reason is printed.
     """
-    answer = client.could(name, predicate, value)
+    reply = client.could(name, predicate, value)
     if format == "json":
-        print_json(answer)
+        print_json(reply)
     else:
-        print_escaped(answer.text)
-    if not answer.possible:
+        print_escaped(reply.text)
+    if not reply.possible:
         sys.exit(errors.Inconsistent.exit_status)
 
 
 @command(example="semmap relations cup1 --from person1")
 @click.argument("name", shell_complete=entity_names)
 @click.argument("other", required=False, shell_complete=entity_names)
-@click.option("--from", "viewer", metavar="ENTITY", help="Also left of, behind ... as seen from there.")
+@click.option(
+    "--from", "viewer", metavar="ENTITY", help="Viewer: also show left of, behind ... as seen from there."
+)
 @from_pose
 @_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
 @_as_of
 @with_client
 def relations(client: Client, name: str, other: str | None, format: str, **fields: Any) -> None:
-    """Show where a thing is relative to others, as measured.
+    """Show the computed spatial relations of an object.
 
-    With OTHER only relative to that, and also what does not hold.
+    With OTHER, show only the relations to that entity, including those that do not hold.
     """
     found = client.relations(name=name, other=other, **fields)
     if format == "json":
         print_json(found)
     else:
-        print_lines(list(lines.relations(found)) or [_beside_nothing(client, name)])
+        print_lines(list(lines.relations(found)) or [_no_relations(client, name)])
 
 
-def _beside_nothing(client: Client, name: str) -> str:
-    """What is said of a thing that is in no relation to any other."""
+def _no_relations(client: Client, name: str) -> str:
+    """Return the text for an entity without spatial relations."""
     try:
         is_place = client.get(name).place
-    except errors.UnknownName:  # a reference or a class
+    except errors.UnknownName:  # a label or a class
         is_place = False
     if is_place:
-        return f"{name} is a place; what is in it tells: semmap list --in {name}"
-    return f"{name} is on, in and near nothing"
+        return f"{name} is a place; to list its contents: semmap list --in {name}"
+    return f"{name} has no spatial relations to other entities"
 
 
 @command(example="semmap export map.ttl --inferred")
 @click.argument("file", type=click.Path(path_type=Path))
-@_format(type=click.Choice(commands.RDF_FORMATS), help="Default: by the file's suffix, else rdfxml.")
+@_format(type=click.Choice(commands.RDF_FORMATS), help="Default: by the suffix of FILE.")
 @click.option("--inferred", is_flag=True, help="Include inferred facts.")
 @_as_of
 @with_client
 def export(client: Client, file: Path, format: Any, inferred: bool, as_of: str | None) -> None:
-    """Export the map to FILE, checked for consistency first."""
+    """Export the map to FILE, after a consistency check."""
     document = client.export(format or _format_of(file), inferred=inferred, as_of=as_of)
     write_atomically(file, document.content)
     print(f"wrote {document.triples} triples to {file} (commit {document.seq})")
@@ -228,7 +230,7 @@ def export(client: Client, file: Path, format: Any, inferred: bool, as_of: str |
 @_format(type=click.Choice(["tree", "json"]), default="tree", show_default=True)
 @with_client
 def classes(client: Client, format: str) -> None:
-    """Show the class tree, with numbers of entities."""
+    """Show the class tree with the number of entities per class."""
     if format == "json":
         print_json(client.classes())
     else:
@@ -239,7 +241,7 @@ def classes(client: Client, format: str) -> None:
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @with_client
 def properties(client: Client, format: str) -> None:
-    """Show the properties that `set` may state, with their ranges."""
+    """Show the properties that `set` accepts, with their ranges."""
     found = client.properties()
     if format == "json":
         print_json(found)
@@ -265,7 +267,7 @@ def status(client: Client, format: str) -> None:
 
 @command(example='semmap sparql "SELECT ?cup { ?cup a dm:Cup }" --inferred')
 @click.argument("query")
-@click.option("--inferred", is_flag=True, help="Query inferred facts, too.")
+@click.option("--inferred", is_flag=True, help="Include inferred facts.")
 @_format(
     type=click.Choice(FORMATS),
     help="Default: table for rows, turtle for graphs.",
@@ -284,7 +286,7 @@ def status(client: Client, format: str) -> None:
     default=10_000,
     show_default=True,
     metavar="N",
-    help="Refuse results of more than N rows.",
+    help="Reject results with more than N rows.",
 )
 @_as_of
 @supports_robots(of_robots.rows)
@@ -292,8 +294,8 @@ def status(client: Client, format: str) -> None:
 def sparql(client: Client, query: str, **options: Any) -> None:
     """Run a read-only SPARQL 1.1 query.
 
-    It is a SELECT, ASK, CONSTRUCT or DESCRIBE. QUERY is the query text, @FILE, or - for stdin. Predefined
-    prefixes: dm: (TBox), : (ABox), rdf:, rdfs:, owl:, xsd:.
+    QUERY is a SELECT, ASK, CONSTRUCT or DESCRIBE query, @FILE, or - for standard input. Predefined prefixes:
+    dm: (TBox), : (ABox), rdf:, rdfs:, owl:, xsd:.
     """
     sparql_output.ask(client, query, **options)
 
@@ -301,24 +303,32 @@ def sparql(client: Client, query: str, **options: Any) -> None:
 @command(example="semmap watch --in kitchen1 --class Cup")
 @click.argument("keyexpr", default=keys.COMMIT.key)
 @click.option("--sparql", "query", metavar="QUERY", help="Watch the rows of a SELECT query instead.")
-@click.option("--inferred", is_flag=True, help="With --sparql: query inferred facts, too.")
-@click.option("--on", metavar="THING", shell_complete=entity_names, help="Watch what comes to be on it.")
-@click.option("--in", "in_", metavar="PLACE", shell_complete=entity_names, help="... in it, or inside it.")
-@click.option("--near", metavar="THING", shell_complete=entity_names, help="... near it.")
+@click.option("--inferred", is_flag=True, help="With --sparql: include inferred facts.")
+@click.option("--on", metavar="THING", shell_complete=entity_names, help="Watch the objects on it.")
+@click.option(
+    "--in", "in_", metavar="PLACE", shell_complete=entity_names, help="Watch the objects in or inside it."
+)
+@click.option("--near", metavar="THING", shell_complete=entity_names, help="Watch the objects near it.")
 @click.option("--within", type=float, metavar="M", help="With --near: maximum distance [m].")
 @click.option(
-    "--class", "class_", metavar="CLASS", shell_complete=class_names, help="With these: only this class."
+    "--class",
+    "class_",
+    metavar="CLASS",
+    shell_complete=class_names,
+    help="With --on, --in, --near: only objects of this class.",
 )
 @with_client
 def watch(client: Client, keyexpr: str, query: str | None, inferred: bool, **where: Any) -> None:
-    """Print the commits, or other messages, as they are published.
+    """Print commits, or other messages, as they are published.
 
-    KEYEXPR is a Zenoh key expression. THING and PLACE are a name, a reference or a class, as for list; what
-    comes (+) and goes (-) is told.
+    KEYEXPR is a Zenoh key expression. THING and PLACE are a name, a label or a class, as for list. Objects
+    and rows that appear are marked with +, those that disappear with -.
     """
     asks_where = any(word is not None for word in where.values())
     if (query is not None) + (keyexpr != keys.COMMIT.key) + asks_where > 1:
-        raise errors.BadRequest("give one of: a key expression, --sparql, or --on, --in and --near")
+        raise errors.BadRequest(
+            "KEYEXPR, --sparql, and --on/--in/--near exclude each other; use one of the three"
+        )
     from semmap.nodes.extern import availability
 
     with availability.report_availability(client, print_error):
@@ -332,7 +342,7 @@ def watch(client: Client, keyexpr: str, query: str | None, inferred: bool, **whe
 
 def _watch_key(client: Client, keyexpr: str) -> None:
     if sys.stderr.isatty():
-        print(f"watching {keyexpr}; Ctrl-C ends it", file=sys.stderr)
+        print(f"watching {keyexpr}; press Ctrl-C to stop", file=sys.stderr)
     if keyexpr == keys.COMMIT.key:
         with client.commits() as commits:
             for commit in commits:
@@ -343,13 +353,13 @@ def _watch_key(client: Client, keyexpr: str) -> None:
         followed = roles.followed(client.identity.role)
         if not bus.includes(followed, keyexpr):
             raise errors.Refused(
-                f"your certificate ({client.identity.role}) may not follow '{keyexpr}'; it may follow all of:"
+                f"your certificate ({client.identity.role}) may not subscribe to '{keyexpr}'; allowed keys:"
                 f" {', '.join(followed)}"
             )
     if not bus.meets(keys.published(), keyexpr):
         print(
-            f"  note: semmap publishes nothing on '{keyexpr}', so this waits for somebody else to;"
-            f" all that it publishes is on '{keys.ROOT}/**'",
+            f"  note: semmap does not publish on '{keyexpr}', only other programs may; the keys of semmap are"
+            f" '{keys.ROOT}/**'",
             file=sys.stderr,
         )
     for key, payload in bus.listen(client.session, keyexpr):
@@ -373,7 +383,5 @@ def _format_of(file: Path) -> commands.RdfFormat:
         ".xml": "rdfxml",
     }
     if (known := endings.get(file.suffix.lower())) is None:
-        raise errors.BadRequest(
-            f"cannot tell the format of {file.name} by its suffix ({', '.join(endings)}); use --format"
-        )
+        raise errors.BadRequest(f"{file.name}: unknown suffix (known: {', '.join(endings)}); add --format")
     return known

@@ -1,4 +1,4 @@
-"""The verb `replay`: a recording in its viewer, or a map's past run again; and `--check` of a recording."""
+"""The command `replay`: shows a recording, replays the history of a map, or checks a recording."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ _path = click.Path(path_type=Path)
 
 @command(example="semmap replay maps/flat --since 08:00 --speed 10")
 @click.argument("what", metavar="FILE.rrd|DATA_DIR", type=_path)
-@click.option("--since", metavar="COMMIT|TIME", help="Begin with the map as it was then. Default: the first.")
-@click.option("--until", metavar="COMMIT|TIME", help=f"End with the map as it was then. Default: now. {TIME}")
-@click.option("--speed", type=float, default=None, metavar="X", help="So many times as fast.  [default: 1]")
+@click.option("--since", metavar="COMMIT|TIME", help="Start of the period. Default: the first commit.")
+@click.option("--until", metavar="COMMIT|TIME", help=f"End of the period. Default: now. {TIME}")
+@click.option("--speed", type=float, default=None, metavar="X", help="Playback speed factor.  [default: 1]")
 @click.option(
     "--longest",
     type=float,
     default=None,
     metavar="S",
-    help=f"Wait no longer than S seconds for a commit.  [default: {rhythm.LONGEST_S:g}]",
+    help=f"Maximum wait between two commits.  [default: {rhythm.LONGEST_S:g}]",
 )
 @click.option("--listen", metavar="EP", help="Zenoh endpoint of the replay. Default: a free port.")
-@click.option("--world", type=_path, help="Scene file. Default: the one that the map was last run with.")
+@click.option("--world", type=_path, help="Scene file. Default: the last world of the map.")
 @click.option("--no-sim", is_flag=True, help="Replay the map without a scene.")
 @click.option("--no-record", is_flag=True, help="Do not record the replay.")
 @click.option(
@@ -44,10 +44,10 @@ _path = click.Path(path_type=Path)
     is_flag=False,
     flag_value=0,
     metavar="[PORT]",
-    help="Show the replay in the page, too. Default: a free port.",
+    help="Also show the replay on the page. Default: a free port.",
 )
-@click.option("--check", is_flag=True, help="Of a recording: verify that its commits are those of the map.")
-@click.option("--data", type=_path, help="With --check: the map's data folder. Default: a running system.")
+@click.option("--check", is_flag=True, help="Compare the commits of a recording with those of the map.")
+@click.option("--data", type=_path, help="With --check: data folder of the map. Default: a running system.")
 @connect_option
 @identity_option
 @namespace_option
@@ -60,19 +60,18 @@ def replay(
     namespace: str | None,
     **options: Any,
 ) -> None:
-    """Open a recording, or run the past of a map again.
+    """Open a recording, or replay the history of a map.
 
-    A recording (.rrd) is opened in the Rerun viewer. Of a data folder the journal is run again, map
-    and scene, as a system of its own on its own endpoint, with the waits that were
-    between its commits. The map itself is only read, and may be in use meanwhile.
+    A recording (.rrd) is opened in the Rerun viewer. For a data folder, a separate system with its own
+    endpoint replays the commits of the journal, with the original intervals between them. The map is only
+    read; its system may be running.
 
-    With --check the recorded commits are compared with those in the journal of
-    --data, or of the system at --connect. The first difference is named, or the
-    commits that the recording lacks; the exit status is 1 then.
+    With --check, the recorded commits are compared with the journal of --data, or of the system at --connect.
+    If commits differ or are missing, they are printed, and the exit status is 1.
     """
     if what.is_dir():
         if check:
-            raise errors.BadRequest("--check is for a recording (.rrd); a replay is of the journal itself")
+            raise errors.BadRequest(f"--check requires a recording (.rrd); {what} is a data folder")
         from semmap.nodes.extern.replay import replay as run_again
 
         longest_s, speed = options.pop("longest"), options.pop("speed")
@@ -86,10 +85,10 @@ def replay(
             **options,
         )
         return
-    if given := [
+    if passed := [
         f"--{name.replace('_', '-')}" for name, value in options.items() if value not in (None, False)
     ]:
-        raise errors.BadRequest(f"{given[0]} is for a data folder, and {what} is not one")
+        raise errors.BadRequest(f"{passed[0]} requires a data folder; {what} is not a folder")
     if check:
         from semmap.nodes.extern.replay import check as verify
 
@@ -98,7 +97,7 @@ def replay(
         )
         return
     if data is not None:
-        raise errors.BadRequest("--data is for --check")
+        raise errors.BadRequest("--data requires --check")
     extras.require("semmap replay", "record")
     from semmap.nodes.recorder.replay import replay as open_viewer
 

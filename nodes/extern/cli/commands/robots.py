@@ -1,4 +1,4 @@
-"""What `list`, `get`, `status` and `sparql` print with `--robots`: each robot's answer under its name."""
+"""The output of `list`, `get`, `status` and `sparql` with `--robots`, robot by robot."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def entities(robots: Robots, class_: str | None, format: str, as_of: str | None, **where: Any) -> None:
-    """`semmap list --robots`."""
+    """Print the output of `semmap list --robots`."""
 
     def show(found: Sequence[Entity]) -> None:
         if found:
@@ -35,7 +35,7 @@ def entities(robots: Robots, class_: str | None, format: str, as_of: str | None,
 
 
 def entity(robots: Robots, name: str, format: str, as_of: str | None, frame: str | None) -> None:
-    """`semmap get --robots`."""
+    """Print the output of `semmap get --robots`."""
 
     def show(found: Described) -> None:
         output.show.console().print(output.show.entity_card(found))
@@ -45,7 +45,7 @@ def entity(robots: Robots, name: str, format: str, as_of: str | None, frame: str
 
 
 def status(robots: Robots, format: str) -> None:
-    """`semmap status --robots`."""
+    """Print the output of `semmap status --robots`."""
 
     def show(status: SystemStatus) -> None:
         output.show.console().print(output.show.status_table(status))
@@ -56,7 +56,7 @@ def status(robots: Robots, format: str) -> None:
 
 
 def rows(robots: Robots, query: str, format: str | None, **options: Any) -> None:
-    """`semmap sparql --robots`."""
+    """Print the output of `semmap sparql --robots`."""
 
     def show(result: SparqlResult) -> None:
         if result.kind == "select":
@@ -73,32 +73,32 @@ def rows(robots: Robots, query: str, format: str | None, **options: Any) -> None
 
 def _require(format: str, possible: Sequence[str]) -> None:
     if format not in possible:
-        raise errors.BadRequest(f"with --robots the format is one of: {', '.join(possible)}")
+        raise errors.BadRequest(f"--robots does not support --format {format}; use {' or '.join(possible)}")
 
 
 def _require_own(frame: str | None) -> None:
     if frame is not None:
-        raise errors.BadRequest("frames are those of one robot: give either --robots or --frame")
+        raise errors.BadRequest("--robots and --frame exclude each other; remove one of them")
 
 
 def _print(answers: Iterable[Answer[Any]], show: Callable[[Any], None], format: str) -> None:
-    """Every answer, and then what is wrong; the exit status is that of a robot that did not answer, if any.
+    """Print all replies, then all errors, and exit with a status other than 0 if a robot did not respond.
 
-    Errors that robots answer with count only where no robot has anything else to say.
+    Errors that robots return set the exit status only if no robot returned a result.
     """
     answers = list(answers)
     if format == "json":
         print_json(answers)
     for answer in answers if format != "json" else ():
         if answer.error is None:
-            said = "" if answer.commit is None else f" (commit {answer.commit})"
-            print_escaped(f"{answer.robot or 'the system without a namespace'}{said}:")
+            commit = "" if answer.commit is None else f" (commit {answer.commit})"
+            print_escaped(f"{answer.robot or 'the system without a namespace'}{commit}:")
             show(answer.value)
-    wrong = [(answer.robot, errors.from_message(answer.error)) for answer in answers if answer.error]
-    for robot, error in wrong:
+    failed = [(answer.robot, errors.from_message(answer.error)) for answer in answers if answer.error]
+    for robot, error in failed:
         print_error(f"{robot}: {error.text}")
-    told = [error for _, error in wrong]
-    silent = any(isinstance(error, errors.NoAnswer) for error in told)
-    if silent or (told and len(told) == len(answers)):
+    found = [error for _, error in failed]
+    is_silent = any(isinstance(error, errors.NoAnswer) for error in found)
+    if is_silent or (found and len(found) == len(answers)):
         sys.stdout.flush()
-        sys.exit(errors.NoAnswer.exit_status if silent else told[0].exit_status)
+        sys.exit(errors.NoAnswer.exit_status if is_silent else found[0].exit_status)

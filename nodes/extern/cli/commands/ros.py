@@ -1,4 +1,4 @@
-"""The verbs `ros` and `mcap`: the map for robots that speak ROS 2."""
+"""The commands `ros` and `mcap`: the map for ROS 2."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
-    """A verb that says what it lacks before it with_client to a system."""
+    """Check that the extra `ros` is installed before the command connects to a system."""
 
     @functools.wraps(function)
     def checked(**arguments: Any) -> None:
@@ -45,25 +45,29 @@ def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
     show_default=True,
     type=click.IntRange(0, 232),
     envvar="ROS_DOMAIN_ID",
-    help="Domain of ROS.",
+    help="ROS domain.",
 )
-@click.option("--frame", default="map", show_default=True, help="What ROS calls the map's frame.")
+@click.option("--frame", default="map", show_default=True, help="Name of the map frame in ROS.")
 @click.option(
-    "--rate", default=10.0, show_default=True, type=click.FloatRange(0.1, 100.0), help="Transforms a second."
+    "--rate",
+    default=10.0,
+    show_default=True,
+    type=click.FloatRange(0.1, 100.0),
+    help="Rate of transforms [Hz].",
 )
-@click.option("--meshes", is_flag=True, help="Obstacles as they look instead of as boxes.")
+@click.option("--meshes", is_flag=True, help="Publish obstacles as meshes instead of boxes.")
 @click.option(
     "--camera",
     "cameras",
     multiple=True,
     metavar="NAME=COLOUR,DEPTH,INFO",
-    help="A camera of ROS for perception, by its three topics; may be given several times.",
+    help="ROS camera for perception, with its three topics; may be repeated.",
 )
 @click.option(
     "--detections",
     multiple=True,
     metavar="TOPIC",
-    help="A detector's vision_msgs/Detection3DArray, for perception; may be given several times.",
+    help="Topic with vision_msgs/Detection3DArray, for perception; may be repeated.",
 )
 @_with_its_extra
 @with_client
@@ -77,10 +81,10 @@ def ros(
     cameras: tuple[str, ...],
     detections: tuple[str, ...],
 ) -> None:
-    """Publish the map to ROS 2, and take its cameras.
+    """Publish the map to ROS 2, and subscribe to its cameras.
 
-    It speaks the wire of rmw_zenoh and needs no ROS. Published are /semmap/detections and /semmap/markers
-    (latched), /tf with a frame for each entity, and diffs on /planning_scene.
+    The command uses the protocol of rmw_zenoh, so ROS need not be installed. It publishes /semmap/detections,
+    /semmap/markers and /semmap/map (latched), /tf with a frame for each entity, and diffs on /planning_scene.
     """
     from semmap.nodes.extern.ros.cameras import parse_camera
     from semmap.nodes.extern.ros.runner import RosConfig, run
@@ -94,26 +98,28 @@ def ros(
         cameras=tuple(map(parse_camera, cameras)),
         detections=detections,
     )
-    print_escaped(f"publishing to ROS at {router}, domain {domain}; Ctrl-C ends it")
+    print_escaped(f"publishing to ROS at {router}, domain {domain}; press Ctrl-C to stop")
     run(client.session, client.prefix, config, lambda text: print_escaped(text, file=sys.stderr))
 
 
 @command(example="semmap mcap morning.mcap --since 08:00 --until 09:00")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--since", metavar="COMMIT|TIME", help=f"Where the span begins. {TIME}")
-@click.option("--until", metavar="COMMIT|TIME", help="Where it ends. Default: now.")
-@click.option("--frame", default="map", show_default=True, help="What ROS calls the map's frame.")
+@click.option("--since", metavar="COMMIT|TIME", help=f"Start of the period. {TIME}")
+@click.option("--until", metavar="COMMIT|TIME", help="End of the period. Default: now.")
+@click.option("--frame", default="map", show_default=True, help="Name of the map frame in ROS.")
 @_with_its_extra
 @with_client
 def mcap(client: Client, file: Path, since: str | None, until: str | None, frame: str) -> None:
-    """Write a span of the map's history for ROS's tools.
+    """Write a period of the history to an MCAP file.
 
-    FILE.mcap holds, as of each commit, the topics that semmap ros publishes; Foxglove and ros2 bag read it.
+    FILE.mcap has the topics of semmap ros for each commit. Foxglove and ros2 bag can read it.
     """
     from semmap.nodes.extern.ros.bridge import topics
     from semmap.nodes.extern.ros.mcap_file import states, write
 
     if file.suffix != ".mcap":
-        raise errors.BadRequest(f"an MCAP file is written; name it {file.with_suffix('.mcap').name}")
+        raise errors.BadRequest(
+            f"{file.name}: the suffix must be .mcap, as in {file.with_suffix('.mcap').name}"
+        )
     count = write(file, states(client, since, until), topics(), frame=frame)
     print_escaped(f"{wording.counted(count, 'message')} written to {file}")

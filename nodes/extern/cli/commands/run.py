@@ -1,4 +1,4 @@
-"""`semmap run`: a file of requests, one per line."""
+"""The command `run`: a file of requests, one per line."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from semmap.nodes.extern.client import Client, connect
 from semmap.nodes.extern.files import read_file
 from semmap.schemas import codec, commands, errors, replies
 
-_BY_THEMSELVES = frozenset(
+_EXCLUDED = frozenset(
     ("up", "down", "node", "repair", "restore", "replay", "movie", "run", "watch", "completion")
 )
 
@@ -37,7 +37,7 @@ _BY_THEMSELVES = frozenset(
 def run(file: Path, keep_going: bool, where: str | None, identity: str | None, namespace: str | None) -> None:
     """Execute a file of requests, one per line.
 
-    A request is a command line, or a JSON message with its verb.
+    A request is a command line, or a JSON message with the command in its field verb.
     """
     lines = _decode_lines(file)
     failed = 0
@@ -60,20 +60,22 @@ def _run_line(client: Client, line: str, where: str) -> int:
     except ValueError as error:
         print_error(f"{where}cannot read the line: {error}")
         return errors.BadRequest.exit_status
-    if words and words[0] in _BY_THEMSELVES:
+    if words and words[0] in _EXCLUDED:
         print_error(f"{where}'{words[0]}' cannot be used in a file of requests")
         return errors.BadRequest.exit_status
     return run_arguments(click.get_current_context().find_root().command, words, client, where)
 
 
 def _execute_message(client: Client, message: bytes, where: str) -> int:
-    """Send one JSON message that names its verb, print the reply, and return the exit status."""
+    """Send a JSON message with a field `verb`, print the reply, and return the exit status."""
     try:
-        said: dict[str, Any] = codec.decode(message, dict[str, Any])
-        verb = str(said.get("verb", ""))
-        if verb not in commands.COMMANDS:
-            raise errors.UnknownVerb(f"unknown verb '{verb}'{errors.did_you_mean(verb, commands.COMMANDS)}")
-        reply: Any = client.send(codec.decode(message, commands.COMMANDS[verb]))
+        fields: dict[str, Any] = codec.decode(message, dict[str, Any])
+        name = str(fields.get("verb", ""))
+        if name not in commands.COMMANDS:
+            raise errors.UnknownVerb(
+                f"unknown command '{name}'{errors.did_you_mean(name, commands.COMMANDS)}"
+            )
+        reply: Any = client.send(codec.decode(message, commands.COMMANDS[name]))
     except errors.SemmapError as error:
         print_error(f"{where}{error.text.removeprefix('malformed message: ')}")
         return error.exit_status
@@ -85,7 +87,7 @@ def _execute_message(client: Client, message: bytes, where: str) -> int:
 
 
 def _decode_lines(file: Path) -> list[tuple[int, str]]:
-    """The requests of a file with their line numbers; empty lines and # comments are none."""
+    """Return the requests of a file with their line numbers, without empty lines and # comments."""
     try:
         lines = read_file(file).decode().splitlines()
     except UnicodeDecodeError:

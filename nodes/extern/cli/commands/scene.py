@@ -1,4 +1,4 @@
-"""The verbs about the scene, from `move` and `attach` to `picture`."""
+"""The commands about the scene, from `move` and `attach` to `picture`."""
 
 from __future__ import annotations
 
@@ -30,22 +30,22 @@ if TYPE_CHECKING:
 _WAIT = click.option(
     "--wait/--no-wait",
     default=True,
-    help="Return when the map has followed, or as soon as it moves.  [default: wait]",
+    help="Wait until the map is updated, or return immediately.  [default: wait]",
 )
 
 
 @command(example="semmap move cup1 --at 2.5 1 0.75")
 @click.argument("name", shell_complete=entity_names)
-@vector_option("--at", metavar="X Y Z", required=True, help="Where to put it: bottom centre [m].")
-@frame_option("The frame of --at and --yaw, instead of the map's")
+@vector_option("--at", metavar="X Y Z", required=True, help="New position of the bottom centre [m].")
+@frame_option("Frame of --at and --yaw. Default: map")
 @yaw_option
 @carry_options
 @_WAIT
 @with_client
 def move(client: Client, wait: bool, **fields: Any) -> None:
-    """Move the body of an entity by hand.
+    """Move the body of an entity manually.
 
-    The map follows when it comes to rest. While time is paused, nothing is waited for.
+    The map is updated when the body comes to rest. While time is paused, the command does not wait.
     """
     print_lines(lines.moved(client.move(**drop_unset(fields), wait=wait)))
 
@@ -53,48 +53,49 @@ def move(client: Client, wait: bool, **fields: Any) -> None:
 @command(example="semmap attach cup1 --to robot1_gripper", cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.option(
-    "--to", required=True, metavar="HOLDER", help="What is to hold it, such as a gripper or a tray."
+    "--to", required=True, metavar="HOLDER", help="Entity to attach to, such as a gripper or a tray."
 )
 @vector_option(
-    "--at", metavar="X Y Z", help="Where, in the frame of what holds it [m].  [default: where it is]"
+    "--at", metavar="X Y Z", help="Position in the frame of HOLDER [m].  [default: current position]"
 )
 @yaw_option
 @carry_options
-@click.option("--dry-run", is_flag=True, help="Only say what would be.")
+@click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
 @with_client
 def attach(client: Client, **fields: Any) -> None:
-    """Have an entity held by another until it is detached.
+    """Attach an entity to another one, such as a gripper.
 
-    With --carry, what stands on it or is inside it is taken along as it stands there, and is let go with it.
+    It moves with HOLDER until it is detached. With --carry, the objects on it and inside it are attached to
+    it at their current poses, and are detached with it.
     """
     print_lines(lines.changed(client.attach(**drop_unset(fields))))
 
 
 @command(example="semmap detach cup1")
 @click.argument("name", shell_complete=entity_names)
-@click.option("--dry-run", is_flag=True, help="Only say what would be.")
+@click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
 @with_client
 def detach(client: Client, name: str, dry_run: bool) -> None:
-    """Let go of an entity that something holds.
+    """Detach an entity.
 
-    What was taken along with it (--carry) is let go with it.
+    Objects that were attached with it (--carry) are also detached.
     """
     print_lines(lines.changed(client.detach(name, dry_run=dry_run)))
 
 
-_JOINT = click.option("--joint", metavar="JOINT", help="Only this one of its doors, drawers or switches.")
+_JOINT = click.option("--joint", metavar="JOINT", help="Only this door, drawer or switch of the object.")
 
 
 @command("open", example="semmap open fridge1 --to 0.5")
 @click.argument("name", shell_complete=entity_names)
-@click.option("--to", type=float, default=1.0, help="How far, from 0 to 1.  [default: 1]")
+@click.option("--to", type=float, default=1.0, help="Openness, from 0 to 1.  [default: 1]")
 @_JOINT
 @_WAIT
 @with_client
 def open_(client: Client, name: str, to: float, joint: str | None, wait: bool) -> None:
-    """Open a door, lid or drawer by hand.
+    """Open a door, lid or drawer.
 
-    The map follows when it comes to rest.
+    The map is updated when the door comes to rest.
     """
     print_lines(lines.moved(client.open(name, to=to, joint=joint, wait=wait)))
 
@@ -105,9 +106,9 @@ def open_(client: Client, name: str, to: float, joint: str | None, wait: bool) -
 @_WAIT
 @with_client
 def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
-    """Close a door, lid or drawer by hand.
+    """Close a door, lid or drawer.
 
-    The map follows when it comes to rest.
+    The map is updated when the door comes to rest.
     """
     print_lines(lines.moved(client.close(name, joint=joint, wait=wait)))
 
@@ -120,24 +121,24 @@ def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
     type=float,
     multiple=True,
     metavar="X Y",
-    help="A point of the floor [m]; several are driven through one after another.",
+    help="Waypoint on the floor [m]; may be repeated.",
 )
-@frame_option("The frame of --to and --yaw, as it is at the start, instead of the map's")
+@frame_option("Frame of --to and --yaw at the start of the command. Default: map")
 @yaw_option
-@click.option("--speed", type=float, default=0.4, show_default=True, help="At most so fast [m/s].")
-@click.option("--stop", is_flag=True, help="Stop where it is.")
+@click.option("--speed", type=float, default=0.4, show_default=True, help="Maximum speed [m/s].")
+@click.option("--stop", is_flag=True, help="Stop at the current position.")
 @_WAIT
 @with_client
 def drive(client: Client, wait: bool, **fields: Any) -> None:
     """Drive a simulated robot to a point.
 
-    It goes in a straight line, to each point if there are several, and looks for no way around things.
+    The robot drives to each waypoint in a straight line. It does not plan around obstacles.
     """
     print_lines(lines.moved(client.drive(**drop_unset(fields), wait=wait)))
 
 
 @command(example="semmap pause")
-@click.option("--off/--on", "off", default=False, help="Resume time, or stop it.  [default: on]")
+@click.option("--off/--on", "off", default=False, help="Resume or pause time.  [default: on]")
 @with_client
 def pause(client: Client, off: bool) -> None:
     """Pause simulated time, or resume it."""
@@ -155,26 +156,26 @@ def step(client: Client, seconds: float) -> None:
 @command(example="semmap reset")
 @with_client
 def reset(client: Client) -> None:
-    """Put every body where the map says it stands.
+    """Move every body to its pose in the map.
 
-    Bodies that could not be created are tried again.
+    The creation of failed bodies is retried.
     """
     print_escaped(client.reset().text)
 
 
 @command(example="semmap picture kitchen.png --place kitchen1 --labels")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--camera", metavar="NAME", help="A camera of the world; default: an overview from above.")
+@click.option("--camera", metavar="NAME", help="Camera of the world. Default: view from above.")
 @click.option("--place", metavar="NAME", help="Only this place, from above.")
-@click.option("--labels", is_flag=True, help="Write the names of things on it.")
-@click.option("--width", type=int, default=960, show_default=True)
-@click.option("--height", type=int, default=720, show_default=True)
+@click.option("--labels", is_flag=True, help="Draw the names of the objects.")
+@click.option("--width", type=int, default=960, show_default=True, help="Width [pixel].")
+@click.option("--height", type=int, default=720, show_default=True, help="Height [pixel].")
 @with_client
 def picture(
     client: Client, file: Path, camera: str | None, place: str | None, labels: bool, width: int, height: int
 ) -> None:
-    """Write a picture of the scene to FILE (PNG)."""
+    """Render the scene to FILE (PNG)."""
     if file.suffix.lower() != ".png":
-        raise errors.BadRequest(f"pictures are written as PNG; name the file {file.stem or 'scene'}.png")
+        raise errors.BadRequest(f"{file}: the suffix must be .png, as in {file.stem or 'scene'}.png")
     write_atomically(file, client.picture(camera, place=place, labels=labels, width=width, height=height))
     print(f"wrote {file}")

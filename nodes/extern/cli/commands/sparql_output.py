@@ -1,4 +1,4 @@
-"""The verb `sparql`, and what `watch` asks."""
+"""The output of `sparql` and of `watch` with a query."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def read_query(word: str) -> str:
-    """The query that a word of the command line means: itself, `@FILE`, or `-` for what comes on stdin."""
+    """Return the query of an argument: its text, the content of `@FILE`, or standard input for `-`."""
     if word == "-":
         content = sys.stdin.buffer.read()
     elif word.startswith("@"):
@@ -43,7 +43,7 @@ def ask(
     limit: int,
     as_of: str | None,
 ) -> None:
-    """Print the answer; without a format, a table of rows, the verdict, or Turtle for a graph."""
+    """Run a query and print its result: by default a table, a truth value, or Turtle for a graph."""
     result = client.sparql(read_query(query), inferred=inferred, timeout=timeout, limit=limit, as_of=as_of)
     _note(result.notes)
     format = format or ("turtle" if result.kind == "graph" else "table")
@@ -56,7 +56,7 @@ def ask(
 
 
 def watch(client: Client, query: str, *, inferred: bool) -> None:
-    """Print the rows, and then what appears and disappears."""
+    """Print the rows of a query, then the rows that appear and disappear."""
     with client.watch(read_query(query), inferred=inferred) as standing:
         _note(standing.notes)
         if standing.rows:
@@ -68,13 +68,13 @@ def watch(client: Client, query: str, *, inferred: bool) -> None:
 
 
 def _note(notes: Iterable[str]) -> None:
-    """Why there is nothing, beside what is there."""
+    """Print the notes of a result to stderr."""
     for note in notes:
         print_escaped(f"  note: {note}", file=sys.stderr)
 
 
 def print_rows(variables: tuple[str, ...], rows: tuple[Row, ...]) -> None:
-    """As a table: one that is drawn, in a terminal."""
+    """Print a table, with lines and colours if the output is a terminal."""
     if sys.stdout.isatty():
         output.show.console().print(output.sparql_formats.table(variables, rows))
     else:
@@ -82,7 +82,7 @@ def print_rows(variables: tuple[str, ...], rows: tuple[Row, ...]) -> None:
 
 
 def watch_places(client: Client, **where: Any) -> None:
-    """Print who is there, and then who comes and goes."""
+    """Print the entities at a location, then those that appear and disappear there."""
     with client.watch(**where) as standing:
         there = ", ".join(_names(standing.rows)) or "nothing"
         print(f"{there} (commit {standing.seq}); watching", flush=True)

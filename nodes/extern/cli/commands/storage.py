@@ -1,4 +1,4 @@
-"""The verbs that keep a map and its history: `backup`, `restore`, `compact`."""
+"""The commands for the stored map and its history: `backup`, `restore`, `compact`."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ _format = click.option(
 def backup(client: Client, file: Path, overwrite: bool, format: str) -> None:
     """Write the map and its history to FILE.
 
-    The system goes on meanwhile; the backup is as of its beginning, and verified by its digests.
-    See also: semmap restore.
+    The system keeps running. The backup has the state at the start of the command, and is verified by
+    its digests. See also: semmap restore.
     """
     opening = client.backup(file, overwrite=overwrite)
     if format == "json":
@@ -43,27 +43,31 @@ def backup(client: Client, file: Path, overwrite: bool, format: str) -> None:
 @command(example="semmap restore flat.backup --data maps/restored")
 @click.argument("file", type=_path)
 @click.option("--data", type=_path, required=True, help="Data folder to restore the map to.")
-@click.option("--replace", is_flag=True, help="Move a map that is there to DIR/kept.")
+@click.option("--replace", is_flag=True, help="Move an existing map to DIR/kept.")
 def restore(file: Path, data: Path, replace: bool) -> None:
-    """Restore a backup to a data folder whose system does not run.
+    """Restore a backup to a data folder.
 
-    Then start it: semmap up --data DIR.
+    The system of that folder must be stopped. Afterwards, start it: semmap up --data DIR.
     """
     print_escaped(restore_map(file, data, replace=replace, tell=print_error).text)
 
 
 @command(example="semmap compact --keep 30d --dry-run")
 @click.option(
-    "--keep", default="30d", show_default=True, metavar="AGE", help="Keep commits younger than 12h, 30d, ..."
+    "--keep",
+    default="30d",
+    show_default=True,
+    metavar="AGE",
+    help="Keep commits that are newer, such as 12h or 30d.",
 )
 @click.option("--dry-run", is_flag=True, help="Report what would be compacted, without changing anything.")
 @_format
 @with_client
 def compact(client: Client, keep: str, dry_run: bool, format: str) -> None:
-    """Replace old commits by a snapshot, which takes less room.
+    """Replace old commits by a snapshot to save disk space.
 
-    The map stays as it is. What was before the snapshot cannot be asked about or undone any more: make a
-    backup first if you may want it.
+    The map does not change. Commits before the snapshot can no longer be queried or undone. If you may need
+    them, make a backup first.
     """
     compacted = client.compact(keep=keep, dry_run=dry_run)
     if format == "json":
@@ -72,4 +76,4 @@ def compact(client: Client, keep: str, dry_run: bool, format: str) -> None:
     print_escaped(compacted.text)
     if compacted.commits and not dry_run:
         before, after = compacted.bytes_before / 1e6, compacted.bytes_after / 1e6
-        print_escaped(f"the journal takes {after:,.1f} MB; it was {before:,.1f} MB")
+        print_escaped(f"journal size: {after:,.1f} MB (was {before:,.1f} MB)")

@@ -1,4 +1,4 @@
-"""The verbs about TBoxes that need no running system: `tbox check`."""
+"""The commands about TBoxes that need no running system: `tbox check`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from semmap.schemas import errors
 
 @group(example="semmap tbox check household.ttl")
 def tbox() -> None:
-    """Look at ontologies, without a running system."""
+    """Check ontologies, without a running system."""
 
 
 @tbox.command(example="semmap tbox check household.ttl")
@@ -28,11 +28,11 @@ def tbox() -> None:
 def check(
     files: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], spatial_root: tuple[str, ...], format: str
 ) -> None:
-    """Show what is in ontologies, and what of it is wrong.
+    """Show the contents of ontologies, and their errors.
 
-    That includes what of them is inert, and how quick changes will be. FILES (or folders) are checked
-    together, with what they import. Exit status 1 says that they contradict themselves, or that nothing can
-    be of some class; 2 that a file cannot be read.
+    The report includes axioms outside OWL 2 RL, which have no effect, and the expected time of a change.
+    FILES (or folders) are checked together, with their imports. The exit status is 1 if they are inconsistent
+    or have an unsatisfiable class, and 2 if a file cannot be read.
     """
     extras.require("semmap tbox check", "kb")
     from semmap.nodes.kb_node.documents.tbox.tbox_check import check as check_files

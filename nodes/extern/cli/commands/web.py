@@ -1,4 +1,4 @@
-"""The verb `web`: the map in a browser."""
+"""The command `web`: the map in a browser."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _LOOPBACK = ("127.0.0.1", "localhost", "::1")
     type=click.IntRange(0, 65_535),
     default=_PORT,
     show_default=True,
-    help="Port; 0 is any free one.",
+    help="Port; 0 selects a free port.",
 )
 @click.option(
     "--listen",
@@ -32,30 +32,28 @@ _LOOPBACK = ("127.0.0.1", "localhost", "::1")
     default=_HOST,
     show_default=True,
     metavar="HOST",
-    help="Address to listen on; one that others reach takes --insecure.",
+    help="Address to listen on; addresses of other interfaces than loopback require --insecure.",
 )
-@click.option("--insecure", is_flag=True, help="Listen beyond this machine, over plain HTTP.")
+@click.option("--insecure", is_flag=True, help="Accept connections from other hosts over plain HTTP.")
 @connect_option
 @identity_option
 @namespace_option
 def web(
     port: int, host: str, insecure: bool, where: str | None, identity: str | None, namespace: str | None
 ) -> None:
-    """Show the map in a browser, to look at and to work on.
+    """Show and edit the map in a browser.
 
-    It prints the address to open, with a token in it, and runs until Ctrl-C. To a secure system the page acts
-    as --identity says, and shows only what that may do.
+    The command prints the address to open, which includes a token, and runs until Ctrl-C. In a secure system,
+    the page has the permissions of --identity.
     """
     extras.require("semmap web", "web")
     if host not in _LOOPBACK:
         if not insecure:
             raise errors.BadRequest(
-                f"over plain HTTP whoever reads the network to {host} could take over the page; come by way"
-                f" of SSH (ssh -L {port}:127.0.0.1:{port} THIS_HOST), or say --insecure"
+                f"{host}: other hosts could take over a page over plain HTTP; use an SSH tunnel"
+                f" (ssh -L {port}:127.0.0.1:{port} THIS_HOST) or add --insecure"
             )
-        print_error(
-            f"warning: the page at {host} is plain HTTP: its token and the map can be read on the way"
-        )
+        print_error(f"warning: the page at {host} uses plain HTTP: its token and the map are not encrypted")
     from semmap.nodes.extern.web.joining import network_of
     from semmap.nodes.extern.web.server import WebConfig, run
 

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from semmap.nodes.extern.cli.commands.batch import written
+from semmap.nodes.extern.cli.commands.batch import read_changes
 from semmap.schemas import commands as c
 from semmap.schemas import errors
 
@@ -20,7 +20,7 @@ set door1 isOpen true
 update chair1 --at 1 2 0 --ref "a seat" --unset note
 unset door1 hasColor 'color red'
 """
-    assert list(written(text)) == [
+    assert list(read_changes(text)) == [
         c.Set(name="door1", property="isOpen", values=("true",)),
         c.Set(name="shelf1", property="mass", values=("-3",)),
         c.Update(name="chair1", at=(1.0, 2.0, 0.0), ref="a seat", unset=("note",)),
@@ -31,17 +31,17 @@ unset door1 hasColor 'color red'
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("remove cup1", "line 2: 'remove' is none of update, set, unset"),
+        ("remove cup1", "line 2: 'remove' is not one of update, set, unset"),
         ("set door1", "line 2: missing argument 'PROPERTY'"),
         ("set door1 isOpen true --sudo", "line 2: no such option '?--sudo"),
         ("update chair1 --at 1 two 0", "line 2: .*'two' is not a number"),
         ("set door1 'isOpen", "line 2: no closing quotation"),
-        ("update --help", "line 2: 'update --help' is no change"),
+        ("update --help", "line 2: 'update --help' is not a change"),
     ],
 )
 def test_a_line_that_is_none_is_named(capsys, line, said):
     with pytest.raises(errors.BadRequest, match=said):
-        list(written(f"set door1 isOpen true\n{line}\n"))
+        list(read_changes(f"set door1 isOpen true\n{line}\n"))
 
 
 def test_a_batch_over_a_real_system(flat_map, tmp_path):
@@ -54,10 +54,10 @@ def test_a_batch_over_a_real_system(flat_map, tmp_path):
     file.write_text("set door1 isOpen true\nset door99 isOpen true\n")
     assert "door99" in flat_map.cli("batch", str(file), status=1)
     file.write_bytes(b"set door1 \xff")
-    assert "is no text in UTF-8" in flat_map.cli("batch", str(file), status=2)
+    assert "is not a UTF-8 text file" in flat_map.cli("batch", str(file), status=2)
     assert "there is no file" in flat_map.cli("batch", str(tmp_path / "none.txt"), status=2)
     file.write_text("# nothing\n")
-    assert "there is no change" in flat_map.cli("batch", str(file), status=2)
+    assert "there is not a change" in flat_map.cli("batch", str(file), status=2)
     with flat_map.client() as client:
         assert client.get("door1").properties["isOpen"] is False
         made = client.batch(

@@ -46,7 +46,7 @@ def test_what_was_shown_is_recognised_until_it_is_forgotten(here, capsys):
     assert classes(capsys) == before
     assert json.loads(said(capsys, "learned", "--data", "map", "--format", "json"))[0]["class"] == "Dog"
     assert "forgot Dog" in said(capsys, "forget", "1", "--data", "map")
-    assert said(capsys, "learned", "--data", "map") == "nothing was shown\n"
+    assert said(capsys, "learned", "--data", "map") == "no exemplars\n"
     assert classes(capsys, "--data", "map") == before
 
 
@@ -55,8 +55,8 @@ def test_what_was_shown_is_recognised_until_it_is_forgotten(here, capsys):
     [
         (["learn", "Dog", "--data", "map"], "--frames DIR or --entity NAME"),
         (["learn", "Dog", "--frames", "shown", "--entity", "dog1"], "--frames DIR or --entity NAME"),
-        (["learn", "Dog", "--entity", "dog1", "--data", "map"], "seen by a running system"),
-        (["learn", "Dog", "--entity", "dog1", "--box", "1", "2", "3", "4"], "--box goes with --frames"),
+        (["learn", "Dog", "--entity", "dog1", "--data", "map"], "--entity requires a running system"),
+        (["learn", "Dog", "--entity", "dog1", "--box", "1", "2", "3", "4"], "--box requires --frames"),
         (["learn", "Dgo", "--frames", "shown", "--data", "map"], "unknown class 'Dgo'; did you mean Dog?"),
         (["learn", "Object", "--frames", "shown", "--data", "map"], "say which special class"),
         (["learn", "Dog", "--frames", "nowhere", "--data", "map"], "nowhere cannot be read"),
@@ -66,7 +66,7 @@ def test_what_was_shown_is_recognised_until_it_is_forgotten(here, capsys):
             ["learn", "Dog", "--frames", "shown", "--data", "map", "--box", "0", "0", "9", "9"],
             "nothing in that",
         ),
-        (["perceive", "--frames", "shown", "--data", "map"], "nothing was shown to map"),
+        (["perceive", "--frames", "shown", "--data", "map"], "no exemplars in map"),
     ],
 )
 def test_what_cannot_be_shown_is_told_in_one_line(here, capsys, words, told):

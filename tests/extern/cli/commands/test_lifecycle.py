@@ -77,9 +77,9 @@ def test_a_part_whose_map_is_elsewhere_remembers_its_world(data):
     [
         (["up", "--only", "brain"], "there is no node 'brain'; --only takes any of kb, coordinator, sim,"),
         (["up", "--only", ","], "--only takes the names of nodes: "),
-        (["up", "--only", "sim", "--no-sim"], "--only names the nodes to run; leave out --no-sim"),
-        (["up", "--only", "sim", "--perception"], "leave out --perception"),
-        (["node", "sim_node", "--only", "sim"], "semmap node runs one node; --only is for semmap up"),
+        (["up", "--only", "sim", "--no-sim"], "--only and --no-sim exclude each other"),
+        (["up", "--only", "sim", "--perception"], "remove --perception"),
+        (["node", "sim_node", "--only", "sim"], "--only applies to semmap up"),
     ],
 )
 def test_what_only_cannot_mean_is_refused(tmp_path, capsys, words, said):

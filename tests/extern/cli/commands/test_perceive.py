@@ -55,7 +55,7 @@ def test_json_is_for_programs(tmp_path, capsys):
     ("arguments", "said"),
     [
         (["missing.pcd"], "missing.pcd cannot be read"),
-        (["boxes.pcd", "boxes.pcd", "--labels", "labels.npy"], "one frame"),
+        (["boxes.pcd", "boxes.pcd", "--labels", "labels.npy"], "a single frame"),
         (["boxes.pcd", "--labels", "labels.txt"], "labels.npy"),
         (["boxes.pcd", "--labels", "nowhere/labels.npy"], "cannot be written"),
         (["empty.pcd"], "contains no points"),
@@ -104,14 +104,14 @@ def test_a_dataset_has_a_row_for_each_frame_and_goes_on_after_a_bad_one(tmp_path
     assert not (labels / "second.npy").exists()
     said = capsys.readouterr().out
     assert "3 frames" in said
-    assert "1 frame could not be used" in said
+    assert "1 frame skipped" in said
 
 
 def test_a_dataset_without_any_frame_that_can_be_used_is_an_error(tmp_path, capsys):
     (tmp_path / "frames" / "half").mkdir(parents=True)
     out = tmp_path / "out.json"
     assert execute(["perceive", "--frames", str(tmp_path / "frames"), "--json", str(out)]) == 2
-    assert "no frame that can be used" in capsys.readouterr().err
+    assert "no usable frames" in capsys.readouterr().err
     assert [bool(row["error"]) for row in json.loads(out.read_text())] == [True]
 
 
@@ -155,7 +155,7 @@ def test_masks_cut_a_frame_up_and_a_label_that_nobody_knows_is_told(tmp_path, ca
     (tmp_path / "map.json").write_text('{"spork": "Boxx"}')  # of an ontology of one's own, or misspelt
     capsys.readouterr()
     assert execute([*words, "yolo.json", "--label-map", str(tmp_path / "map.json")]) == 0
-    assert "that perception never learnt: Boxx; did you mean Box" in capsys.readouterr().err
+    assert "without training data: Boxx; did you mean Box" in capsys.readouterr().err
     ((found,),) = [row["objects"] for row in json.loads(out.read_text())]
     assert (found["class"], found["probability"]) == ("Boxx", 0.9)
 
@@ -163,8 +163,8 @@ def test_masks_cut_a_frame_up_and_a_label_that_nobody_knows_is_told(tmp_path, ca
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["boxes.pcd", "--label-map", "map.json"], "go with --masks"),
-        (["boxes.pcd", "--masks-only"], "go with --masks"),
+        (["boxes.pcd", "--label-map", "map.json"], "require --masks"),
+        (["boxes.pcd", "--masks-only"], "require --masks"),
         (["boxes.pcd", "--masks", "missing.npy"], "missing.npy cannot be read"),
         (["boxes.pcd", "--masks", "small.npy"], "this one has 4 x 3 of int64"),
         (["boxes.pcd", "--masks", "small.npy", "--label-map", "small.npy"], "no map of labels"),
@@ -184,7 +184,7 @@ def test_without_open3d_models_are_not_fitted(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(fit, "find_spec", lambda module: None)
     assert execute(["perceive", write_cloud(tmp_path / "boxes.pcd"), "--fit"]) == 2
     error = capsys.readouterr().err
-    assert "--fit needs Open3D, which is not installed" in error
+    assert "--fit requires Open3D" in error
     assert error.count("\n") == 1
 
 
