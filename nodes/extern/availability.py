@@ -1,4 +1,4 @@
-"""Availability: tells a watcher that the system went down, that it is back, and with which map."""
+"""Reports to a subscriber that the knowledge base went down or came back, and with which map."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CAME_BACK = "the knowledge base is back, with the same map"
 
 
 class _FirstCommit(NamedTuple):
-    """What a map began with: no two maps have the same."""
+    """The first commit of a map, which identifies the map."""
 
     stamp_ns: int
     reason: str
@@ -25,7 +25,7 @@ class _FirstCommit(NamedTuple):
 
 @contextmanager
 def report_availability(client: Client, tell: Callable[[str], None]) -> Iterator[None]:
-    """Meanwhile `tell(sentence)` is called, on another thread, when the system goes down or comes back."""
+    """Call `tell(text)`, on another thread, whenever the knowledge base goes down or comes back."""
     changes: queue.SimpleQueue[bool | None] = queue.SimpleQueue()
     subscriber = bus.follow_presence(client.session, "kb_node", changes.put)
     thread = threading.Thread(target=_report_changes, args=(client, changes, tell), daemon=True)
@@ -42,8 +42,8 @@ def _report_changes(
     client: Client, changes: queue.SimpleQueue[bool | None], tell: Callable[[str], None]
 ) -> None:
     before: _FirstCommit | None = None
-    while (there := changes.get()) is not None:
-        if not there:
+    while (is_up := changes.get()) is not None:
+        if not is_up:
             tell(WENT_DOWN)
             continue
         try:
@@ -51,7 +51,7 @@ def _report_changes(
             if before is not None:
                 tell(CAME_BACK if now == before else _other_map_text(client, now))
             before = now
-        except errors.SemmapError:  # it has gone again, or this client may not ask it
+        except errors.SemmapError:  # it went down again, or this client lacks the permission
             continue
 
 
@@ -63,6 +63,4 @@ def _first_commit(client: Client) -> _FirstCommit:
 def _other_map_text(client: Client, beginning: _FirstCommit) -> str:
     status = client.status()
     counts = f"{wording.entities(status.entities)}, commit {status.commit}"
-    return (
-        f"this endpoint now serves another map ({beginning.reason}; {counts}); what follows is about that map"
-    )
+    return f"the endpoint now serves another map ({beginning.reason}; {counts}); further output is about it"

@@ -1,4 +1,4 @@
-"""The verbs of a client, each once: its fields, types and documentation are those of its command.
+"""The methods of the clients, one for each command, with its fields, types and documentation.
 
 A `CommandMethod` has the parameters of the command's constructor, so type checkers and editors see
 `client.add(class_, name=None, at=None, ...) -> Changed`. So do `help(client.add)` and `inspect.signature`.
@@ -45,10 +45,10 @@ U = TypeVar("U")
 
 
 class CommandMethod(Generic[P, U]):
-    """A method that sends the command that `make` makes of its arguments, and returns its reply.
+    """A method that makes a command with `make`, sends it, and returns the reply, converted by `read`.
 
-    With `read`, what that makes of the reply. A `Client` returns it, an `AsyncClient` has it awaited. Types
-    and documentation are those of `make`.
+    It is a function of a `Client` and a coroutine of an `AsyncClient`. Its types and documentation are those
+    of `make`.
     """
 
     @overload
@@ -65,7 +65,7 @@ class CommandMethod(Generic[P, U]):
 
     @cached_property
     def _method(self) -> Callable[..., Any]:
-        """Made for the verbs that are used: their signatures take longer than the rest of an import."""
+        """The function of this method. It is made at first use, because making the signatures is slow."""
         make, read = self._make, self._read
 
         def method(client: Any, *args: Any, **fields: Any) -> Any:
@@ -89,7 +89,7 @@ class CommandMethod(Generic[P, U]):
 
 
 def _signature(make: Callable[..., Any], read: Callable[[Any], Any] | None) -> inspect.Signature:
-    """That of `make` as a method, with the type of the reply. Types are named as in the code."""
+    """Return the signature of `make` as a method, with the type of the reply, and types as in the code."""
     signature = inspect.signature(make)
     written = _annotations_of(make) if isinstance(make, type) else {}
     parameters = [p.replace(annotation=written.get(n, p.annotation)) for n, p in signature.parameters.items()]
@@ -105,7 +105,9 @@ def _signature(make: Callable[..., Any], read: Callable[[Any], Any] | None) -> i
 
 def _annotations_of(kind: type[Any]) -> dict[str, Any]:
     return {
-        name: said for base in reversed(kind.__mro__) for name, said in inspect.get_annotations(base).items()
+        name: annotation
+        for base in reversed(kind.__mro__)
+        for name, annotation in inspect.get_annotations(base).items()
     }
 
 
@@ -117,9 +119,9 @@ def _remove(
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Changed]:
-    """Remove entities from the map and the scene: all of them or, if one is unknown, none.
+    """Remove entities from the map and the scene. If one of them is unknown, none is removed.
 
-    Raises PreconditionFailed where one of `unchanged` was changed by a commit after `since`.
+    Raises PreconditionFailed if a commit after `since` changed one of the entities `unchanged`.
     """
     return commands.Remove(
         names=names, unchanged=tuple(unchanged), since=since, dry_run=dry_run, id=id, reason=reason
@@ -139,11 +141,14 @@ def _set(
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Changed]:
-    """State a data or object property of an entity: `client.set("door1", "isOpen", True)`.
+    """Set a data or object property of an entity: `client.set("door1", "isOpen", True)`.
 
-    The value of a functional property replaces the one before; other properties get more values. With `if_is`
-    it raises PreconditionFailed unless that is a value now, with `if_unset` unless there is none, and where
-    one of `unchanged` was changed by a commit after `since`.
+    The value of a functional property replaces the previous one. Other properties keep their previous values.
+    Raises PreconditionFailed in these cases:
+
+    - `if_is` is not a value of the property.
+    - `if_unset` is true and the property has a value.
+    - A commit after `since` changed one of the entities `unchanged`.
     """
     return commands.Set(
         name=name,
@@ -169,12 +174,11 @@ def _batch(
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Changed]:
-    """Make several changes in one commit, or none: `client.batch(Set(...), Update(...))`.
+    """Apply several changes in one commit, or none of them: `client.batch(Set(...), Update(...))`.
 
-    They are messages of `semmap.commands` and happen together: an entity is updated once at most, and a
-    property of it set or unset once. Positions are in the map frame. Raises what the first change that is
-    refused would raise, and PreconditionFailed where one of `unchanged` was changed by a commit after
-    `since`.
+    The changes are commands of `semmap.commands`. A batch has at most one update of an entity, and sets or
+    unsets a property at most once. Positions are in the map frame. Raises the error of the first rejected
+    change, and PreconditionFailed if a commit after `since` changed one of the entities `unchanged`.
     """
     return commands.Batch(
         changes=changes,
@@ -201,17 +205,17 @@ def _load(
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Changed]:
-    """Add what a file describes: an ABox, a JSON scene, a HuRIC map or a plan. Raises BadFile.
+    """Load a file: an ABox, a JSON scene, a HuRIC map, a plan or a TBox. Raises BadFile.
 
-    A plan is the YAML file of a map of ROS's map server: its free space is cut into rooms at its doors.
+    A plan is the YAML file of a map of the ROS map server: its free space is divided into rooms at the doors.
 
-    `replace` takes the present entities out in the same commit; `skip_unknown` leaves out what is of a class
-    that the TBox does not have; `strict` refuses a file that relates things to what nobody describes.
-    With `parts` it is as many commits as it takes, for files of any size.
+    `replace` removes the current entities in the same commit. `skip_unknown` skips entities whose class is
+    not in the TBox. `strict` rejects a file that refers to undescribed entities. `parts` loads the file in
+    several commits, for files of any size.
 
-    With `tbox` the file (or folder) is a TBox that replaces the present one, with all that it
-    imports: from the files that `imports` has for IRIs, that a catalogue names, or that lie beside it.
-    `spatial_root` are classes, by IRI or name, whose instances are things in space.
+    With `tbox`, the file (or folder) is a TBox that replaces the current one, including its imports. These
+    are found by `imports` (a file for each IRI), by a catalogue, or in the same folder. `spatial_root` are
+    classes, by IRI or name, whose instances have a position.
     """
     if imports and not tbox:
         raise errors.BadRequest("--import applies to TBoxes only; add --tbox")
@@ -248,16 +252,16 @@ def _move(
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Moved]:
-    """Move the body of an entity by hand, and return when the map has followed.
+    """Move the body of an entity manually, and return when the map is updated.
 
-    The reply's `commit` is that by which it did; without one, its `notes` say why: the body rests where the
-    map has it already, still moves after half a minute, or time is paused. With `wait=False` it returns when
-    the body is released.
+    The `commit` of the reply is the update. If there is none, its `notes` have the reason: the body came to
+    rest at its pose in the map, is still moving after 30 s, or time is paused. With `wait=False`, the method
+    returns when the body is released.
 
-    `at` is the bottom centre [m] and `yaw` [rad] how it is turned, in the map frame or in `frame`. With
-    `carry`, what stands on it or is inside it is moved with it as one rigid body, except what `leave` names.
-    Raises Refused where the map rejects the new place, an undo stops it, or the entity is removed before it
-    rests; NoAnswer where the simulator ends.
+    `at` is the bottom centre [m] and `yaw` [rad] the rotation, in the map frame or in `frame`. With `carry`,
+    the objects on it and inside it are moved with it as one rigid body, except those in `leave`. Raises
+    Refused if the map rejects the new pose, an undo stops the move, or the entity is removed before it is at
+    rest. Raises NoAnswer if the simulator ends.
     """
     return commands.Move(
         name=name,
@@ -281,10 +285,10 @@ def _open(
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Moved]:
-    """Open a thing as a hand would, to this share of its way, and return when the map has followed.
+    """Open a door, lid or drawer to this fraction, and return when the map is updated.
 
-    With a `joint`, only that one of several. What is in the way stops it. `wait`, the reply and what it
-    raises are as for `move`, and Refused is raised for what has no joints.
+    With `joint`, only that joint of the object is moved. Obstacles stop it. `wait`, the reply and the errors
+    are as for `move`. Raises also Refused for an object without joints.
     """
     return commands.Open(name=name, to=to, joint=joint, wait=wait, id=id, reason=reason)
 
@@ -292,7 +296,7 @@ def _open(
 def _close(
     name: str, joint: str | None = None, *, wait: bool = True, id: str = "", reason: str = ""
 ) -> Command[replies.Moved]:
-    """Close a thing as a hand would, and return when the map has followed; as for `open`."""
+    """Close a door, lid or drawer, and return when the map is updated; see `open`."""
     return commands.Close(name=name, joint=joint, wait=wait, id=id, reason=reason)
 
 
@@ -308,12 +312,11 @@ def _drive(
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Moved]:
-    """Drive a robot of the simulator to a point, or through several, and return when the map has followed.
+    """Drive a simulated robot to a point, or through several, and return when the map is updated.
 
-    It drives in a straight line to each point [m], at most at `speed` [m/s], and at the end faces `yaw`
-    [rad]; both are in the map frame, or in `frame` as that is when the command begins. With `stop` it stops
-    where it is. `wait`, the reply and what it raises are as for `move`, and Refused is raised where the robot
-    gets no further, or falls.
+    The robot drives in a straight line to each point [m], with at most `speed` [m/s], and finally turns to
+    `yaw` [rad]. Both are in the map frame, or in `frame` as it is at the start. `stop` stops the robot.
+    `wait`, the reply and the errors are as for `move`. Raises also Refused if the robot is blocked or falls.
     """
     return commands.Drive(
         name=name,
@@ -340,15 +343,15 @@ def _list(
     to: str | None = None,
     frame: str | None = None,
 ) -> commands.List:
-    """The entities of a class, over inferred types; all of them without one.
+    """Return the entities, or those of a class, including inferred types.
 
-    Of these those `on` a thing, `in_` a place or container, `near` a thing (`within` so many metres of it),
-    or the `nearest` so many `to` a thing; each is given by name, reference or class, and `near` and `to` may
-    be positions: "2.5,1,0.8" [m]. With a `frame` such positions are in it, and so are the poses in the
-    answer.
+    They can be restricted to the entities `on` an object, `in_` a place or container, `near` an object
+    (`within` a distance [m]), or to the `nearest` N entities `to` an object. Each of these is a name, a label
+    or a class; `near` and `to` may also be positions: "2.5,1,0.8" [m]. With `frame`, these positions and the
+    poses in the reply are in that frame.
 
-    `as_of`: the map as it was after a commit, given by its number, or at a time: seconds since 1970, ISO 8601
-    or a reply's `stamp_ns`. A time denotes its written precision (see `semmap.schemas.moments.When`).
+    `as_of` selects the state of the map after a commit number or at a time: seconds since 1970, ISO 8601, or
+    the `stamp_ns` of a reply. A time means its written precision (see `semmap.schemas.moments.When`).
     """
     return commands.List(
         class_=class_,
@@ -366,7 +369,7 @@ def _list(
 def _list_as(
     format: Literal["lu4r", "legacy"], class_: str | None = None, *, as_of: When | None = None
 ) -> commands.List:
-    """The entity list in the format of another system."""
+    """Return the list of entities in the format of another system."""
     return commands.List(class_=class_, format=format, as_of=as_of)
 
 
@@ -378,12 +381,11 @@ def _route(
     heights: HeightRange = HEIGHTS_M,
     as_of: When | None = None,
 ) -> Command[Way]:
-    """The shortest way for a robot of a `radius` [m], over places and through doors.
+    """Return the shortest route of a robot with a `radius` [m] through places and doors.
 
-    From and to places, things or persons (by name, reference or class), or positions (x, y) [m] in the map
-    frame. What has a part within `heights` [m] above the floor is in the way. A way through closed doors
-    names them in `closed`: it is none until they are opened. Raises Refused, with the reason, if there
-    is none.
+    `from_` and `to` are entities (by name, label or class) or positions (x, y) [m] in the map frame. Objects
+    with a part within `heights` [m] above the floor are obstacles. `closed` has the closed doors on the
+    route, which must be opened first. Raises Refused, with the reason, if there is no route.
     """
     start, end = (word if isinstance(word, str) else ",".join(map(repr, word)) for word in (from_, to))
     return commands.FindWay(from_=start, to=end, radius=radius, heights=heights, as_of=as_of)
@@ -391,13 +393,13 @@ def _route(
 
 def _entities(reply: tuple[Entity, ...] | dict[str, Any]) -> tuple[Entity, ...]:
     if not isinstance(reply, tuple):
-        raise errors.InternalError("the entities came in another format")
+        raise errors.InternalError("the reply is not a list of entities")
     return reply
 
 
 def _document(reply: tuple[Entity, ...] | dict[str, Any]) -> dict[str, Any]:
     if not isinstance(reply, dict):
-        raise errors.InternalError("the entities came without the format that was asked for")
+        raise errors.InternalError("the reply is not in the requested format")
     return reply
 
 
@@ -406,13 +408,13 @@ def _png(picture: Picture) -> bytes:
 
 
 class CommandMethods:
-    """What one may ask of a system and do to its map and scene: every command, and its reply.
+    """The methods of a client: one for each command, which returns its reply.
 
-    Positions are metres in the map frame, angles radians, quaternions `wxyz`. Each verb takes an `id`, too:
-    the same one twice is executed once. Raises Refused, BadRequest or NoAnswer.
+    Positions are in metres in the map frame, angles in radians, quaternions `wxyz`. Each method also accepts
+    an `id`; commands with the same id are executed once. Raises Refused, BadRequest or NoAnswer.
     """
 
-    # To change
+    # Change the map
     add = CommandMethod(commands.Add)
     update = CommandMethod(commands.Update)
     set = CommandMethod(_set)
@@ -424,7 +426,7 @@ class CommandMethods:
     load = CommandMethod(_load)
     undo = CommandMethod(commands.Undo)
 
-    # To ask
+    # Query
     list = CommandMethod(_list, _entities)
     list_as = CommandMethod(_list_as, _document)
     get = CommandMethod(commands.Get)
@@ -449,14 +451,14 @@ class CommandMethods:
     last_seen = CommandMethod(commands.LastSeen)
     sparql = CommandMethod(commands.Sparql)
 
-    # To let agents change
+    # Approve changes of agents
     submit = CommandMethod(commands.Submit)
     approve = CommandMethod(commands.Approve)
 
-    # To keep
+    # Storage
     compact = CommandMethod(commands.Compact)
 
-    # To run
+    # Scene and simulation
     move = CommandMethod(_move)
     drive = CommandMethod(_drive)
     attach = CommandMethod(commands.Attach)
@@ -468,7 +470,7 @@ class CommandMethods:
     reset = CommandMethod(commands.Reset)
     picture = CommandMethod(commands.TakePicture, _png)
 
-    # To show perception
+    # Perception
     learn = CommandMethod(commands.Learn)
     learned = CommandMethod(commands.Learned)
     forget = CommandMethod(commands.Forget)

@@ -1,4 +1,4 @@
-"""A copy of a map's journal, to read: of a data folder, or of a running system."""
+"""Read-only copies of the journal of a data folder or of a running system."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from semmap.schemas import errors
 
 
 class JournalCopy(NamedTuple):
-    """Where the copy is, and the data folder that it is of; None where that is on another machine."""
+    """The path of a copy, and the data folder of the original; None if that is on another machine."""
 
     path: Path
     data: Path | None
@@ -24,7 +24,7 @@ class JournalCopy(NamedTuple):
 
 @contextmanager
 def private_folder() -> Iterator[Path]:
-    """A folder that nobody else may read, deleted at the end."""
+    """Yield a temporary folder that only this user can read."""
     folder = Path(tempfile.mkdtemp(prefix=f"semmap-replay-{os.getpid()}-"))
     try:
         yield folder
@@ -41,10 +41,11 @@ def journal_copy(
     identity: str | None = None,
     namespace: str | None = None,
 ) -> Iterator[JournalCopy]:
-    """A copy of the journal of a data folder or, without one, of the system at `where`.
+    """Yield a copy of the journal of a data folder or, without `data`, of the system at `where`.
 
-    Of one on another machine a backup is made. `what` needs it. Raises BadFile when there is no map in the
-    folder, Refused when it is damaged, NoAnswer when no system answers.
+    The journal of a system on another machine is copied by a backup. `what` is the command that needs it, for
+    error messages. Raises BadFile if the folder has no map, Refused if the map is damaged, and NoAnswer if
+    the system does not respond.
     """
     extras.require(what, "kb")
     from semmap.nodes.kb_node.storage.journal import FILENAME
@@ -60,7 +61,7 @@ def journal_copy(
 
 
 def _data_folder(where: str | None, namespace: str | None) -> Path | None:
-    """The data folder of a system that this user runs on this machine and that has the map itself."""
+    """Return the data folder with the map of a local system of this user, if there is one."""
     from semmap.nodes.extern.connection import endpoint
 
     reachable = where or endpoint(namespace)

@@ -1,4 +1,4 @@
-"""The past of a map, run again from its journal as a system of its own beside the one that may run."""
+"""Replay of the history of a map from its journal, in a separate system; and checks of recordings."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ def replay(
     web: int | None = None,
     say: Callable[[str], None] = print,
 ) -> None:
-    """Run the map of the data folder `data` again, from one commit or time to another, until Ctrl-C.
+    """Replay the map in the data folder `data`, from one commit or time to another, until Ctrl-C.
 
-    It has a knowledge base, a simulator and a recorder of its own, in a folder that is deleted at the end;
-    `data` is only read, also while its own system runs. Commits come with the waits that were between them,
-    divided by `speed`, and none longer than `longest_s` [s]. `world` is the scene file, by default the map's.
-    `web` is the port of a page that shows it: 0 is any that is free, None no page.
+    The replay has its own knowledge base, simulator and recorder, in a temporary folder. `data` is only read;
+    its system may be running. The intervals between commits are divided by `speed`, and limited to
+    `longest_s` [s]. `world` is the scene file; by default it is that of the map. `web` is the port of a page
+    that shows the replay; 0 selects a free port, None starts no page.
 
-    Raises BadFile when there is no map, Refused when it is damaged or the span is not in its history,
-    BadRequest for a span or speed that is none; and what `semmap up` raises.
+    Raises BadFile if the folder has no map, Refused if the map is damaged or the period is not in its
+    history, BadRequest for an invalid period or speed, and the errors of `semmap up`.
     """
     data, world = Path(data).resolve(), None if world is None else Path(world)
     rhythm.require_speed(speed)
@@ -79,11 +79,10 @@ def check(
     namespace: str | None = None,
     tell: Callable[[str], None] = print,
 ) -> str:
-    """Compare the commits of a recording with those in the journal of a data folder, or of a running system.
+    """Compare the commits of a recording with the journal of a data folder, or of a running system.
 
-    Returns what was compared, in a sentence; `tell` is told of what cannot be read of the recording. Raises
-    Refused with the first difference, or with the commits that the recording lacks; BadFile for no recording
-    or no map.
+    Returns a summary. `tell` receives a note on parts of the recording that cannot be read. Raises Refused
+    with the first difference or the missing commits, and BadFile if there is no recording or no map.
     """
     file, data = Path(file), None if data is None else Path(data)
     extras.require("semmap replay --check", "kb", "record")
@@ -93,8 +92,8 @@ def check(
     from semmap.nodes.recorder.whole_part import whole_part
 
     with whole_part(file) as whole:
-        if told := whole.told(file):
-            tell(told)
+        if note := whole.told(file):
+            tell(note)
         recorded = commits_of(whole.path)
     with (
         journal_copy(
@@ -111,9 +110,9 @@ def check(
 
 
 def read_settings(data: Path, world: Path | None = None) -> Settings:
-    """What a system needs to show the map of a data folder: its world, models and shapes, and nothing else.
+    """Return the settings to show the map of a data folder: its world, models and shapes.
 
-    Where reality was perceived, the scene of a world file is not the map's: the floor alone is.
+    A map with `--truth perceived` is shown in an empty world, because its world file is not its scene.
     """
     try:
         before: Settings | None = codec.decode((data / SETTINGS).read_bytes(), Settings)
@@ -126,7 +125,7 @@ def read_settings(data: Path, world: Path | None = None) -> Settings:
     else:
         scene = EMPTY_WORLD if before.truth == "perceived" else Path(before.world)
     if not scene.exists():
-        raise errors.BadFile(f"the world {scene} of this map is not there any more; give one with --world")
+        raise errors.BadFile(f"the world {scene} of this map no longer exists; choose one with --world")
     return Settings(
         data=str(data),
         tbox=str(HOUSEHOLD_TTL),

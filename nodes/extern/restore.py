@@ -1,4 +1,4 @@
-"""A map from a backup, in a data folder whose system does not run."""
+"""Restoring a map from a backup, in a data folder whose system is stopped."""
 
 from __future__ import annotations
 
@@ -18,14 +18,13 @@ def restore(
     replace: bool = False,
     tell: Callable[[str], None] = lambda text: None,
 ) -> Restored:
-    """Restore a backup, made by `Client.backup`, to the data folder `data`; start it with `semmap up --data`.
+    """Restore a backup by `Client.backup` to the data folder `data`; start it with `semmap up --data`.
 
-    Nothing may run on that folder. A map that is there is moved to its folder `kept` if `replace`. `tell` is
-    told, in words, how far the work is.
+    The system of that folder must be stopped. With `replace`, an existing map is moved to its folder `kept`.
+    `tell` receives progress messages.
 
-    Raises BadFile for what is no sound backup, and Refused when a system runs there, when there is a map that
-    is not to be replaced, or when the disk does not take it; then nothing has changed. Needs the extra
-    `semmap[kb]`.
+    Raises BadFile for a damaged backup. Raises Refused if a system is running there, if there is a map and
+    `replace` is not set, or if the disk is full; then nothing has changed. Requires the extra `semmap[kb]`.
     """
     extras.require("semmap restore", "kb")
     from semmap.nodes.kb_node.storage.backup.restoring import restore as restore_journal

@@ -47,5 +47,5 @@ def test_a_watcher_is_told_that_the_system_goes_and_which_map_comes():
             until(lambda: said[1:] == [availability.CAME_BACK], "it is told that the system is back")
         with system_at(endpoint, 2, asked):
             until(lambda: len(said) == 4, "it is told of another map")
-    another = "this endpoint now serves another map (begun from a.ttl; 3 entities, commit 7); "
-    assert said[2:4] == [availability.WENT_DOWN, f"{another}what follows is about that map"]
+    another = "the endpoint now serves another map (begun from a.ttl; 3 entities, commit 7); "
+    assert said[2:4] == [availability.WENT_DOWN, f"{another}further output is about it"]

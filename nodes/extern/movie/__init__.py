@@ -42,7 +42,7 @@ def movie(
     if file.suffix.lower() != ".mp4":
         raise errors.BadRequest(f"movies are written as MP4; name the file {file.stem or 'movie'}.mp4")
     if file.exists() and not overwrite:
-        raise errors.BadFile(f"{file} is there already; overwrite it with --overwrite, or give another name")
+        raise errors.BadFile(f"{file} already exists; add --overwrite or choose another name")
     if not file.absolute().parent.is_dir():
         raise errors.BadFile(f"there is no folder {file.absolute().parent}")
     extras.require("semmap movie", "kb", "sim", "movie")

@@ -51,8 +51,8 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     @spatial_root_option
     @click.option(
         "--abox",
-        help="ABox file, or none for an empty map. Default: the flat; none with --tbox, with --truth perceived,"
-        " or with --truth scene and --world.",
+        help="ABox file, or none for an empty map. Default: the flat; none with --tbox, --truth perceived, or"
+        " --truth scene with --world.",
     )
     @click.option(
         "--world",

@@ -98,7 +98,7 @@ def _suppressed_notes(client: Client, names: Iterable[str]) -> Iterator[str]:
         except errors.UnknownName:  # a label or a class
             continue
         if suppressed:
-            yield f"  note: some relations of {name} are suppressed: they contradict the map; see: semmap check"
+            yield f"  note: relations of {name} that contradict the map are suppressed; see: semmap check"
 
 
 @command(example="semmap get cup1")

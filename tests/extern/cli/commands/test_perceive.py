@@ -167,7 +167,7 @@ def test_masks_cut_a_frame_up_and_a_label_that_nobody_knows_is_told(tmp_path, ca
         (["boxes.pcd", "--masks-only"], "require --masks"),
         (["boxes.pcd", "--masks", "missing.npy"], "missing.npy cannot be read"),
         (["boxes.pcd", "--masks", "small.npy"], "this one has 4 x 3 of int64"),
-        (["boxes.pcd", "--masks", "small.npy", "--label-map", "small.npy"], "no map of labels"),
+        (["boxes.pcd", "--masks", "small.npy", "--label-map", "small.npy"], "not a JSON object of labels"),
     ],
 )
 def test_what_is_wrong_with_masks_is_told_in_one_line(tmp_path, capsys, monkeypatch, words, said):

@@ -23,7 +23,7 @@ def system(empty_map, tmp_path_factory):
 
 def test_a_list_that_lacks_something_withheld_says_so(system):
     told = system.cli("list", "--on", "counter1")
-    note = "  note: some relations of counter1 are suppressed: they contradict the map; see: semmap check\n"
+    note = "  note: relations of counter1 that contradict the map are suppressed; see: semmap check\n"
     assert told == f"0 entities\n{note}"
     assert "milk1 is on counter1 (measured) would contradict the map" in system.cli("check")
     assert "note" not in system.cli("list", "--on", "Counter", "--format", "json")
