@@ -1,8 +1,7 @@
-"""`semmap fleet mirror`: robots' commits go into one named graph each of a SPARQL server, exactly once.
+"""`semmap fleet mirror`: commits of robots are written to named graphs of a SPARQL server, exactly once.
 
-One thread owns what is known and writes; robots are asked on threads beside it, and what they publish is put
-on its queue. What has to be written of all robots at a time goes in one request, so the more commits come,
-the less each of them costs.
+One thread owns the state and writes. Requests to robots run on other threads, and published commits are put
+on its queue. The changes of all robots are combined in one request, so frequent commits are cheaper.
 """
 
 from __future__ import annotations
@@ -34,44 +33,44 @@ from semmap.schemas.calls import Call, reply_type
 
 _WAIT_S: Final = 0.2
 _VERIFY_S: Final = 10.0
-"""How often it makes sure that what it has is what the robot has."""
+"""Period of comparing a copy with the robot [s]."""
 _AGAIN_S: Final = 1.0
-"""After so long a robot that did not answer is asked again."""
+"""Time before a request to a robot is retried [s]."""
 _REFUSED_S: Final = 30.0
-"""After so long what the server found wrong is tried again."""
+"""Time before a change that the server rejected is retried [s]."""
 _FIRST_S, _LONGEST_S = 0.5, 30.0
-"""How long a server that is in trouble is left alone, at first and at most."""
+"""Minimum and maximum time before a request to a failing server is retried [s]."""
 _REQUEST_TRIPLES: Final = 50_000
 _ASKED_AT_ONCE: Final = 8
 _ANSWER_S: Final = 120.0
 
 
 class MirrorConfig(Struct, frozen=True, kw_only=True):
-    """What is mirrored, and where to."""
+    """The settings of a mirror."""
 
     update_url: str
     query_url: str
     robots: tuple[str, ...] = ("*",)
-    """Patterns of names."""
+    """Patterns of robot names."""
     frames: dict[str, Frame] = {}
     endpoints: tuple[str, ...]
-    """Where robots are reached."""
+    """The endpoints of robots."""
     identity: Identity | None = None
     far: int = FAR
-    """Commits: a copy that is further behind is made anew."""
+    """The number of commits from which the whole map is copied."""
     timeout_s: float = TIMEOUT_S
-    """How long the server may take."""
+    """The timeout of requests to the server."""
 
 
 class _Robot:
-    """A robot that was seen: how far its copy is, and the way to it."""
+    """A robot that was discovered: the state of its copy, and the connection to it."""
 
     def __init__(self, name: str, endpoint: str) -> None:
         self.name = name
         self.endpoint = endpoint
         self.replica = Replica(name)
         self.instances: set[str] = set()
-        """The processes of its knowledge base that are there."""
+        """The running processes of its knowledge base."""
         self.connections = contextlib.ExitStack()
         self.ask: Callable[[Call[Any]], Any] | None = None
         self.is_queried = False
@@ -80,10 +79,10 @@ class _Robot:
 
 
 class Mirror:
-    """Follows robots until it is stopped. `tell(sentence)` is called with what a person wants to know."""
+    """Mirrors robots until it is stopped. `tell(text)` receives log messages."""
 
     def __init__(self, config: MirrorConfig, tell: Callable[[str], None] = lambda _: None) -> None:
-        """Raises BadRequest for URLs that are none."""
+        """Raise BadRequest for invalid URLs."""
         self._config = config
         self._tell = tell
         self._writer = SparqlServer(config.update_url, timeout_s=config.timeout_s)
@@ -94,32 +93,32 @@ class Mirror:
         self._connections = contextlib.ExitStack()
         self._stopped = False
         self._found = 0
-        """Endpoints at which it was seen which robots there are."""
+        """The number of endpoints whose robots were discovered."""
         self._server: dict[str, Facts] | None = None
-        """What the server said of robots when it was last asked about all; None when that is to be done."""
+        """The metadata of all robots when the server was last queried; None if it must be queried."""
         self._pause_s = _FIRST_S
         self._next_try_s = 0.0
         self.trouble = ""
-        """What keeps the server from being written to; empty when all is well."""
+        """The error that prevents writing to the server, or an empty text."""
         self.commits = 0
-        """How many were written, those in copies of whole maps not counted."""
+        """The number of written commits, without copies of whole maps."""
         self.requests = 0
-        """How many requests wrote something."""
+        """The number of write requests."""
 
     @property
     def facts(self) -> dict[str, Facts]:
-        """What the server is known to have, by robot."""
+        """The known metadata in the server, by robot."""
         known = {name: robot.replica.facts for name, robot in self._robots.items()}
         return {name: facts for name, facts in known.items() if facts is not None}
 
     def stop(self) -> None:
-        """End `run`; from any thread, or a signal's handler."""
+        """End `run`, from any thread or from a signal handler."""
         self._stopped = True
 
     def run(self, *, once: bool = False) -> None:
-        """Follow until stopped; with `once` until all robots that are there have been caught up with.
+        """Mirror until stopped or, with `once`, until all available robots are synchronized.
 
-        With `once` it raises what keeps it from that: NoAnswer, Refused.
+        With `once`, raises NoAnswer or Refused if that is not possible.
         """
         try:
             for endpoint in self._config.endpoints:
@@ -146,7 +145,7 @@ class Mirror:
         there = [robot for robot in self._robots.values() if robot.instances]
         if self._found == len(self._config.endpoints) and not there:
             where = ", ".join(self._config.endpoints)
-            raise errors.NoAnswer(f"no robot that matches {', '.join(self._config.robots)} is at {where}")
+            raise errors.NoAnswer(f"no robot at {where} matches {', '.join(self._config.robots)}")
         for robot in there:
             if robot.error and robot.replica.phase == "behind":
                 raise errors.NoAnswer(f"{robot.name}: {robot.error}")
@@ -155,7 +154,7 @@ class Mirror:
         )
 
     def _handle(self) -> None:
-        """What has come; it is waited for if there is nothing to write."""
+        """Handle events; wait for one if there is nothing to write."""
         busy = not self.trouble and any(robot.replica.has_work for robot in self._robots.values())
         with contextlib.suppress(queue.Empty):
             self._events.get(timeout=0.001 if busy else _WAIT_S)()
@@ -165,16 +164,16 @@ class Mirror:
     # Robots
 
     def _discover(self, endpoint: str) -> None:
-        """See which robots are reached at an endpoint, from now on."""
+        """Discover the robots at an endpoint, from now on."""
 
-        def look() -> None:
+        def discover() -> None:
             where = open_session(endpoint, "", self._config.identity, mode="client")
             session = self._connections.enter_context(where)
             bus.follow_robots(
                 session, "kb_node", functools.partial(self._run_on_owner, self._on_presence, endpoint)
             )
 
-        def looked(done: Future[None]) -> None:
+        def on_discovered(done: Future[None]) -> None:
             error = done.exception()
             if error is None:
                 self._found += 1
@@ -186,10 +185,10 @@ class Mirror:
             else:
                 raise error
 
-        self._run_in_thread(look, looked)
+        self._run_in_thread(discover, on_discovered)
 
     def _on_presence(self, endpoint: str, name: str, instance: str, there: bool) -> None:
-        """A process of a robot's knowledge base is there, or has gone."""
+        """Handle that a process of a robot's knowledge base started or ended."""
         if not any(fnmatchcase(name, pattern) for pattern in self._config.robots):
             return
         robot = self._robots.get(name)
@@ -205,10 +204,10 @@ class Mirror:
         else:
             robot.instances.discard(instance)
             if not robot.instances:
-                self._report(f"{name} has gone; it is followed again when it comes back")
+                self._report(f"{name} is unavailable; waiting for it")
 
     def _ask(self) -> None:
-        """Have the robots asked that are behind, or have to be made sure of."""
+        """Start the synchronization of robots whose copy is behind or must be verified."""
         now_s = time.monotonic()
         for robot in self._robots.values():
             replica = robot.replica
@@ -224,13 +223,13 @@ class Mirror:
     def _synchronize(
         self, robot: _Robot, facts: Facts | None, frame: Frame | None
     ) -> NextCommits | FullCopy | None:
-        """On a thread beside: subscribe first, then fetch."""
+        """Subscribe first, then fetch; runs on another thread."""
         if robot.ask is None:
             where = open_session(robot.endpoint, robot.name, self._config.identity, mode="client")
             session = robot.connections.enter_context(where)
             lifelines = bus.Lifelines(session)
-            hear = robot.replica.add_commit
-            bus.follow(session, keys.COMMIT, lambda _, commit: self._run_on_owner(hear, commit))
+            add_commit = robot.replica.add_commit
+            bus.follow(session, keys.COMMIT, lambda _, commit: self._run_on_owner(add_commit, commit))
 
             def ask(call: Call[Any]) -> Any:
                 kind = reply_type(type(call))
@@ -257,14 +256,14 @@ class Mirror:
         if isinstance(found, NextCommits) and was == "behind":
             at = found.commits[-1].seq if found.commits else replica.facts and replica.facts.commit
             self._report_robot(robot, "")
-            self._report(f"{robot.name}: going on from commit {at}")
+            self._report(f"{robot.name}: resuming from commit {at}")
         elif found is None:
             self._report_robot(robot, "has no map yet")
 
     # The server
 
     def _read(self) -> bool:
-        """Know what the server has; False while it cannot be asked."""
+        """Read the metadata from the server; return False while it does not respond."""
         if time.monotonic() < self._next_try_s:
             return False
         if self._server is not None:
@@ -277,12 +276,12 @@ class Mirror:
         for robot in self._robots.values():
             robot.replica.update_facts(self._server.get(robot.name))
         if self.trouble:
-            self._report("the SPARQL server answers again")
+            self._report("the SPARQL server is available again")
         self.trouble, self._pause_s = "", _FIRST_S
         return True
 
     def _pause_server(self, text: str) -> None:
-        """The server is left alone for a while, longer each time; then it is asked what it has."""
+        """Pause requests to the server, longer each time. Afterwards, its metadata is read again."""
         if text != self.trouble:
             self._report(f"{text}; trying again")
         self.trouble, self._server = text, None
@@ -305,7 +304,7 @@ class Mirror:
             return
         try:
             self._send([operation for _, operations, _, _ in pending for operation in operations])
-        except errors.BadRequest:  # one of them is at fault, and the others shall not wait for it
+        except errors.BadRequest:  # one robot's change is rejected; write the others
             for robot, operations, wanted, size in pending:
                 self._write_alone(robot, operations, wanted, size=size)
         except errors.SemmapError as error:
@@ -314,7 +313,7 @@ class Mirror:
             self._confirm([(robot, wanted) for robot, _, wanted, _ in pending])
 
     def _copy(self, robot: _Robot) -> None:
-        """Write a robot's whole map, in one request if it is small."""
+        """Write the whole map of a robot, in one request if it is small."""
         replica = robot.replica
         anew, before = replica.copying, replica.facts
         if anew is None:
@@ -336,10 +335,10 @@ class Mirror:
         size: int = 0,
         one_by_one: bool = False,
     ) -> bool:
-        """Write what is to be written of one robot; is it there now?
+        """Write the change of one robot, and return whether it was written.
 
-        A change of `size` triples that the server refuses is tried again in smaller steps: Virtuoso 7 refuses
-        one of 800 commits, of which it would make more than 10 000 lines of SQL.
+        A change of `size` triples that the server rejects is retried in smaller steps: Virtuoso 7 rejects a
+        change of 800 commits, because it would be translated to more than 10 000 lines of SQL.
         """
         try:
             for some in ([operation] for operation in operations) if one_by_one else [operations]:
@@ -361,7 +360,7 @@ class Mirror:
         self.requests += 1
 
     def _confirm(self, written: Sequence[tuple[_Robot, Facts]]) -> bool:
-        """Ask the server where it is now; where it is not what was written, somebody else has."""
+        """Return whether the server has what was written; otherwise another program has written."""
         graphs = " ".join(f.graph(robot.name) for robot, _ in written)
         query = (
             f"SELECT ?robot ?digest {{ GRAPH {f.FACTS} {{"
@@ -383,22 +382,22 @@ class Mirror:
             else:
                 as_wanted = False
                 robot.replica.update_facts(before, wanted)
-                self._server = None  # look at all of it
+                self._server = None  # read all metadata again
         return as_wanted
 
     # Threads
 
     def _run_in_thread(self, function: Callable[[], Any], done: Callable[[Future[Any]], None]) -> None:
-        """Call `function` on a thread beside, and then `done(future)` on this one."""
+        """Call `function` on another thread, and then `done(future)` on the owning thread."""
         self._threads.submit(function).add_done_callback(functools.partial(self._run_on_owner, done))
 
     def _run_on_owner(self, function: Callable[..., None], *args: Any) -> None:
-        """Call `function` on the thread that owns everything."""
+        """Call `function` on the thread that owns the state."""
         if not self._stopped:
             self._events.put(functools.partial(function, *args))
 
     def _report_robot(self, robot: _Robot, text: str) -> None:
-        """Something that is wrong with a robot, once."""
+        """Log an error of a robot, once."""
         if text and text != robot.error:
             self._report(f"{robot.name}: {text}; trying again")
         robot.error = text

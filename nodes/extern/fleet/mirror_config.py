@@ -1,4 +1,4 @@
-"""What a mirror is told in words: URLs, robots, frames, endpoints."""
+"""The settings of a mirror from texts: URLs, robots, frames, endpoints."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ def config(
     where: str | Sequence[str] | None = None,
     identity: str | None = None,
 ) -> MirrorConfig:
-    """The settings of a mirror. Raises BadRequest, BadFile."""
-    who = identify(identity)
+    """Return the settings of a mirror. Raises BadRequest, BadFile."""
+    certificate = identify(identity)
     reached = endpoints(where)
     return MirrorConfig(
         update_url=update_url,
         query_url=query_url or query_url_of(update_url),
         robots=split_names(robots),
         frames=dict(frames) if isinstance(frames, Mapping) else frames_.read(frames),
-        endpoints=reached if who is None else tuple(map(bus.over_tls, reached)),
-        identity=who,
+        endpoints=reached if certificate is None else tuple(map(bus.over_tls, reached)),
+        identity=certificate,
     )
 
 
@@ -44,17 +44,17 @@ def mirror(
     identity: str | None = None,
     tell: Callable[[str], None] = lambda _: None,
 ) -> Mirror:
-    """A mirror of the robots whose names match, which `run()` sets to work until `stop()`.
+    """Return a mirror of the robots whose names match; `run()` starts it, `stop()` ends it.
 
-    It writes to the SPARQL 1.1 server at `update_url`. `frames` say where robots' maps are in the fleet's
-    frame, as `robot1=X,Y,Z,YAW` [m, rad] or by name. `tell` is called with what a person wants to know.
-    Raises BadRequest, BadFile.
+    It writes to the SPARQL 1.1 server at `update_url`. `frames` are the poses of the robots' maps in the
+    fleet frame, as `robot1=X,Y,Z,YAW` [m, rad] or by name. `tell` receives log messages. Raises BadRequest,
+    BadFile.
     """
     settings = config(update_url, query_url, robots=robots, frames=frames, where=where, identity=identity)
     return Mirror(settings, tell)
 
 
 def query_url_of(update_url: str) -> str:
-    """`.../query` for `.../update`; a server without such a word has one endpoint for both."""
+    """Return `.../query` for `.../update`, or the same URL if it does not contain `update`."""
     head, slash, last = update_url.rpartition("/")
     return f"{head}{slash}{last.replace('update', 'query', 1)}"

@@ -1,4 +1,4 @@
-"""Questions to the SPARQL server that robots are mirrored to; with the answer, each robot's commit."""
+"""Queries to the SPARQL server that robots are mirrored to. The result includes the commit of each robot."""
 
 from __future__ import annotations
 
@@ -34,21 +34,21 @@ class CopiedRobot(Struct, frozen=True, kw_only=True):
 
     robot: str
     commit: int | None
-    """The commit that its graph is as of; None while it is being copied."""
+    """The commit of its graph; None while the graph is being copied."""
     until: int | None = None
-    """A later commit, if the graph went on to that one while the query was answered."""
+    """A later commit, if the graph was updated while the query was answered."""
     digest: str
     map_id: str
     begun: str
-    """When that map was begun."""
+    """The time when the map was created."""
     epoch: int
     behind: int | None = None
-    """How many commits the robot is ahead; None for one that cannot be reached, or has another map now."""
+    """How many commits the robot is ahead; None if it cannot be reached or has another map now."""
     note: str = ""
 
 
 class FleetAnswer(Struct, frozen=True, kw_only=True):
-    """What a query gave across robots, and which maps, as of which commits, it was asked of."""
+    """The result of a query across robots, with the maps and commits that it refers to."""
 
     result: SparqlResult
     robots: tuple[CopiedRobot, ...]
@@ -63,13 +63,13 @@ def sparql(
     identity: str | None = None,
     reachable: bool = True,
 ) -> FleetAnswer:
-    """Ask the server at `query_url` a SELECT or ASK about the robots whose names match.
+    """Run a SELECT or ASK query at the server `query_url` across the robots whose names match.
 
-    The default graph of the query is what all these robots say together, and a named graph what one of them
-    says: `GRAPH ?robot { ... }`. A robot's poses in the fleet's frame are in the graph that `fleet:poses`
-    names. With `reachable`, the robots are asked (at the endpoints `where`) how far ahead they are.
+    The default graph of the query is the union of the graphs of these robots; `GRAPH ?robot { ... }` is the
+    graph of one robot. The poses of a robot in the fleet frame are in the graph that `fleet:poses` names.
+    With `reachable`, the robots at the endpoints `where` are asked for their current commits.
 
-    Raises Refused, BadRequest, and NoAnswer for a server that cannot be asked.
+    Raises Refused, BadRequest, and NoAnswer if the server does not respond.
     """
     server, patterns = SparqlServer(query_url), split_names(robots)
     try:
@@ -88,8 +88,8 @@ def sparql(
         server.close()
     if not before:
         raise errors.NoAnswer(
-            f"no robot that matches {', '.join(patterns)} has been mirrored to {server.url}; see:"
-            " semmap fleet mirror"
+            f"no mirrored robot at {server.url} matches {', '.join(patterns)}; to mirror robots: semmap fleet"
+            " mirror"
         )
     ahead = _commits(list(before), where, identity) if reachable else {}
     copied = [
@@ -107,13 +107,13 @@ def _robot_state(before: Facts, after: Facts, ahead: int | str | None) -> Copied
     note, behind = "", None
     until = after.commit if after.commit != before.commit else None
     if before.commit is None:
-        note = "is being copied: its graph is not complete"
+        note = "is being copied: its graph is incomplete"
     elif before.epoch != after.epoch:
-        note = "began another map meanwhile"
+        note = "started a new map during the query"
     elif isinstance(ahead, int):
         behind = ahead - before.commit
         if behind < 0:
-            behind, note = None, "is at an earlier commit than its copy: it may have another map now"
+            behind, note = None, "is at an earlier commit than its copy; it may have another map"
     elif ahead is not None:
         note = ahead
     return CopiedRobot(
@@ -132,7 +132,7 @@ def _robot_state(before: Facts, after: Facts, ahead: int | str | None) -> Copied
 def _commits(
     names: list[str], where: str | Sequence[str] | None, identity: str | None
 ) -> dict[str, int | str]:
-    """The last commit of each robot that can be reached; why not, of the others."""
+    """Return the last commit of each robot, or a text if it cannot be reached."""
     found: dict[str, int | str] = dict.fromkeys(names, "cannot be reached")
     with contextlib.suppress(errors.SemmapError), reach(names, where, identity_=identity) as there:
         for answer in there.status():
@@ -142,7 +142,7 @@ def _commits(
 
 
 def _with_prefixes(query: str) -> str:
-    """The query with the prefixes that need not be declared."""
+    """Return the query with declarations of the predefined prefixes."""
     if _BASE.match(query):
         return query
     lines = [

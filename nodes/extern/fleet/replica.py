@@ -1,7 +1,7 @@
-"""Replica one robot: what is known of its graph, and which commits are to be written next.
+"""The state of the copy of one robot: the metadata of its graph, and the commits that are to be written next.
 
-It starts from the facts that the server tells, and believes nothing that they do not say: a commit counts as
-written when the server says that the graph is as of it.
+The metadata in the server is authoritative: a commit is written when the server reports it as the commit of
+the graph.
 """
 
 from __future__ import annotations
@@ -18,36 +18,36 @@ from semmap.schemas import errors
 from semmap.schemas.commits import Commit
 
 MOST_AHEAD: Final = 5000
-"""Commits that are kept while they cannot be written; what is beyond is asked for later."""
+"""The maximum number of commits that wait for being written; later ones are fetched again."""
 MOST_TRIPLES: Final = 20_000
-"""In one operation, unless a single commit has more."""
+"""The maximum number of triples in one operation, unless a single commit has more."""
 
 Phase = Literal["behind", "in_sync"]
 
 
 class Replica:
-    """The copy of one robot's map. Owned by one thread; it knows neither Zenoh nor the server."""
+    """The copy of one robot's map, without Zenoh and the server. It is owned by one thread."""
 
     def __init__(self, robot: str) -> None:
         self.robot = robot
         self.phase: Phase = "behind"
-        """Behind: it has to catch up before it can go on."""
+        """`behind`: the copy must be synchronized before further commits are written."""
         self.generation = 0
-        """Goes up when the knowledge base is another process; what was under way then is void."""
+        """Incremented with every new process of the knowledge base; earlier requests are void then."""
         self.facts: Facts | None = None
         self.copying: FullCopy | None = None
-        """The map that is to be copied."""
+        """The map that must be copied."""
         self._next: dict[int, Commit] = {}
         self._most_triples = MOST_TRIPLES
 
     @property
     def has_work(self) -> bool:
-        """Is there anything to be written?"""
+        """Whether there is something to write."""
         return self.copying is not None or (self.phase == "in_sync" and self._first in self._next)
 
     @property
     def waiting(self) -> int:
-        """How many commits are known and not written."""
+        """The number of commits that are not written yet."""
         return len(self._next)
 
     @property
@@ -55,13 +55,13 @@ class Replica:
         return -1 if self.facts is None or self.facts.commit is None else self.facts.commit + 1
 
     def restart(self) -> None:
-        """The knowledge base is another process, and may have another map."""
+        """Start again: the knowledge base is a new process and may have another map."""
         self.generation += 1
         self.phase, self.copying = "behind", None
         self._next.clear()
 
     def add_commit(self, commit: Commit) -> None:
-        """A commit was published. It counts if it follows; otherwise it has to catch up."""
+        """Add a published commit. If it does not follow the previous one, the copy is behind."""
         if self.facts is not None and commit.seq == self.facts.commit and commit.digest != self.facts.digest:
             self.phase = "behind"
         if commit.seq < self._first:
@@ -71,22 +71,22 @@ class Replica:
             return
         self._next[commit.seq] = commit
         if self.phase == "in_sync" and self._first not in self._next:
-            self.phase = "behind"  # one was missed
+            self.phase = "behind"  # a commit was missed
 
     def synchronize(self, found: NextCommits | FullCopy | None, generation: int) -> None:
-        """What catching up has found; that of an earlier generation is void."""
+        """Apply the result of a synchronization, unless it belongs to an earlier generation."""
         if generation != self.generation or found is None:
             return
         if isinstance(found, FullCopy):
             self.copying = found
             return
         if found.commits and found.commits[0].seq > self._first:
-            return  # the server has meanwhile been set back: look again
+            return  # the server was reset in the meantime: synchronize again
         self._next.update((commit.seq, commit) for commit in found.commits if commit.seq >= self._first)
         self.phase = "in_sync"
 
     def change(self) -> tuple[Change, Facts] | None:
-        """The commits that are next, summed up, and the facts when they are written."""
+        """Return the next commits as one change, with the metadata after it."""
         facts = self.facts
         if self.phase != "in_sync" or facts is None or facts.commit is None or self._first not in self._next:
             return None
@@ -104,9 +104,9 @@ class Replica:
         )
 
     def halve_changes(self, refused: int, wanted: Facts) -> bool:
-        """The server refused a change of `refused` triples, up to `wanted`: from now on take half as many.
+        """Halve the size of changes after the server rejected one of `refused` triples, up to `wanted`.
 
-        False if that was a single commit, which cannot be divided.
+        Returns False if the change was a single commit, which cannot be divided.
         """
         if self.copying is not None or wanted.commit is None or wanted.commit <= self._first:
             return False
@@ -114,7 +114,7 @@ class Replica:
         return True
 
     def update_facts(self, facts: Facts | None, wanted: Facts | None = None) -> None:
-        """What the server says of the graph now; where that is not what was `wanted`, look again."""
+        """Set the metadata in the server. If it is not `wanted`, the copy is behind."""
         self.facts = facts
         if wanted is not None and facts is not None and facts.digest == wanted.digest and not facts.copying:
             if self.copying is not None:

@@ -1,7 +1,8 @@
-"""How a copy of a robot's map gets to where the robot is: by the commits since, or by copying the whole map.
+"""Synchronization of the copy of a robot's map: by its new commits, or by copying the whole map.
 
-The digest of a commit is that of all commits up to it. So a copy is of this map, and the commits after it
-follow from it, exactly if the robot's journal has the copy's digest at the copy's commit.
+The digest of a commit covers all commits up to it. So the copy belongs to the robot's map, and can be
+continued with its later commits, if and only if the journal of the robot has the same digest at the commit of
+the copy.
 """
 
 from __future__ import annotations
@@ -18,21 +19,21 @@ from semmap.schemas.calls import Call
 from semmap.schemas.commits import Commit
 
 FAR: Final = 1000
-"""Commits: a copy that is further behind is made anew."""
+"""The number of commits from which the whole map is copied."""
 _PAGE: Final = 100
 
 Ask = Callable[[Call[Any]], Any]
-"""Asks the robot's knowledge base; raises NoAnswer."""
+"""Sends a request to the knowledge base of the robot; raises NoAnswer."""
 
 
 class NextCommits(NamedTuple):
-    """The copy is of this map, and these commits follow it; the robot is at the last one."""
+    """The commits after the copy, up to the current commit of the robot."""
 
     commits: tuple[Commit, ...]
 
 
 class FullCopy(NamedTuple):
-    """The map is to be copied as it is now, and `facts` are to be true of the copy; `why` is for people."""
+    """The whole map, with the facts of the new copy; `why` is a reason for the log."""
 
     whole: MapCopy
     facts: Facts
@@ -42,9 +43,9 @@ class FullCopy(NamedTuple):
 def synchronize(
     ask: Ask, robot: str, copy: Facts | None, frame: Frame | None, *, far: int = FAR
 ) -> NextCommits | FullCopy | None:
-    """What brings `copy`, the facts of the robot's graph, to where the robot is; None where it has no map.
+    """Return the data that updates `copy`, the facts of the robot's graph; None if the robot has no map.
 
-    `frame` is where its map is in the fleet's frame, None where nobody says: then it stays what it was.
+    `frame` is the pose of the map in the fleet frame; None keeps the stored one.
     """
     head: MapCopy = ask(CopyQuery(content=False))
     if not head.seq:
@@ -58,38 +59,38 @@ def synchronize(
         commits = _fetch_commits(ask, copy.commit, head.seq)
         if commits is not None:
             return NextCommits(commits)
-        reason = "its ontology was replaced, or a commit is not to be had"
+        reason = "its ontology was replaced, or a commit is missing"
     whole: MapCopy = ask(CopyQuery())
-    if whole.map_id != head.map_id:  # another map has taken its place just now
+    if whole.map_id != head.map_id:  # the map was replaced between the two requests
         same_map = False
     epoch = 1 if copy is None else copy.epoch if same_map else copy.epoch + 1
     return FullCopy(whole, _facts_of(whole, robot, epoch, frame or (copy.frame if copy else None)), reason)
 
 
 def _reason(ask: Ask, head: MapCopy, copy: Facts | None, frame: Frame | None, far: int) -> tuple[str, bool]:
-    """Why the copy cannot go on, in words; whether it is of this map all the same."""
+    """Return why the copy cannot be continued, and whether it belongs to the same map."""
     if copy is None:
-        return "it is new", True
+        return "first copy", True
     if copy.map_id != head.map_id:
-        return "its map was begun anew", False
+        return "the robot started a new map", False
     if copy.commit is None:
-        return "an earlier copy was not finished", True
+        return "the previous copy is incomplete", True
     if copy.commit > head.seq:
-        return "its map went back to an earlier state", False
+        return "its map was reset to an earlier state", False
     known: tuple[Commit, ...] = ask(Recall(seqs=(copy.commit,)))
     if known and known[0].digest != copy.digest:
-        return "its map took another course", False
+        return "its history differs", False
     if not known:
-        return "its history does not go back so far", True
+        return "the commit of the copy is no longer in its history", True
     if frame not in (None, copy.frame):
-        return "its frame is another one", True
+        return "its frame has changed", True
     if head.seq - copy.commit > far:
         return f"it is {head.seq - copy.commit} commits ahead", True
     return "", True
 
 
 def _fetch_commits(ask: Ask, after: int, until: int) -> tuple[Commit, ...] | None:
-    """The commits in between; None where one is missing or replaced the ontology."""
+    """Return the commits in between; None if one is missing or replaced the ontology."""
     commits: list[Commit] = []
     for start in range(after + 1, until + 1, _PAGE):
         seqs = tuple(range(start, min(start + _PAGE, until + 1)))

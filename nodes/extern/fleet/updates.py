@@ -1,9 +1,9 @@
-"""What commits mean to a SPARQL 1.1 server: operations that take effect once, whatever becomes of a request.
+"""SPARQL 1.1 updates for commits. Their operations are idempotent, so requests can be repeated.
 
-Each operation names in its WHERE clause the fact that it rests on (the digest of the commit before it, or who
-is copying); the one that completes a step replaces that fact as it writes. Sent twice, late, or beside
-another mirror's, it does nothing. So it also is where a server carries out the operations of a request one by
-one and is killed between two of them: what was done is done again.
+The WHERE clause of each operation tests a triple, the guard: the digest of the previous commit, or the id of
+the current copy. The last operation of a step replaces the guard. So an operation that is sent twice, too
+late, or at the same time as that of another mirror has no effect. This also holds for a server that executes
+the operations of a request one by one and is killed in between: the step is repeated.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Term, Triple
 
 CHUNK: Final = 10_000
-"""Triples in one operation of a copy."""
+"""The number of triples in one operation of a copy."""
 
 
 class Change:
-    """The sum of commits that follow one another: what is gone in the end, and what has come."""
+    """The combined change of consecutive commits: the deleted and the inserted triples."""
 
     def __init__(self, robot: str, frame: Frame | None) -> None:
         self._robot, self._frame = robot, frame
@@ -51,13 +51,13 @@ class Change:
                 self._poses[entity.name] = pose_triples(entity, self._frame)
 
     def __len__(self) -> int:
-        """About how many triples it is."""
+        """Return the approximate number of triples."""
         return (
             len(self._deleted) + len(self._inserted) + sum(1 + len(placed) for placed in self._poses.values())
         )
 
     def operations(self, before: Facts, after: Facts) -> Iterator[str]:
-        """From the facts as they are in the server to what they are to be with this change."""
+        """Yield the operations of this change, with the metadata `before` and `after` it."""
         poses = f.poses_graph(self._robot)
         if self._poses:
             names = " ".join(map(f.text, self._poses))
@@ -75,10 +75,10 @@ class Change:
 
 
 def copy_operations(before: Facts | None, copied: Facts, whole: MapCopy) -> Iterator[str]:
-    """The operations by which a robot's graph becomes `whole`, whatever it has been.
+    """Yield the operations that replace the graph of a robot by `whole`.
 
-    `before` are the facts as they are in the server. `copied` are those to be in the end; meanwhile they say
-    that it is being copied.
+    `before` is the metadata in the server, `copied` the metadata after the copy. During the copy, the
+    metadata has the id of the copy instead of a commit.
     """
     robot, name = f.graph(copied.robot), copied.robot
     begun = structs.replace(copied, commit=None)
@@ -109,7 +109,7 @@ def copy_operations(before: Facts | None, copied: Facts, whole: MapCopy) -> Iter
 
 
 def skolemize(robot: str, triples: Iterable[Triple]) -> Iterator[Triple]:
-    """The triples with an IRI for each blank node: one that the same node of the same robot always has."""
+    """Replace blank nodes by IRIs. A blank node of a robot always has the same IRI."""
     for s, p, o in triples:
         yield (
             _skolem(robot, s) if s.startswith("_:") else s,
@@ -119,15 +119,15 @@ def skolemize(robot: str, triples: Iterable[Triple]) -> Iterator[Triple]:
 
 
 def pose_triples(entity: Entity, frame: Frame) -> tuple[Triple, ...]:
-    """Where an entity is in the fleet's frame; nothing of one that is nowhere."""
+    """Return the triples with the pose of an entity in the fleet frame, if it has a pose."""
     if entity.pose is None:
         return ()
     pose, iri = frame.pose(entity.pose), v.iri(entity.iri)
     x, y, z = pose.position_m
-    said: list[Triple] = [(iri, f.term("entity"), f.text(entity.name))]
-    for word, value in (("x", x), ("y", y), ("z", z), ("yaw", pose.yaw_rad)):
-        said.append((iri, f.term(word), f.double(value)))
-    return tuple(said)
+    triples: list[Triple] = [(iri, f.term("entity"), f.text(entity.name))]
+    for name, value in (("x", x), ("y", y), ("z", z), ("yaw", pose.yaw_rad)):
+        triples.append((iri, f.term(name), f.double(value)))
+    return tuple(triples)
 
 
 def _skolem(robot: str, label: Term) -> Term:
@@ -137,7 +137,7 @@ def _skolem(robot: str, label: Term) -> Term:
 def _guarded_update(
     before: Facts, *, deleted: dict[Term, Iterable[Triple]], inserted: dict[Term, Iterable[Triple]]
 ) -> str:
-    """One operation, which does nothing unless the server is as it was `before`."""
+    """Return an operation that has no effect unless the server has the metadata `before`."""
     delete = " ".join(_graph_block(graph, triples) for graph, triples in deleted.items() if triples)
     insert = " ".join(_graph_block(graph, triples) for graph, triples in inserted.items() if triples)
     guard = f"GRAPH {FACTS} {{ {_pattern(before.guard)} }}"

@@ -240,7 +240,7 @@ def test_exactly_once_though_mirror_and_server_are_killed(any_server, two_robots
         assert_same(server, arm1, "arm1")
     copied = [line for line in (tmp_path / "told").read_text().splitlines() if "arm1: copied" in line]
     # And otherwise it went on, commit by commit, unless it was a thousand behind.
-    why = ("it is new", "commits ahead", "not finished")
+    why = ("first copy", "commits ahead", "is incomplete")
     assert all(any(reason in line for reason in why) for line in copied), copied
     assert sum("it is new" in line for line in copied) <= 1, copied
 
@@ -272,10 +272,13 @@ def test_a_server_that_is_down_is_waited_for(server, two_robots, arm1):
     server.kill()
     with mirroring_to(server, two_robots[0].endpoint, robots="arm1") as (mirror, told):
         until(lambda: mirror.trouble, "it is said")
-        assert f"no SPARQL server answers at {server.query_url}: Connection refused; trying again" in told
+        assert (
+            f"no response from the SPARQL server at {server.query_url}: Connection refused; trying again"
+            in told
+        )
         server.start()
         assert_same(server, arm1, "arm1")
-        assert "the SPARQL server answers again" in told
+        assert "the SPARQL server is available again" in told
 
 
 class Moody(BaseHTTPRequestHandler):
@@ -298,9 +301,9 @@ class Moody(BaseHTTPRequestHandler):
     ("status", "said"),
     [
         (500, "is in trouble (500): <oops>"),
-        (401, "does not let this program in (401); give a user and a password"),
+        (401, "access denied (401); add user and password"),
         (404, "there is no SPARQL endpoint at"),
-        (200, "does not answer with results of SPARQL"),
+        (200, "does not return SPARQL results"),
     ],
 )
 def test_a_server_that_refuses_is_told_in_a_sentence(two_robots, status, said):
@@ -334,7 +337,7 @@ def test_a_server_that_is_slow_is_not_waited_for_without_end(two_robots):
         deaf.listen()
         url = f"http://127.0.0.1:{deaf.getsockname()[1]}/update"
         config = structs.replace(mirror_config.config(url, where=two_robots[0].endpoint), timeout_s=0.3)
-        with pytest.raises(errors.NoAnswer, match=r"did not answer within 0\.3 s"):
+        with pytest.raises(errors.NoAnswer, match=r"within 0\.3 s"):
             Mirror(config).run(once=True)
 
 
@@ -352,4 +355,4 @@ def test_what_is_no_frame(two_robots, frame):
 
 def test_no_robot_has_been_mirrored(server, two_robots):
     words = ("fleet", "sparql", "ASK {}", "--sparql-query", server.query_url)
-    assert "no robot that matches * has been mirrored" in two_robots[0].cli(*words, status=3)
+    assert "no mirrored robot at" in two_robots[0].cli(*words, status=3)

@@ -58,14 +58,14 @@ def test_a_robot_without_a_commit_has_nothing_to_copy():
 @pytest.mark.parametrize(
     ("journal", "at", "epoch", "why"),
     [
-        (Journal(9), None, 1, "new"),
-        (Journal(9, map_id="other"), copy(7), 4, "begun anew"),
-        (Journal(5), copy(7), 4, "went back"),
-        (Journal(9, course="x"), copy(7), 4, "another course"),
-        (Journal(9, first=8), copy(7), 3, "not go back so far"),
+        (Journal(9), None, 1, "first copy"),
+        (Journal(9, map_id="other"), copy(7), 4, "new map"),
+        (Journal(5), copy(7), 4, "was reset"),
+        (Journal(9, course="x"), copy(7), 4, "history differs"),
+        (Journal(9, first=8), copy(7), 3, "no longer in its history"),
         (Journal(1200), copy(7), 3, "1193 commits ahead"),
         (Journal(9, tbox={8}), copy(7), 3, "ontology"),
-        (Journal(9), copy(None, copying="me", digest=""), 3, "not finished"),
+        (Journal(9), copy(None, copying="me", digest=""), 3, "is incomplete"),
         (Journal(9), copy(7, frame=Frame(0, 0, 0, 1)), 3, "frame"),
     ],
 )

@@ -74,9 +74,9 @@ def test_italian_needs_no_flag(system, monkeypatch):
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("how are you", "asks something"),
-        ("i took the lemonade", "tells what was done"),
-        ("hi", "try: take the cup"),
+        ("how are you", "is a question"),
+        ("i took the lemonade", "is a statement about the past"),
+        ("hi", "example: take the cup"),
     ],
 )
 def test_what_is_no_command_says_why(system, monkeypatch, capsys, text, why):

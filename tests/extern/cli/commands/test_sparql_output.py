@@ -70,7 +70,7 @@ BAD = [
     ),
     (("sparql", "SELECT * { ?a ?b ?c . ?d ?e ?f }"), 1, "more than 10000 rows"),
     (("sparql", CHAIRS, "--format", "xml"), 2, "xml"),
-    (("sparql", CHAIRS, "--format", "turtle"), 2, "needs a CONSTRUCT or DESCRIBE query"),
+    (("sparql", CHAIRS, "--format", "turtle"), 2, "requires a CONSTRUCT or DESCRIBE query"),
     (("sparql", CHAIRS, "--timeout", "-1"), 2, "timeout must be a number above 0"),
     (("sparql", CHAIRS, "--limit", "0"), 2, "limit must be a whole number from 1"),
     (("sparql", "@nowhere.rq"), 2, "there is no file nowhere.rq"),

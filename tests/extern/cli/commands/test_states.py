@@ -91,7 +91,7 @@ def test_a_dry_run_of_a_load_and_of_what_is_refused(system, tmp_path):
         ":cup97 a dm:Cup ."
     )
     said = system.cli("load", turtle, "--dry-run")
-    assert "would follow: cup97 type Object" in said
+    assert "would be inferred: cup97 type Object" in said
     assert "cannot" in system.cli("set", "door1", "isOn", "door1", "--dry-run", status=1)
     with system.client() as client:
         assert not {"cup97", "cup98"} & {e.name for e in client.list()}

@@ -22,8 +22,8 @@ def test_what_is_found_is_told(file, capsys):
     assert execute(["tbox", "check", file(SOUND)]) == 0
     said = capsys.readouterr().out
     assert "ontology        http://o.org/o (http://o.org/o/1)\n" in said
-    assert "holds           1 class" in said
-    assert "missing         http://o.org/m (--import http://o.org/m=FILE says where it is)\n" in said
+    assert "contents        1 class" in said
+    assert "missing         http://o.org/m (add --import http://o.org/m=FILE)\n" in said
     assert "consistent      yes, and every class is satisfiable\n" in said
     assert " ms (median)\n" in said
 
