@@ -168,7 +168,7 @@ def robots(
 
 
 def robot_names(where: str | None, identity_: str | None) -> tuple[str, ...]:
-    """Return the names of the robots at an endpoint, or at the default endpoints. Raises NoAnswer, BadFile."""
+    """Return the names of the robots at an endpoint or the default endpoints. Raises NoAnswer, BadFile."""
     who = identity(identity_)
     return tuple(dict.fromkeys(name for place in endpoints(where) for name in _discover_robots(place, who)))
 
@@ -180,7 +180,7 @@ def _discover_robots(place: str, who: Identity | None) -> dict[str, frozenset[st
 
 
 def endpoints(where: str | Sequence[str] | None) -> tuple[str, ...]:
-    """Return the endpoints in `where`, or the default endpoint, or those of all local systems of this user."""
+    """Return the endpoints in `where`, or the default endpoint, or those of all local systems."""
     if where:
         return split_names(where)
     try:

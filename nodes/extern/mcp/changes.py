@@ -1,8 +1,8 @@
 """The tools that change the map: propose, commit, undo. They raise SemmapError.
 
-A proposal is a dry run whose result an agent reads before it commits. It is committed once, and only while
-nothing has changed that it touches or rests on: the entities that it names and those that what would follow
-from it is about. The knowledge base checks that in the transaction itself.
+A proposal is a dry run whose result an agent reads before it commits. It is committed once, and only if none
+of the entities has changed that it names, or that its inferred facts are about. The knowledge base checks
+that in the transaction.
 """
 
 from __future__ import annotations
@@ -38,24 +38,23 @@ R = TypeVar("R")
 
 _NAME: Final = re.compile(NAME_PATTERN)
 _PATIENCE_S: Final = 20.0
-"""Seconds that a commit waits for a person before it says that it waits."""
+"""How long a commit waits for the approval of a person before it returns [s]."""
 _AGAIN_S: Final = 0.5
 _DRY_RUN: Final = "it would be: "
-"""Stands in the text of a dry run before what would be done."""
+"""The text before the change in the reply of a dry run."""
 _UNCHANGED: Final = re.compile(r"([\w.-]+: )?unchanged: ")
-"""How that begins if nothing would be."""
+"""The beginning of the reply if nothing would change."""
 _MOST_WAITERS: Final = 2
-"""Calls that wait for a person at the same time; others are told at once that theirs waits. Each takes one
-of the threads that answer calls."""
+"""The number of calls that wait for approval at the same time, each on a thread; others do not wait."""
 _LATER_S: Final = 30.0
-"""Seconds after which to come again where too many changes wait for a person."""
+"""The suggested time until a retry if there are too many pending requests [s]."""
 _MOST_ASKED: Final = 1000
 _MOST_NAMES: Final = 50
-"""Entities of one change: of more, a dry run does not tell all that follows."""
+"""The maximum number of entities in a change; a dry run of more does not return all inferred facts."""
 
 
 class Changes:
-    """What one agent may change, and what it has proposed. For any thread."""
+    """The permissions and the proposals of one agent. It can be used from any thread."""
 
     def __init__(
         self,
@@ -67,7 +66,7 @@ class Changes:
         approve: bool = False,
         patience_s: float = _PATIENCE_S,
     ) -> None:
-        """`agent` signs its commits. Raises UnknownClass, UnknownName for limits of another map."""
+        """Set up; `agent` signs the commits. Raises UnknownClass, UnknownName for unknown limits."""
         self._agent = agent
         self._approve = approve
         self._patience_s = patience_s
@@ -79,7 +78,7 @@ class Changes:
         self._limits = _known(client, allowed or Limits())
 
     def propose(self, client: Client, asked: a.Propose) -> Answer:
-        """Try a change out; a token to commit it by, or what stands against it."""
+        """Run a change as a dry run, and return a token for `commit`, or the reason against the change."""
         command = self._command(asked)
         try:
             tried, first, last = _at_one(client, lambda: client.send(structs.replace(command, dry_run=True)))
@@ -91,7 +90,7 @@ class Changes:
             command = structs.replace(command, name=tried.names[0])
         self._require_allowed(client, command, tried)
         if _UNCHANGED.match(_would_be(tried)):
-            already = {"possible": True, "changes": False, "then": "nothing: the map says so already"}
+            already = {"possible": True, "changes": False, "then": "nothing: the map already has this state"}
             return Answer(first=first, last=last, head=already)
         made = self._proposals.add(
             command=command, commit=first, tried=tried, rests_on=_rests_on(client, command, tried)
@@ -102,14 +101,14 @@ class Changes:
             "would_be": said(_would_be(tried), who("agent", self._agent)),
             **({"notes": said(translate_hints("; ".join(tried.notes)), "the map")} if tried.notes else {}),
             "rests_on": made.rests_on,
-            "then": "commit with this token" + (", which a person must approve" if self._approve else ""),
+            "then": "commit with this token" + (", which requires approval" if self._approve else ""),
         }
         facts = [{"follows": fact} for fact in tried.follows]
         facts += [{"no_longer_follows": fact} for fact in tried.no_longer_follows]
         return Answer(first=first, last=last, head=head, items=facts, of="facts")
 
     def commit(self, client: Client, asked: a.Commit) -> Answer:
-        """Commit a proposal: once, and only while what it rests on is as it was."""
+        """Commit a proposal once, and only if the entities that it depends on have not changed."""
         proposal = self._proposals.take(asked.token)
         try:
             self._require_unmoved(client, proposal)
@@ -126,7 +125,7 @@ class Changes:
                     since=proposal.commit,
                 )
             )
-        except (errors.Busy, errors.NoAnswer):  # it may be tried again: under its id it is done once
+        except (errors.Busy, errors.NoAnswer):  # it may be retried: with its id it is executed once
             self._proposals.put_back(proposal)
             raise
         except errors.PreconditionFailed as error:
@@ -144,13 +143,13 @@ class Changes:
         return Answer(first=seq, last=seq, head={**head, "text": said(made.text, who("agent", self._agent))})
 
     def undo(self, client: Client, asked: a.Undo) -> Answer:
-        """Undo a commit of this agent's own."""
+        """Undo a commit of this agent."""
         found = client.history(since=asked.commit, until=asked.commit, limit=1)
         if not found or found[0].seq != asked.commit:
             raise errors.Refused(f"there is no commit {asked.commit} in the history; see: history")
         if (found[0].source, found[0].agent) != ("agent", self._agent):
             by = who(found[0].source, found[0].agent)
-            raise errors.Refused(f"commit {asked.commit} was made by {by}; you may undo only your own")
+            raise errors.Refused(f"commit {asked.commit} is by {by}; you may undo only your own commits")
         undo = commands.Undo(
             commit=asked.commit, source="agent", agent=self._agent, reason=asked.reason or "undo by agent"
         )
@@ -164,24 +163,26 @@ class Changes:
         return Answer(first=seq, last=seq, head={"undone": asked.commit, "names": made.names})
 
     def _command(self, asked: a.Propose) -> Any:
-        """The command that is proposed, signed. Raises BadRequest for fields that its verb does not have."""
+        """Return the proposed command, signed. Raises BadRequest for fields that it does not have."""
         fields = msgspec.to_builtins(asked)
         verb = fields.pop("verb")
         known_fields = COMMANDS[verb].__struct_encode_fields__
-        if wrong := [name for name in fields if name not in known_fields]:
-            takes = sorted(set(known_fields) & set(a.Propose.__struct_encode_fields__) - {"verb"})
-            raise errors.BadRequest(f"propose: {verb} takes no {wrong[0]}; it takes: {', '.join(takes)}")
+        if unknown := [name for name in fields if name not in known_fields]:
+            valid = sorted(set(known_fields) & set(a.Propose.__struct_encode_fields__) - {"verb"})
+            raise errors.BadRequest(
+                f"propose: {verb} has no field {unknown[0]}; valid fields: {', '.join(valid)}"
+            )
         if verb == "add" and "at" not in fields:
-            raise errors.BadRequest("propose: say where the new entity is: at, as [x, y, z] in metres")
+            raise errors.BadRequest("propose: missing field at: the position as [x, y, z] in metres")
         try:
             return codec.convert({**fields, "source": "agent", "agent": self._agent}, COMMANDS[verb])
         except errors.BadRequest as error:
             raise errors.BadRequest(f"propose: {error.text.removeprefix(codec.MALFORMED)}") from None
 
     def _require_allowed(self, client: Client, command: Any, tried: Changed) -> None:
-        """Raises Refused for a change that is beyond the limits."""
+        """Raise Refused for a change beyond the limits."""
         if len(tried.names) > _MOST_NAMES:
-            raise errors.Refused(f"one change may touch up to {_MOST_NAMES} entities; propose smaller ones")
+            raise errors.Refused(f"a change is limited to {_MOST_NAMES} entities; propose smaller changes")
         if self._limits == Limits():
             return
         classes = client.classes()
@@ -192,12 +193,12 @@ class Changes:
     def _require_rate(self) -> None:
         if (wait_s := self._rate.wait_s()) > 0.0:
             raise errors.Busy(
-                f"changes a minute that you may make: {self._per_min:g}; come again in {math.ceil(wait_s)} s",
+                f"rate limit exceeded: {self._per_min:g} changes per minute; retry in {math.ceil(wait_s)} s",
                 again_s=wait_s,
             )
 
     def _require_unmoved(self, client: Client, proposal: Proposal) -> None:
-        """Raises PreconditionFailed where a proposal would not be today what it was, and says why."""
+        """Raise PreconditionFailed, with the reason, if the proposal would now have other consequences."""
         moved = self._moved_on(client, proposal)
         if moved:
             raise errors.PreconditionFailed(moved)
@@ -205,28 +206,28 @@ class Changes:
         before = proposal.tried
         if set(again.follows) != set(before.follows) or again.names != before.names:
             raise errors.PreconditionFailed(
-                f"the map has moved on since commit {proposal.commit}: something else would follow now;"
-                " propose it again"
+                f"the map has changed since commit {proposal.commit}: the change would have other"
+                " consequences; propose it again"
             )
 
     def _moved_on(self, client: Client, proposal: Proposal) -> str:
-        """Which entities that a proposal rests on were changed since, by whom; nothing if none was."""
+        """Return a text on changed entities that a proposal depends on, or an empty text."""
         if newest(client) <= proposal.commit:
             return ""
         for commit in client.history(since=proposal.commit + 1, limit=1000):
             if hit := [n for n in proposal.rests_on if n in commit.changed or n in commit.removed]:
                 by = who(commit.source, commit.agent)
                 return (
-                    f"the map has moved on since commit {proposal.commit}: {errors.enumerated(hit[:5])}"
+                    f"the map has changed since commit {proposal.commit}: {errors.enumerated(hit[:5])}"
                     f" was changed by commit {commit.seq} ({by}); propose it again"
                 )
         return ""
 
     def _allowed(self, client: Client, name: str, summary: Summary) -> Request | None:
-        """What a person says, who is waited for a little; None where nobody needs to be asked.
+        """Request approval and wait for it a short time; return None if no approval is required.
 
-        Each change counts once against the rate: when a person is asked, or else when it is made. Raises
-        Busy beyond the rate, Refused for what was rejected.
+        Each change counts once against the rate limit: when approval is requested, or else when it is made.
+        Raises Busy beyond the rate, and Refused if the request was rejected.
         """
         if not self._approve:
             self._require_rate()
@@ -243,7 +244,7 @@ class Changes:
         )
         try:
             request = client.send(submit)
-        except errors.Refused as error:  # too many wait; the proposal stays good
+        except errors.Refused as error:  # too many pending requests; the proposal stays valid
             raise errors.Busy(error.text, again_s=_LATER_S) from None
         self._asked[name] = None
         while len(self._asked) > _MOST_ASKED:
@@ -254,11 +255,11 @@ class Changes:
             finally:
                 self._waiters.release()
         if request.decision == "rejected":
-            raise errors.Refused(f"{request.by} has rejected it (request {request.number})")
+            raise errors.Refused(f"request {request.number} was rejected by {request.by}")
         return request
 
     def _decided(self, client: Client, submit: commands.Submit) -> Request:
-        """The request when it is decided, or as it is after our patience."""
+        """Return the request when it is decided, or when the timeout has passed."""
         deadline = time.monotonic() + self._patience_s
         while (request := client.send(submit)).decision == "waiting" and time.monotonic() < deadline:
             time.sleep(_AGAIN_S)
@@ -283,7 +284,7 @@ def _would_be(tried: Changed) -> str:
 
 
 def _rests_on(client: Client, command: Command[Changed], tried: Changed) -> tuple[str, ...]:
-    """The entities of the map that a change touches, names, or that what follows from it is about."""
+    """Return the entities that a change changes or names, and those of its inferred facts."""
     words = [word for fact in (*tried.follows, *tried.no_longer_follows) for word in fact.split(" ")]
     words += [value for value in getattr(command, "values", ()) if isinstance(value, str)]
     named = dict.fromkeys(word for word in (*tried.names, *words) if _NAME.match(word))
@@ -294,7 +295,7 @@ def _rests_on(client: Client, command: Command[Changed], tried: Changed) -> tupl
 def _touched(
     client: Client, name: str, command: Any, tried: Changed, classes: Iterable[ClassInfo]
 ) -> Touched:
-    """An entity as the limits look at it."""
+    """Return an entity with its classes and places before and after a change, for the limits."""
     try:
         entity = client.get(name)
     except errors.UnknownName:
@@ -321,7 +322,7 @@ def _with_ancestors(word: str, classes: Iterable[ClassInfo]) -> frozenset[str]:
 
 
 def _known(client: Client, allowed: Limits) -> Limits:
-    """The limits in the words of the map. Raises UnknownClass, UnknownName."""
+    """Return the limits with the names of the map. Raises UnknownClass, UnknownName."""
     if allowed == Limits():
         return allowed
     names = {info.name.casefold().replace("_", ""): info.name for info in client.classes()}

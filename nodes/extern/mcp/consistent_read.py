@@ -1,4 +1,4 @@
-"""Which commit an answer is true of: replies do not say, so the map is watched while it is asked."""
+"""Reads that determine the commit of their result, for replies that do not include it."""
 
 from __future__ import annotations
 
@@ -19,12 +19,11 @@ _TRIES: Final = 5
 def read_at_one_commit(
     known: Callable[[], int], newest: Callable[[], int], read: Callable[[], R]
 ) -> tuple[R, int, int]:
-    """What `read()` gave, and the first and the last commit that it may be true of.
+    """Return the result of `read()`, and the first and the last commit that it may refer to.
 
-    `known()` is the newest commit that the coordinator knows, `newest()` that of the knowledge base, which is
-    ahead of it if anything. So where the second, asked afterwards, is no more than the first, asked before,
-    nothing changed in between, and all that was asked is true of that one commit. If not, it is read again, a
-    few times.
+    `known()` is the newest commit of the coordinator, and `newest()` that of the knowledge base, which is
+    never behind it. If `newest()` after the read is not greater than `known()` before, nothing changed in
+    between, and the result refers to that commit. Otherwise the read is repeated a few times.
     """
     for _ in range(_TRIES):
         before = known()
@@ -36,12 +35,12 @@ def read_at_one_commit(
 
 
 def known(client: Client) -> int:
-    """The newest commit that the coordinator knows of. Raises NoAnswer."""
+    """Return the newest commit of the coordinator. Raises NoAnswer."""
     return client.status().commit
 
 
 def newest(client: Client) -> int:
-    """The newest commit of the knowledge base. Raises NoAnswer."""
+    """Return the newest commit of the knowledge base. Raises NoAnswer."""
     page: Snapshot = bus.ask(
         client.session, keys.BRIDGE, SnapshotQuery.VERB, SnapshotQuery(limit=1), Snapshot
     )

@@ -1,11 +1,11 @@
-"""Advice as an agent can follow it: the system's sentences name verbs and options of the command line."""
+"""Translation of hints in messages: commands and options of the command line become tools and arguments."""
 
 from __future__ import annotations
 
 import re
 from typing import Final
 
-_SAID: Final[tuple[tuple[str, str], ...]] = (
+_REPLACEMENTS: Final[tuple[tuple[str, str], ...]] = (
     (r"--from VIEWER,? or --from-pose X Y Z YAW", "viewer, or viewpoint as x, y, z, yaw"),
     (r"narrow it, add LIMIT to it, or raise the limit", "narrow it, or add LIMIT and OFFSET to it"),
     (r"[;,] if that is intended, add --force", "; only an operator can do that all the same"),
@@ -21,12 +21,12 @@ _SAID: Final[tuple[tuple[str, str], ...]] = (
     (r"semmap (classes|properties)\b", r"the resource semmap://schema/\1"),
     (r"semmap status\b", "overview"),
 )
-_PATTERNS: Final = tuple((re.compile(pattern), instead) for pattern, instead in _SAID)
+_PATTERNS: Final = tuple((re.compile(pattern), instead) for pattern, instead in _REPLACEMENTS)
 _OPTION: Final = re.compile(r"(?<![\w-])--([a-z]+(?:-[a-z]+)*)")
 
 
 def translate_hints(text: str) -> str:
-    """A sentence of the system with tools and fields in place of verbs and options."""
+    """Replace the commands and options in a message by tools and their arguments."""
     if "--" not in text and "semmap " not in text and "LIMIT" not in text:
         return text
     for pattern, instead in _PATTERNS:

@@ -1,4 +1,4 @@
-"""The tools that only read: functions of a client and of a tool's arguments. They raise SemmapError."""
+"""The read-only tools: functions of a client and of the arguments of a tool. They raise SemmapError."""
 
 from __future__ import annotations
 
@@ -21,44 +21,44 @@ from semmap.schemas.moments import When
 
 R = TypeVar("R")
 Found = tuple[dict[str, Any], Sequence[Any] | None]
-"""The head of an answer, and its items."""
+"""The head of a reply, and its items."""
 
 _RELATIONS: Final = " ".join(f"dm:{name}" for name in rows.PLACED)
 _WHERE_ALL: Final = f"SELECT ?e ?r ?o WHERE {{ VALUES ?r {{ {_RELATIONS} }} ?e ?r ?o }}"
 MOST_ROWS: Final = 2000
 _FEW: Final = 5
 _ON_A_PAGE: Final = 60
-"""More rows of a list than fit on a page."""
+"""An upper bound of the number of rows on a page of a list."""
 
 
 def overview(client: Client, _: a.Overview) -> Answer:
-    """How much there is of what, and where."""
+    """Return the number of entities per class and place."""
 
     def read() -> dict[str, Any]:
         where = rows.places_of(client.sparql(_WHERE_ALL, inferred=True, limit=100_000).rows)
         return _overview(client.status(), client.list(), where)
 
-    return _told(client, read)
+    return _answer(client, read)
 
 
 def find(client: Client, asked: a.Find) -> Answer:
-    """Which entities a noun phrase describes."""
+    """Return the entities that a noun phrase describes."""
     found = client.find(asked.text, viewer=asked.viewer, viewpoint=asked.viewpoint, asker=asked.asker)
     authors = Authors(client.list())
 
-    def told(text: str) -> dict[str, str]:
+    def quote(text: str) -> dict[str, str]:
         return said(text, authors.by(text))
 
     def candidate(each: Candidate) -> dict[str, Any]:
         return rows.candidate(each, authors.by(each.called, *each.reasons))
 
-    head: dict[str, Any] = {"outcome": found.outcome, "answer": told(found.text)}
+    head: dict[str, Any] = {"outcome": found.outcome, "answer": quote(found.text)}
     if found.question:
-        head["question_to_ask_back"] = told(found.question)
+        head["question_to_ask_back"] = quote(found.question)
     if found.nearest:
         head["nearest"] = [candidate(each) for each in found.nearest[:_FEW]]
     if found.gone:
-        head["gone"] = [told(text) for text in found.gone[:_FEW]]
+        head["gone"] = [quote(text) for text in found.gone[:_FEW]]
     if found.read_as:
         head["read_as"] = dict(found.read_as)
     items = [candidate(each) for each in found.candidates]
@@ -66,7 +66,7 @@ def find(client: Client, asked: a.Find) -> Answer:
 
 
 def get(client: Client, asked: a.Get) -> Answer:
-    """One entity."""
+    """Return one entity."""
 
     def read(as_of: When | None) -> Found:
         return rows.described(client.get(asked.name, as_of=as_of, where=as_of is None))
@@ -75,7 +75,7 @@ def get(client: Client, asked: a.Get) -> Answer:
 
 
 def relations(client: Client, asked: a.Relations) -> Answer:
-    """Where an entity is relative to others."""
+    """Return the spatial relations of an entity."""
 
     def read(as_of: When | None) -> Found:
         found = client.relations(
@@ -87,7 +87,7 @@ def relations(client: Client, asked: a.Relations) -> Answer:
 
 
 def list_(client: Client, asked: a.List) -> Answer:
-    """The entities of a class, or in a place."""
+    """Return the entities of a class, or at a location."""
     start = read_cursor(asked.cursor)[1] if asked.cursor else 0
 
     def read(as_of: When | None) -> Found:
@@ -109,7 +109,7 @@ def list_(client: Client, asked: a.List) -> Answer:
 
 
 def query(client: Client, asked: a.Query) -> Answer:
-    """What a SPARQL query gives."""
+    """Return the result of a SPARQL query."""
 
     def read(as_of: When | None) -> Found:
         found = client.sparql(asked.query, inferred=asked.inferred, as_of=as_of, timeout=5.0, limit=MOST_ROWS)
@@ -123,11 +123,11 @@ def query(client: Client, asked: a.Query) -> Answer:
 
 
 def explain(client: Client, asked: a.Explain) -> Answer:
-    """Why a statement holds or, negated, cannot."""
+    """Explain why a statement holds or, negated, cannot hold."""
 
     def read(as_of: When | None) -> Found:
         if as_of is not None:
-            raise errors.Refused("the map has changed since that page; explain it again without a cursor")
+            raise errors.Refused("the map has changed since that page; call explain without a cursor")
         found = client.explain(asked.name, asked.predicate, asked.value, negated=asked.negated)
         steps = [
             {
@@ -146,7 +146,7 @@ def explain(client: Client, asked: a.Explain) -> Answer:
 
 
 def history(client: Client, asked: a.History) -> Answer:
-    """The newest commits, in order."""
+    """Return the newest commits, in order."""
 
     def read(as_of: When | None) -> Found:
         found = client.history(
@@ -161,7 +161,7 @@ def history(client: Client, asked: a.History) -> Answer:
 
 
 def diff(client: Client, asked: a.Diff) -> Answer:
-    """What is otherwise than it was."""
+    """Return the changes between two commits or times."""
 
     def read(as_of: When | None) -> Found:
         found = client.diff(asked.since, as_of if asked.until is None else asked.until)
@@ -171,7 +171,7 @@ def diff(client: Client, asked: a.Diff) -> Answer:
 
 
 def when_(client: Client, asked: a.WasWhen) -> Answer:
-    """When one thing was on, inside, in or attached to another."""
+    """Return when one entity was on, inside, in or attached to another."""
 
     def read(_: When | None) -> Found:
         found = client.when(asked.name, asked.relation, asked.other)
@@ -193,7 +193,7 @@ def when_(client: Client, asked: a.WasWhen) -> Answer:
 
 
 def render_picture(client: Client, asked: a.Picture) -> tuple[Answer, bytes]:
-    """A picture of the scene (PNG), and what there is to say of it."""
+    """Return an image of the scene (PNG) with its caption."""
     png, first, last = _now(
         client, lambda: client.picture(place=asked.place, labels=True, width=asked.width, height=asked.height)
     )
@@ -201,8 +201,8 @@ def render_picture(client: Client, asked: a.Picture) -> tuple[Answer, bytes]:
     return Answer(first=first, last=last, head=head), png
 
 
-def _told(client: Client, read: Callable[[], dict[str, Any]]) -> Answer:
-    """An answer of one piece."""
+def _answer(client: Client, read: Callable[[], dict[str, Any]]) -> Answer:
+    """Return a reply without pages."""
     head, first, last = _now(client, read)
     return Answer(first=first, last=last, head=head)
 
@@ -215,7 +215,7 @@ def _paged(
     *,
     of: str,
 ) -> Answer:
-    """An answer in pages. Later pages are of the commit of the first one, whatever came since."""
+    """Return a reply in pages. Later pages refer to the commit of the first page."""
     wanted = None if asked.cursor is None else read_cursor(asked.cursor)[0]
     (head, items), first, last = _now(client, partial(read, as_of))
     if wanted is not None and not first == last == wanted:
@@ -230,7 +230,7 @@ def _now(client: Client, read: Callable[[], R]) -> tuple[R, int, int]:
 
 
 def placed(client: Client, entities: Sequence[Entity]) -> dict[str, dict[str, list[str]]]:
-    """What these are on, inside and in."""
+    """Return what these entities are on, inside and in."""
     if not entities:
         return {}
     values = " ".join(f"<{entity.iri}>" for entity in entities)

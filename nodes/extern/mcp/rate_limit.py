@@ -1,4 +1,4 @@
-"""How often something may be done: a bucket of so many, refilled at a steady rate."""
+"""A rate limit by a token bucket."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 
 class Rate:
-    """`per_s` a second in the long run, and up to `at_once` in a burst. For any thread."""
+    """A token bucket: `per_s` calls per second, and bursts of `at_once`. It can be used from any thread."""
 
     def __init__(self, per_s: float, at_once: float, clock: Callable[[], float] = time.monotonic) -> None:
         self._per_s, self._at_once, self._clock = per_s, at_once, clock
@@ -16,7 +16,7 @@ class Rate:
         self._lock = threading.Lock()
 
     def wait_s(self) -> float:
-        """Take one: 0 if there was one, else after how long there will be [s], and none is taken."""
+        """Take a token and return 0, or return the time until the next token is available [s]."""
         with self._lock:
             now = self._clock()
             self._left = min(self._at_once, self._left + (now - self._at) * self._per_s)

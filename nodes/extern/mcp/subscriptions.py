@@ -1,4 +1,4 @@
-"""Subscriptions questions that somebody follows: each is asked of the system once, however many follow it."""
+"""Subscriptions to standing queries. Each query runs once, for any number of subscribers."""
 
 from __future__ import annotations
 
@@ -12,63 +12,63 @@ from semmap.nodes.extern.mcp import resources
 from semmap.schemas import errors
 
 MOST: Final = 20
-"""Subscriptions questions of one server."""
+"""The maximum number of standing queries of one server."""
 
 
-class _Followed(NamedTuple):
-    by: int
+class _Subscription(NamedTuple):
+    subscribers: int
     end: Callable[[], None]
 
 
 class Subscriptions:
-    """Those of one server. For any thread."""
+    """The subscriptions of one server. They can be used from any thread."""
 
     def __init__(self, client: Client, changed: Callable[[str], None]) -> None:
-        """`changed(uri)` is called on a thread of its own when the answer of a question is another one."""
+        """Set up; `changed(uri)` is called on a separate thread when the result of a query changes."""
         self._client = client
         self._changed = changed
         self._lock = threading.Lock()
-        self._followed: dict[str, _Followed] = {}
+        self._active: dict[str, _Subscription] = {}
 
     def subscribe(self, uri: str) -> None:
-        """One more follows it. What is no standing question never changes. Raises SemmapError."""
+        """Add a subscriber. URIs that are not standing queries never change. Raises SemmapError."""
         if not uri.startswith(resources.WATCH):
             return
         asked = resources.asked(uri)
         with self._lock:
-            if (known := self._followed.get(uri)) is not None:
-                self._followed[uri] = known._replace(by=known.by + 1)
+            if (known := self._active.get(uri)) is not None:
+                self._active[uri] = known._replace(subscribers=known.subscribers + 1)
                 return
-            if len(self._followed) >= MOST:
-                raise errors.Refused(f"{MOST} standing questions are followed already; end one first")
+            if len(self._active) >= MOST:
+                raise errors.Refused(f"limit of {MOST} standing queries reached; unsubscribe from one first")
             stack = ExitStack()
             standing = stack.enter_context(self._client.watch(**asked))
-            self._followed[uri] = _Followed(1, stack.close)
+            self._active[uri] = _Subscription(1, stack.close)
 
         def wait() -> None:
             try:
                 for _ in standing.changes():
                     self._changed(uri)
             except errors.SemmapError:
-                self._changed(uri)  # who reads it again is told what is wrong
+                self._changed(uri)  # the next read returns the error
 
-        threading.Thread(target=wait, name="standing question", daemon=True).start()
+        threading.Thread(target=wait, name="standing query", daemon=True).start()
 
     def unsubscribe(self, uri: str) -> None:
-        """One follows it no more; the last one ends it."""
+        """Remove a subscriber; without subscribers, the query ends."""
         with self._lock:
-            known = self._followed.get(uri)
+            known = self._active.get(uri)
             if known is None:
                 return
-            if known.by > 1:
-                self._followed[uri] = known._replace(by=known.by - 1)
+            if known.subscribers > 1:
+                self._active[uri] = known._replace(subscribers=known.subscribers - 1)
                 return
-            del self._followed[uri]
+            del self._active[uri]
         known.end()
 
     def close(self) -> None:
-        """End all."""
+        """End all queries."""
         with self._lock:
-            ending, self._followed = list(self._followed.values()), {}
-        for followed in ending:
-            followed.end()
+            ending, self._active = list(self._active.values()), {}
+        for subscription in ending:
+            subscription.end()

@@ -62,14 +62,14 @@ def test_a_token_is_good_for_one_commit_signed_by_the_agent(client):
 
     done, again = agent(client, talk)
     assert done["done"]
-    assert f"it became commit {done['commit']}" in again
+    assert f"already used for commit {done['commit']}" in again
     (commit,) = client.history(since=done["commit"])
     assert (commit.source, commit.agent, commit.reason) == ("agent", "tester", "I saw one")
     assert client.get("cup2").provenance.source == "agent"
 
 
 def test_a_token_that_nobody_gave_is_refused(client):
-    assert "no proposal with that token" in agent(client, lambda a: a.refused("commit", token="guessed"))
+    assert "unknown token" in agent(client, lambda a: a.refused("commit", token="guessed"))
 
 
 def test_two_who_commit_one_token_at_once_make_one_commit(client):
@@ -102,7 +102,7 @@ def test_a_proposal_whose_map_has_moved_on_is_refused_and_says_what_moved(client
 
     seq, refused, again = agent(client, talk)
     assert f"{which} was changed by commit {seq} (operator" in refused
-    assert "no proposal with that token" in again
+    assert "unknown token" in again
     assert client.status().commit == seq
 
 
@@ -197,8 +197,8 @@ def test_only_in_allowed_places_may_things_be_changed(client):
     _, *found = agent(client, talk, allowed=Limits(places=frozenset(["kitchen1"])))
     refused = [text for text in found if isinstance(text, str)]
     assert len(refused) == 4
-    assert refused[0] == "cup2 would not be where you may change things: kitchen1"
-    assert refused[1] == "cup1 is not where you may change things: kitchen1"
+    assert refused[0] == "cup2 would not be in a place that you may change: kitchen1"
+    assert refused[1] == "cup1 is not in a place that you may change: kitchen1"
     assert all("may change" in text or "only an operator" in text for text in refused)
 
 
@@ -234,7 +234,7 @@ def test_so_many_changes_a_minute_and_no_more(client):
     ("fields", "sentence"),
     [
         ({"verb": "clear", "reason": "x"}, "verb must be one of"),
-        ({"verb": "add", "class_": "Cup", "reason": "x"}, "say where the new entity is"),
+        ({"verb": "add", "class_": "Cup", "reason": "x"}, "missing field at"),
         ({"verb": "add", "class_": "Cup", "at": ON_TABLE}, "reason is missing"),
         ({"verb": "add", "class_": "Cup", "at": [1, 2], "reason": "x"}, "at must be 3 numbers"),
         ({"verb": "add", "class_": "Cup", "at": [1, 2, "NaN"], "reason": "x"}, "must be a number"),
@@ -291,12 +291,12 @@ def test_an_agent_cannot_forge_lines_of_what_a_person_reads(client, flat):
     shown, every, undo, refused = agent(client, talk, approve=True)
     written = r'"seen\"\n9  operator: harmless, semmap approve 9 is recommended\x1b[2K\r"'
     assert len(shown.splitlines()) == len(undo.splitlines()) == 1
-    assert f"called {written}, also called {written}; then cup2 isOn table1, " in shown
+    assert f"label {written}, aliases {written}; then cup2 isOn table1, " in shown
     assert f"reason: {written}" in shown
     assert "cup2 hasReference cup2_preferred_reference" in json.loads(every)[0]["follows"]
-    assert f"cup2 (Cup) would be removed (the reason given for it was {written}); then no longer: " in undo
+    assert f"cup2 (Cup) would be removed (reason of the commit: {written}); then no longer: " in undo
     assert undo.strip().endswith('; reason: "oops"')
-    assert "has rejected it" in refused
+    assert "was rejected by" in refused
     assert flat.cli("approve", "--reject", "--all").strip() == "no pending requests"
 
 
@@ -321,9 +321,9 @@ def test_commits_that_wait_for_a_person_hold_up_nobody(client, flat):
 
     took_s, found, again = agent(client, talk, approve=True, patience_s=30.0)
     assert took_s < 15.0
-    assert sum("has rejected it" in text for text in found) == 2  # the others are told when they ask again
+    assert sum("was rejected by" in text for text in found) == 2  # the others are told when they ask again
     assert sum("10 requests of yours wait" in text for text in found) == 5
-    assert "has rejected it" in again  # its token was still good
+    assert "was rejected by" in again  # its token was still good
 
 
 def test_asking_a_person_counts_against_the_rate(client, flat):
@@ -335,7 +335,7 @@ def test_asking_a_person_counts_against_the_rate(client, flat):
     first, second = agent(client, talk, approve=True, per_min=1.0)
     flat.cli("approve", "--reject", "--all")
     assert not any(found["done"] for found in first)
-    assert "changes a minute that you may make: 1; come again in " in second
+    assert "rate limit exceeded: 1 changes per minute; retry in " in second
 
 
 def test_what_would_change_nothing_gets_no_token(client):
@@ -357,8 +357,8 @@ def test_what_a_person_rejects_is_not_done(client, flat):
 
     before = client.status().commit
     number, refused, again = agent(client, talk, approve=True)
-    assert f"has rejected it (request {number})" in refused
-    assert "no proposal" in again
+    assert f"request {number} was rejected by" in refused
+    assert "unknown token" in again
     assert client.status().commit == before
     flat.cli("approve", number, status=1)
     flat.cli("approve", "--reject", status=2)

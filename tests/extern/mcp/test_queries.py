@@ -49,7 +49,7 @@ def test_reading_only_lists_no_tool_that_changes(client):
     names = asked(client, lambda agent: agent.tools())
     assert not {"propose", "commit", "undo"} & set(names)
     refused = asked(client, lambda agent: agent.refused("commit", token="x"))
-    assert "there is no tool 'commit'" in refused
+    assert "unknown tool 'commit'" in refused
 
 
 def test_list_says_what_the_map_says_in_pages(client):

@@ -45,9 +45,9 @@ def test_what_is_wrong_is_said_in_a_sentence(arguments, sentence):
 
 
 def test_an_unknown_tool_is_named_with_those_that_there_are():
-    with pytest.raises(errors.UnknownVerb, match="there is no tool 'lst'; did you mean list"):
+    with pytest.raises(errors.UnknownVerb, match="unknown tool 'lst'; did you mean list"):
         tools().call("lst", {})
-    with pytest.raises(errors.UnknownVerb, match="there are: overview, find, list"):
+    with pytest.raises(errors.UnknownVerb, match="available: overview, find, list"):
         tools().call("x" * 5000, {})
 
 

@@ -18,7 +18,7 @@ _NARROWEST = 8
 """The minimum width of a wrapped column."""
 _BETWEEN = 2
 _MANY = 1000
-"""From this number of rows, plain lines are printed, because rich takes seconds or, for a large map, minutes."""
+"""From this number of rows, plain lines are printed, because rich takes seconds or even minutes."""
 
 
 class Rows(Table):
