@@ -1,4 +1,4 @@
-"""What a movie is to be like."""
+"""The settings of a video."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ SIZE: Final = (960, 640)
 FPS: Final = 20
 _SMALLEST, _LARGEST = 160, 1440
 _CAPTION: Final = 18
-"""The caption is one part in so many of the height."""
+"""The height of the video divided by that of the caption."""
 
 
 class Film(Struct, frozen=True, kw_only=True):
-    """The span, from one commit or time to another, and how it is seen.
+    """The settings of a video: the period, from one commit or time to another, and the view.
 
-    `world` is the scene file, None for a bare floor; `models` is a folder of model files, `data` the map's.
+    `world` is the scene file; None is an empty world. `models` is a folder of model files, and `data` the
+    data folder of the map.
     """
 
     since: When | None = None
@@ -36,30 +37,30 @@ class Film(Struct, frozen=True, kw_only=True):
     models: Path | None = None
     data: Path | None = None
     graphics: bool = True
-    """False casts rays, also where there is OpenGL."""
+    """False uses ray casting, even if OpenGL is available."""
 
     def validate(self) -> None:
-        """Raises BadRequest for what no movie can be like."""
+        """Raise BadRequest for invalid settings."""
         rhythm.require_speed(self.speed)
         rhythm.require_longest(self.longest_s)
         if not all(_SMALLEST <= length <= _LARGEST for length in self.size):
             width, height = self.size
             raise BadRequest(
-                f"--size {width} {height} is not possible: choose {_SMALLEST} to {_LARGEST} pixels for each"
+                f"--size {width} {height} is out of range; use {_SMALLEST} to {_LARGEST} pixels for each"
             )
         if not 1 <= self.fps <= 60:
-            raise BadRequest(f"--fps {self.fps} is not possible: choose 1 to 60 pictures a second")
+            raise BadRequest(f"--fps {self.fps} is out of range; use 1 to 60")
         if self.camera and self.place is not None:
-            raise BadRequest("give either a camera or a place")
+            raise BadRequest("--camera and --place exclude each other; remove one of them")
 
     @property
     def even_size(self) -> tuple[int, int]:
-        """Width and height of the movie [pixel]: a video has even ones."""
+        """Width and height of the video [pixel], which must be even."""
         width, height = self.size
         return width - width % 2, height - height % 2
 
     @property
     def picture_size(self) -> tuple[int, int]:
-        """Those of its pictures, above the caption."""
+        """Width and height of the images above the caption [pixel]."""
         width, height = self.even_size
         return width, height - max(16, height // _CAPTION)

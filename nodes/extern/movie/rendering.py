@@ -1,4 +1,4 @@
-"""Films a storyboard, and writes it to an MP4 file."""
+"""Rendering of a storyboard to an MP4 file."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ _PAPER, _INK = (24, 28, 33), (238, 240, 242)
 
 
 def render_video(journal: Journal, file: Path, wanted: Film, tell: Callable[[str], None]) -> str:
-    """Film a span of the journal's history to `file`; what there is to say of the movie, in a sentence.
+    """Render a period of the history to `file`, and return a summary.
 
-    `tell` is told how far it is. Raises Refused and BadRequest for a span, a camera or a place that is not
-    there, and for a movie of more than an hour; BadFile for a world or a file that cannot be used.
+    `tell` receives progress messages. Raises Refused and BadRequest for an unknown period, camera or place,
+    and for a video of more than an hour. Raises BadFile for a world or a file that cannot be used.
     """
     span = span_of(journal, wanted.since, wanted.until)
     past = Past(journal)
@@ -46,8 +46,8 @@ def render_video(journal: Journal, file: Path, wanted: Film, tell: Callable[[str
     board = tuple(scenes(start, commits, since=span.since, start_ns=start_ns, **rhythm))
     if (seconds := total_s(board)) > _LONGEST_S:
         raise errors.BadRequest(
-            f"that would be a movie of {seconds / 3600:.1f} hours, and one hour is the longest; choose a"
-            " shorter span, a higher --speed or a lower --longest"
+            f"the video would take {seconds / 3600:.1f} hours; the maximum is one hour; choose a shorter"
+            " period, a higher --speed or a lower --longest"
         )
     box = None if wanted.place is None else _bounds_of(start, wanted.place)
     stage = FilmSet(wanted.world, models=wanted.models, data=wanted.data, graphics=wanted.graphics)
@@ -58,7 +58,7 @@ def render_video(journal: Journal, file: Path, wanted: Film, tell: Callable[[str
         (stream.width, stream.height), stream.pix_fmt = wanted.even_size, "yuv420p"
         view: View | None = None
         for number, scene in enumerate(board, start=1):
-            tell(f"filming scene {number} of {len(board)}")
+            tell(f"rendering scene {number} of {len(board)}")
             _apply(stage, scene)
             view = view or stage.view(*wanted.picture_size, camera=wanted.camera, box=box)
             for rgb, frames in _render(stage, scene, view, wanted.fps):
@@ -67,7 +67,7 @@ def render_video(journal: Journal, file: Path, wanted: Film, tell: Callable[[str
                     container.mux(stream.encode(frame))
                     frame.pts = None
         container.mux(stream.encode(None))
-    how = "" if stage.has_graphics else "; ray-cast, because there is no OpenGL here"
+    how = "" if stage.has_graphics else "; by ray casting, because OpenGL is not available"
     size = file.stat().st_size / 1e6
     return f"wrote {file}: commits {span.since} to {span.until} in {seconds:.0f} s, {size:.1f} MB{how}"
 
@@ -76,17 +76,17 @@ def _open_container(file: Path) -> av.container.OutputContainer:
     try:
         return av.open(str(file), "w", format="mp4", options={"movflags": "faststart"})
     except (OSError, av.FFmpegError) as error:
-        raise errors.BadFile(f"the movie cannot be written to {file}: {error.strerror}") from None
+        raise errors.BadFile(f"{file} cannot be written: {error.strerror}") from None
 
 
 def _apply(stage: FilmSet, scene: Scene) -> None:
-    """Let come what comes; what has another shape is made anew."""
+    """Add the new bodies of a scene; bodies with a new shape are replaced."""
     stage.remove(entity.name for entity in scene.add)
     stage.add([_order(entity) for entity in scene.add])
 
 
 def _render(stage: FilmSet, scene: Scene, view: View, fps: int) -> Iterator[tuple[Rgb, int]]:
-    """The pictures of a scene, each with how many frames it stays."""
+    """Yield the images of a scene, each with its number of frames."""
     for share, frames in steps(scene, fps):
         if share == 1.0:
             stage.remove(scene.remove)
@@ -109,11 +109,11 @@ def _order(entity: Entity) -> BodyOrder:
 
 
 def _bounds_of(entities: Mapping[str, Entity], name: str) -> tuple[Vector, Vector]:
-    """Lowest and highest corner of a place. Raises UnknownName; Refused for what is no place."""
+    """Return the lowest and highest corner of a place. Raises UnknownName, and Refused for other entities."""
     place = entities.get(name)
     if place is None:
         hint = errors.did_you_mean(name, [entity.name for entity in entities.values() if entity.place])
-        raise errors.UnknownName(f"no place was named '{name}' when the movie begins{hint}")
+        raise errors.UnknownName(f"unknown place '{name}' at the start of the video{hint}")
     if not place.place or place.pose is None or place.size_m is None:
         raise errors.Refused(f"{name} is not a place with a position and a size")
     (x, y, z), (width, depth, height), yaw = place.pose.position_m, place.size_m, place.pose.yaw_rad
@@ -123,7 +123,7 @@ def _bounds_of(entities: Mapping[str, Entity], name: str) -> tuple[Vector, Vecto
 
 
 def add_caption(rgb: Rgb, caption: str, size: tuple[int, int]) -> Rgb:
-    """The picture with a caption below it, as large (width, height) as it is to be."""
+    """Return the image with a caption below it, in the size (width, height)."""
     width, height = size
     sheet = Image.new("RGB", size, _PAPER)
     sheet.paste(Image.fromarray(rgb), (0, 0))

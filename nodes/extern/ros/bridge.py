@@ -1,4 +1,4 @@
-"""The map on ROS's topics: it follows map and poses, and publishes what differs from what it published."""
+"""The map on ROS topics: the bridge subscribes to the map and its poses, and publishes the changes."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ from semmap.schemas.scenes import Poses, Scene, SceneQuery, Surface, SurfaceQuer
 
 _TICK_S: Final = 0.05
 _AGAIN_S: Final = 1.0
-"""Transforms of what does not move are said so often: listeners forget old ones."""
+"""The period of transforms of static objects, because listeners drop old transforms."""
 _WHOLE_S: Final = 0.5
-"""What is published as a whole, and a scene to plan in, is so no more often."""
+"""The minimum period of detections, markers and the planning scene."""
 _GREETING_S: Final = (0.0, 1.0, 4.0)
 _FLOOR_S: Final = 2.0
 _CELL_M: Final = 0.05
@@ -49,7 +49,7 @@ class Topics(NamedTuple):
 
 
 def topics(prefix: str = "/semmap", planning_scene: str = "/planning_scene") -> Topics:
-    """Detections, markers and grid are semmap's own and latched; the others are where ROS looks for them."""
+    """Return the topics: detections, markers and grid are latched; the others have the usual names of ROS."""
     return Topics(
         detections=topic(f"{prefix}/detections", "vision_msgs/msg/Detection3DArray", latched=True),
         markers=topic(f"{prefix}/markers", "visualization_msgs/msg/MarkerArray", latched=True),
@@ -60,7 +60,7 @@ def topics(prefix: str = "/semmap", planning_scene: str = "/planning_scene") -> 
 
 
 class Bridge:
-    """Binds the map to ROS's topics. Owned by the node's thread."""
+    """Publishes the map on ROS topics. It is owned by the thread of the node."""
 
     def __init__(
         self,
@@ -73,7 +73,7 @@ class Bridge:
         period_s: float = 0.1,
         tell: Callable[[str], None] = lambda _: None,
     ) -> None:
-        """`frame` is what the map's frame is called in ROS; transforms are published each `period_s`."""
+        """`frame` is the name of the map frame in ROS; transforms are published every `period_s`."""
         self._node, self._frame, self._period_s, self._tell = node, frame, period_s, tell
         self._map = MapReplica[Effects]()
         self._scene = SceneState()
@@ -97,14 +97,14 @@ class Bridge:
             keys.EFFECTS,
             heard=lambda _, __: self._mark_changed(),
             begun=self._on_snapshot,
-            classes_at=keys.CMD,  # a viewer may ask for that, too
+            classes_at=keys.CMD,  # the role viewer also has this permission
         )
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow_newest(keys.LIVE_POSES, self._on_live)
         ros.when_subscribed(of.planning_scene, lambda: node.soon(self._on_subscriber))
         node.every(_TICK_S, self._tick)
 
-    # What is known
+    # Subscriptions
 
     def _on_snapshot(self, _: Any) -> None:
         self._mark_changed()
@@ -121,7 +121,7 @@ class Bridge:
             self._mark_changed()
 
     def _on_live(self, live: LivePoses) -> None:
-        self._live = {name: said.pose for name, said in live.entities.items()}
+        self._live = {name: entity.pose for name, entity in live.entities.items()}
         self._mark_changed()
 
     def _fetch_scene(self) -> None:
@@ -162,7 +162,7 @@ class Bridge:
         known = {name: cache.of(body) for name, body in self._scene.bodies.items()}
         return {name: surface for name, surface in known.items() if surface is not None}
 
-    # What is said
+    # Publications
 
     def _tick(self) -> None:
         if self._map.seq < 0:
@@ -195,7 +195,7 @@ class Bridge:
         self._node.ask_later(keys.CMD, PlanFloor()).add_done_callback(on_floor)
 
     def _transform(self, at: Moment) -> None:
-        """Those that moved, frames of others included; and all of them now and then."""
+        """Publish the transforms of moved objects and published frames, and periodically all of them."""
         again = self._is_due("again", _AGAIN_S)
         before = {} if again else self._transformed
         news = [
@@ -203,8 +203,8 @@ class Bridge:
         ]
         self._transformed = self._things
         frames = self._frames.now()
-        told = {} if again else self._published_frames
-        moved = {name: to_matrix for name, to_matrix in frames.items() if told.get(name) != to_matrix}
+        published = {} if again else self._published_frames
+        moved = {name: to_matrix for name, to_matrix in frames.items() if published.get(name) != to_matrix}
         self._published_frames = frames
         if news or moved:
             self._put(self._topics.transforms, messages.transforms(news, at, moved))
@@ -216,12 +216,12 @@ class Bridge:
             self._put(self._topics.planning_scene, scene)
 
     def _on_subscriber(self) -> None:
-        """Somebody has come who knows nothing yet; the token may be here before there are ears."""
+        """Send the whole planning scene to a new subscriber, which may not receive it immediately."""
         for delay_s in _GREETING_S:
             self._node.later(delay_s, self._resend_planning_scene)
 
     def _resend_planning_scene(self) -> None:
-        """All of it is said again."""
+        """Publish the whole planning scene again."""
         self._planned = {name: thing for name, thing in self._planned.items() if name not in self._things}
         if self._things:
             self._plan(Moment(self._frame, time.time_ns()))

@@ -1,4 +1,4 @@
-"""Detections of a detector of ROS as what perception calls observations."""
+"""Conversion of ROS detections to observations of perception."""
 
 from __future__ import annotations
 
@@ -17,15 +17,13 @@ _MOST: Final = 1000
 
 
 def observations_of(message: Any, frames: Frames, base: str) -> Observations:
-    """A `vision_msgs/Detection3DArray` in the map's frame, which ROS calls `base`.
+    """Convert a `vision_msgs/Detection3DArray` to observations in the map frame, named `base` in ROS.
 
-    A hypothesis' `class_id` is a class of the map. A detection without a hypothesis or without a size is
-    passed over. Raises BadRequest where its frame is not known, and for more than a thousand.
+    The `class_id` of a hypothesis is a class of the map. Detections without a hypothesis or a size are
+    ignored. Raises BadRequest for an unknown frame, and for more than a thousand detections.
     """
     if len(message.detections) > _MOST:
-        raise errors.BadRequest(
-            f"{len(message.detections)} detections in a message; at most {_MOST} are read"
-        )
+        raise errors.BadRequest(f"{len(message.detections)} detections in a message; the maximum is {_MOST}")
     stamp = message.header.stamp
     stamp_ns = int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
     where = frames.pose(message.header.frame_id, base, stamp_ns)
@@ -63,7 +61,7 @@ def _observation(detection: Any, where: Transform) -> Observation | None:
 
 
 def _quaternion(pose: Transform) -> tuple[float, float, float, float]:
-    """Of a rotation matrix: the eigenvector of Shepperd's and Bar-Itzhack's symmetric matrix."""
+    """Convert a rotation matrix to a quaternion: the eigenvector of Bar-Itzhack's symmetric matrix."""
     m = pose[:3, :3]
     k = np.array(
         [

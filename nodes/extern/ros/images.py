@@ -1,4 +1,4 @@
-"""Pictures of ROS in the form in which perception takes them: colour as rgb8, depth in metres."""
+"""Conversion of ROS images for perception: colour as rgb8, depth in metres."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ COLOURS: Final[Mapping[str, tuple[int, tuple[int, int, int]]]] = {
     "bgra8": (4, (2, 1, 0)),
     "mono8": (1, (0, 0, 0)),
 }
-"""An encoding to the bytes of a pixel, and which of them are red, green and blue."""
+"""By encoding: the bytes per pixel, and the indices of red, green and blue."""
 
 
 _DEPTHS: Final[Mapping[str, tuple[str, float]]] = {
@@ -25,14 +25,14 @@ _DEPTHS: Final[Mapping[str, tuple[str, float]]] = {
     "mono16": ("u2", 1e-3),
     "32FC1": ("f4", 1.0),
 }
-"""An encoding to the type of a pixel, and how many metres one of it is."""
+"""By encoding: the type of a pixel, and its unit [m]."""
 
 
 def colour_of(image: Any) -> bytes:
-    """A `sensor_msgs/Image` as (height, width, 3) bytes. Raises BadRequest for an encoding without colour."""
+    """Convert a `sensor_msgs/Image` to (height, width, 3) bytes. Raises BadRequest for other encodings."""
     if image.encoding not in COLOURS:
         raise errors.BadRequest(
-            f"a colour picture in {image.encoding!r} cannot be read; there are: {', '.join(COLOURS)}"
+            f"unsupported colour encoding {image.encoding!r}; supported: {', '.join(COLOURS)}"
         )
     channels, order = COLOURS[image.encoding]
     rows = _rows(image, "u1", channels).reshape(image.height, image.width, channels)
@@ -40,13 +40,13 @@ def colour_of(image: Any) -> bytes:
 
 
 def depth_of(image: Any) -> bytes:
-    """A `sensor_msgs/Image` as (height, width) little-endian floats [m], 0 where nothing is seen.
+    """Convert a `sensor_msgs/Image` to (height, width) little-endian floats [m], 0 for no measurement.
 
-    Raises BadRequest for an encoding that is no depth.
+    Raises BadRequest for other encodings.
     """
     if image.encoding not in _DEPTHS:
         raise errors.BadRequest(
-            f"a depth picture in {image.encoding!r} cannot be read; there are: {', '.join(_DEPTHS)}"
+            f"unsupported depth encoding {image.encoding!r}; supported: {', '.join(_DEPTHS)}"
         )
     kind, metres = _DEPTHS[image.encoding]
     order = ">" if image.is_bigendian else "<"
@@ -55,12 +55,12 @@ def depth_of(image: Any) -> bytes:
 
 
 def _rows(image: Any, kind: str, channels: int) -> NDArray[Any]:
-    """(height, width * channels), without what pads the rows."""
+    """Return (height, width * channels) without the padding of the rows."""
     wide = image.width * channels * np.dtype(kind).itemsize
     content = np.asarray(image.data, np.uint8)
     if not wide or not image.height or image.step < wide or content.size < image.step * image.height:
         raise errors.BadRequest(
-            f"{content.size} bytes are not a picture of {image.width} x {image.height} pixels in"
+            f"{content.size} bytes are not an image of {image.width} x {image.height} pixels in"
             f" {image.encoding!r} with rows of {image.step} bytes"
         )
     rows = content[: image.step * image.height].reshape(image.height, image.step)[:, :wide]

@@ -1,4 +1,4 @@
-"""What ROS sends to perception: frames of cameras, and what a detector of ROS has seen."""
+"""Subscriptions to ROS topics for perception: camera frames, and the detections of a ROS detector."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _PLANES: Final[tuple[Literal["rgb", "depth"], ...]] = ("rgb", "depth")
 
 
 class Inbound:
-    """Binds topics of ROS to those that perception follows. Zenoh's threads do the work."""
+    """Forwards ROS topics to the topics of perception, on threads of Zenoh."""
 
     def __init__(
         self,
@@ -31,7 +31,7 @@ class Inbound:
         detections: Sequence[str] = (),
         tell: Callable[[str], None] = lambda _: None,
     ) -> None:
-        """`frame` is what ROS calls the map's frame; `detections` are topics of Detection3DArray."""
+        """`frame` is the name of the map frame in ROS; `detections` are topics of Detection3DArray."""
         self._session, self._ros, self._base, self._tell = session, ros, frame, tell
         self._reported: dict[str, float] = {}
         self._frames = Frames()
@@ -45,10 +45,10 @@ class Inbound:
         for name in detections:
             self._follow_detections(name)
 
-    def _follow_camera(self, said: CameraTopics) -> None:
-        camera = Camera(said.name, self._frames, self._base)
+    def _follow_camera(self, topics: CameraTopics) -> None:
+        camera = Camera(topics.name, self._frames, self._base)
         planes = {
-            plane: bus.publisher(self._session, keys.CAMERA, keys.camera_key(said.name, plane))
+            plane: bus.publisher(self._session, keys.CAMERA, keys.camera_key(topics.name, plane))
             for plane in _PLANES
         }
 
@@ -58,9 +58,9 @@ class Inbound:
                 planes["depth"].put(found.depth_m, attachment=codec.encode(found.depth))
 
         image = "sensor_msgs/msg/Image"
-        self._follow(said.info, "sensor_msgs/msg/CameraInfo", camera.take_info)
-        self._follow(said.colour, image, lambda message: put(camera.take_colour(message)))
-        self._follow(said.depth, image, lambda message: put(camera.take_depth(message)))
+        self._follow(topics.info, "sensor_msgs/msg/CameraInfo", camera.take_info)
+        self._follow(topics.colour, image, lambda message: put(camera.take_colour(message)))
+        self._follow(topics.depth, image, lambda message: put(camera.take_depth(message)))
 
     def _follow_detections(self, name: str) -> None:
         publisher = bus.publisher(self._session, keys.DETECTIONS)
@@ -81,7 +81,7 @@ class Inbound:
         self._ros.subscribe(topic(name, kind, latched=latched), receive)
 
     def _report(self, text: str) -> None:
-        """Say what is wrong, once for as long as it goes on."""
+        """Report an error, at most once in 10 s."""
         now_s = time.monotonic()
         if now_s - self._reported.get(text, -_REPORT_S) >= _REPORT_S:
             if len(self._reported) > 100:

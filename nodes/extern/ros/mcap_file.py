@@ -1,4 +1,4 @@
-"""A span of the map's history as an MCAP file, with the topics that are published live."""
+"""A period of the history as an MCAP file, with the topics of `semmap ros`."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _RECALL_S: Final = 30.0
 
 
 class State(NamedTuple):
-    """The map as of a commit, and when that was."""
+    """The map after a commit, with the time of the commit."""
 
     commit: int
     stamp_ns: int
@@ -37,15 +37,15 @@ class State(NamedTuple):
 
 
 def states(client: Client, since: str | None, until: str | None) -> Iterator[State]:
-    """The map before a span, and after each commit in it, in order.
+    """Yield the map before a period, and after each commit in it, in order.
 
-    Raises BadRequest for a span without commits, or with more than ten thousand.
+    Raises BadRequest for a period without commits, or with ten thousand or more.
     """
     rows = client.history(since=since, until=until, limit=_MOST)
     if not rows:
-        raise errors.BadRequest("there is no commit in that span; semmap history shows when there were some")
+        raise errors.BadRequest("the period has no commits; to list commits: semmap history")
     if len(rows) == _MOST:
-        raise errors.BadRequest(f"there are {_MOST:,} commits in that span or more; choose a shorter one")
+        raise errors.BadRequest(f"the period has {_MOST:,} commits or more; choose a shorter one")
     return _states(client, [row.seq for row in rows], rows[0].stamp_ns)
 
 
@@ -84,15 +84,12 @@ def _fetch_commits(client: Client, seqs: list[int]) -> Iterator[Commit]:
 
 
 def write(path: Path, found: Iterable[State], of: Topics, *, frame: str = "map") -> int:
-    """Write them to a file that is not there yet, and return how many messages it holds.
-
-    Raises BadFile where it cannot be written.
-    """
+    """Write states to a new file, and return the number of messages. Raises BadFile."""
     try:
         with path.open("xb") as file:
             return _Recording(file, of, frame).fill(found)
     except FileExistsError:
-        raise errors.BadFile(f"{path} is there already; choose another name") from None
+        raise errors.BadFile(f"{path} already exists; choose another name") from None
     except OSError as error:
         raise errors.BadFile(f"{path} cannot be written: {error.strerror}") from None
 

@@ -1,4 +1,4 @@
-"""`semmap ros`: the map on ROS's topics, and what ROS sees for perception, until stopped."""
+"""`semmap ros`: the map on ROS topics, and ROS cameras and detections for perception."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from semmap.nodes.runtime.loop import Node
 from semmap.schemas import errors, keys
 
 ROUTER: Final = "tcp/127.0.0.1:7447"
-"""Where rmw_zenoh's router listens when nothing else is said."""
+"""The default endpoint of the router of rmw_zenoh."""
 
 
 class RosConfig(Struct, frozen=True, kw_only=True):
-    """`frame` is what the map's frame is called in ROS; transforms are told `rate_hz` times a second."""
+    """The settings; `frame` is the name of the map frame in ROS, and `rate_hz` the rate of transforms."""
 
     router: str = ROUTER
     domain: int = 0
@@ -37,13 +37,13 @@ class RosConfig(Struct, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         names = [camera.name for camera in self.cameras]
         if len(set(names)) < len(names):
-            raise errors.BadRequest("two cameras have one name; give each its own")
+            raise errors.BadRequest("two cameras have the same name; use unique names")
 
 
 def run(
     session: bus.Session, commands: str, config: RosConfig, tell: Callable[[str], None] = lambda _: None
 ) -> None:
-    """Bridge until stopped. Raises NoAnswer where no router of ROS listens, BadRequest for no endpoint."""
+    """Run the bridge until stopped. Raises NoAnswer without a ROS router, BadRequest for a wrong endpoint."""
     node = Node(keys.ROS, session, commands)
     with ros_session(config.router) as other, _stop_on_signals(node.stop):
         ros = RosNode(other, config.name, config.domain)
@@ -69,19 +69,19 @@ def run(
 
 @contextlib.contextmanager
 def ros_session(router: str) -> Iterator[bus.Session]:
-    """A session in ROS's network."""
+    """Open a Zenoh session in the network of ROS."""
     try:
         with bus.open_session(bus.Network(connect=(router,), mode="client")) as session:
             if not session.info.routers_zid():
                 raise errors.BadRequest(
-                    f"what listens at {router} is no router but a peer, as semmap is itself; start ROS's"
-                    " (ros2 run rmw_zenoh_cpp rmw_zenohd), and say where it is with --router"
+                    f"{router} is a Zenoh peer, not a router; start a router (ros2 run rmw_zenoh_cpp"
+                    " rmw_zenohd), and set its endpoint with --router"
                 )
             yield session
     except errors.NoAnswer:
         raise errors.NoAnswer(
-            f"no Zenoh router of ROS listens at {router}; start one with: ros2 run rmw_zenoh_cpp rmw_zenohd,"
-            " or say where it is with --router"
+            f"no response from a ROS router at {router}; start one (ros2 run rmw_zenoh_cpp rmw_zenohd), or"
+            " set its endpoint with --router"
         ) from None
 
 

@@ -238,7 +238,7 @@ def test_so_many_changes_a_minute_and_no_more(client):
         ({"verb": "add", "class_": "Cup", "at": ON_TABLE}, "reason is missing"),
         ({"verb": "add", "class_": "Cup", "at": [1, 2], "reason": "x"}, "at must be 3 numbers"),
         ({"verb": "add", "class_": "Cup", "at": [1, 2, "NaN"], "reason": "x"}, "must be a number"),
-        ({"verb": "remove", "name": "cup1", "reason": "x"}, "remove takes no name; it takes: names"),
+        ({"verb": "remove", "name": "cup1", "reason": "x"}, "remove has no field name; valid fields: names"),
         (
             {"verb": "set", "name": "door1", "property": "isOpen", "values": ["maybe"], "reason": "x"},
             "isOpen",

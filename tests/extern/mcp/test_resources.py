@@ -143,7 +143,7 @@ def test_there_are_so_many_standing_questions_and_they_end(client):
             subscriptions.subscribe(
                 f"semmap://watch/query/SELECT%20%3Fe%20%7B%20%3Fe%20a%20dm%3AC{number}%20%7D"
             )
-        with pytest.raises(errors.Refused, match="end one first"):
+        with pytest.raises(errors.Refused, match="unsubscribe from one first"):
             subscriptions.subscribe("semmap://watch/on/table1")
         subscriptions.subscribe("semmap://watch/query/SELECT%20%3Fe%20%7B%20%3Fe%20a%20dm%3AC1%20%7D")
     finally:

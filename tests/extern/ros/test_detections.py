@@ -49,10 +49,10 @@ def test_without_a_size_or_a_hypothesis_there_is_nothing_to_see():
 
 
 def test_a_frame_that_nobody_knows_is_named():
-    with pytest.raises(errors.BadRequest, match="where the frame 'map' is"):
+    with pytest.raises(errors.BadRequest, match="frame 'map' has no parent"):
         read(detections([thing()], AT), "world")
 
 
 def test_too_many_are_refused():
-    with pytest.raises(errors.BadRequest, match="1001 detections in a message; at most 1000"):
+    with pytest.raises(errors.BadRequest, match="1001 detections in a message; the maximum is 1000"):
         read(detections([thing()] * 1001, AT))
