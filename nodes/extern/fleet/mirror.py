@@ -315,16 +315,16 @@ class Mirror:
     def _copy(self, robot: _Robot) -> None:
         """Write the whole map of a robot, in one request if it is small."""
         replica = robot.replica
-        anew, before = replica.copying, replica.facts
-        if anew is None:
+        full_copy, before = replica.copying, replica.facts
+        if full_copy is None:
             raise errors.InternalError(f"there is no copy of the map of {robot.name} to write")
-        wanted = structs.replace(anew.facts, copying=os.urandom(8).hex())
-        operations = list(updates.copy_operations(before, wanted, anew.whole))
-        small = len(anew.whole.triples) <= 2 * updates.CHUNK
+        wanted = structs.replace(full_copy.facts, copying=os.urandom(8).hex())
+        operations = list(updates.copy_operations(before, wanted, full_copy.whole))
+        small = len(full_copy.whole.triples) <= 2 * updates.CHUNK
         if self._write_alone(robot, operations, wanted, one_by_one=not small):
-            count = len(anew.whole.triples)
+            count = len(full_copy.whole.triples)
             self._report_robot(robot, "")
-            self._report(f"{robot.name}: copied at commit {wanted.commit} ({count:,} triples): {anew.why}")
+            self._report(f"{robot.name}: copied at commit {wanted.commit} ({count:,} triples): {full_copy.why}")
 
     def _write_alone(
         self,
