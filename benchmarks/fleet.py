@@ -27,8 +27,8 @@ import psutil  # type: ignore[import-untyped]
 
 from benchmarks.kb.made import entities
 from semmap.nodes import bus
-from semmap.nodes.extern.fleet import asking
 from semmap.nodes.extern.fleet import facts as f
+from semmap.nodes.extern.fleet.query import sparql as ask_mirror
 from semmap.nodes.extern.fleet.server import SparqlServer
 from semmap.nodes.extern.testing import free_endpoint
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -268,7 +268,7 @@ def _query_ms(query: str, query_url: str, server: psutil.Process, times: int = 2
     began_cpu_s = _cpu_s(server)
     for _ in range(times):
         began_s = time.perf_counter()
-        asking.sparql(query, query_url, reachable=False)
+        ask_mirror(query, query_url, reachable=False)
         took.append(time.perf_counter() - began_s)
     return 1e3 * median(took), 1e3 * (_cpu_s(server) - began_cpu_s) / times
 

@@ -29,7 +29,7 @@ def drive(t: Tour) -> None:
     t.do("attach", "apple1", "--to", "robot1_gripper", "--at", "0.06", "0", "0", holds="holds apple1")
     t.do("drive", "robot1", "--to", "6.75", "1.2", "--yaw", "-90deg", holds="robot1 is at")
     t.do("list", "--nearest", "3", "--to", "robot1", holds="fridge1")
-    t.do("get", "apple1", holds="from where robot1_gripper holds it")
+    t.do("get", "apple1", holds="from the attachment to robot1_gripper")
 
     t.tell("On it drives, past the counter where the milk was, and lets the apple go")
     t.do("drive", "robot1", "--to", "8.4", "1.15", "--yaw", "0", holds="robot1 is at")

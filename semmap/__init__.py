@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, Final
 if TYPE_CHECKING:
     from semmap import aio, commands, fleet, reasoner, recordings, testing, wire
     from semmap.nodes.extern.client import Client, connect
-    from semmap.nodes.extern.restoring import restore
+    from semmap.nodes.extern.restore import restore
     from semmap.nodes.extern.sparql_client import StandingQuery
     from semmap.ontology.vocabulary import local_name
     from semmap.schemas.approvals import Request
@@ -168,7 +168,7 @@ _NAMES_OF: Final = {
         "Client",
         "connect",
     ),
-    "nodes.extern.restoring": ("restore",),
+    "nodes.extern.restore": ("restore",),
     "nodes.extern.sparql_client": ("StandingQuery",),
     "ontology.vocabulary": ("local_name",),
     "schemas.approvals": ("Request",),

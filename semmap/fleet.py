@@ -5,10 +5,10 @@ with semmap.fleet.robots("arm*") as robots:
         print(answer.robot, answer.commit, answer.value)
 """
 
-from semmap.nodes.extern.fleet.asking import CopiedRobot, FleetAnswer, sparql
 from semmap.nodes.extern.fleet.frames import Frame
 from semmap.nodes.extern.fleet.mirror import Mirror
-from semmap.nodes.extern.fleet.mirroring import mirror
+from semmap.nodes.extern.fleet.mirror_config import mirror
+from semmap.nodes.extern.fleet.query import CopiedRobot, FleetAnswer, sparql
 from semmap.nodes.extern.fleet.robots import Robots, robots
 from semmap.schemas.robots import Answer
 

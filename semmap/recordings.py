@@ -8,6 +8,6 @@ Each reads the journal of a data folder, or of a running system, and changes not
 """
 
 from semmap.nodes.extern.movie import Film, movie
-from semmap.nodes.extern.replaying import check, replay
+from semmap.nodes.extern.replay import check, replay
 
 __all__ = ["Film", "check", "movie", "replay"]

@@ -49,8 +49,8 @@ def test_plans_of_other_kinds(system, tmp_path):
     system.cli("floorplan", tmp_path / "flat.geojson", "--as-of", 1)
     features = json.loads((tmp_path / "flat.geojson").read_text())["features"]
     assert {f["properties"]["kind"] for f in features} == {"place", "door", "thing", "wall"}
-    assert "no kind of floor plan" in system.cli("floorplan", tmp_path / "flat.bmp", status=2)
-    assert "begins below" in system.cli(
+    assert "unknown floor plan format" in system.cli("floorplan", tmp_path / "flat.bmp", status=2)
+    assert "LOW must be less than HIGH" in system.cli(
         "floorplan", plan := tmp_path / "x.png", "--height-range", 2, 1, status=2
     )
     assert not plan.exists()

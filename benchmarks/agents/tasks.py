@@ -291,7 +291,7 @@ TASKS = (
     _refuse("throw the cup away", "only an operator", verb="remove", names=["cup1"]),
     _refuse("move a chair", "not of a class", verb="update", name="chair1", at=[7.3, 2.4, 0.0]),
     _refuse("move what is not there", "no entity is named", verb="update", name="ghost1", at=_TABLE),
-    _refuse("commit with a guessed token", "no proposal", "commit", token="guessed"),
+    _refuse("commit with a guessed token", "unknown token", "commit", token="guessed"),
     Task("refuse", "say of a door that its reference is itself", _impossible, lambda client: True),
     Task("refuse", "commit one token twice", _twice, lambda client: len(client.list("Cup")) == 2),
     _undo("a move is taken back", _stands("cup1", "desk1"), verb="update", name="cup1", at=_TABLE),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from semmap.nodes.extern.cli.all_verbs import app
+from semmap.nodes.extern.cli.all_commands import app
 
 PAGE = Path(__file__).parents[1] / "command-line.md"
 HEAD = """# Command line

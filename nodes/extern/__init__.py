@@ -1,1 +1,1 @@
-"""The outside of the system: the command line, the Python clients, the codecs for the zenoh CLI."""
+"""Clients and interfaces: the command line, the Python clients, the page, MCP, ROS 2, and recordings."""

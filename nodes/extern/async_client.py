@@ -1,4 +1,4 @@
-"""The client for an event loop: the same verbs, awaited.
+"""The client for an event loop: the same methods as `Client`, as coroutines.
 
     async with semmap.aio.connect() as client:
         await client.add("Cup", "cup1", at=(1.0, 2.0, 0.75))
@@ -6,8 +6,8 @@
             async for commit in commits:
                 print(commit.seq, commit.reason)
 
-Each call waits for its reply on a thread, and up to 32 may wait at once. A call whose task is cancelled has
-been sent all the same, and may be done; with an `id` it can be sent again, and is done once.
+Each call waits for its reply on a thread; up to 32 calls can wait at the same time. A call whose task is
+cancelled was already sent and may be executed. With an `id` it can be sent again and is executed once.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from typing import Any, Final, Literal, TypeVar
 
 from semmap.nodes.extern.client import LONG_S, Client
 from semmap.nodes.extern.client import connect as connect_blocking
-from semmap.nodes.extern.client_verbs import Verbs
+from semmap.nodes.extern.client_commands import CommandMethods
 from semmap.nodes.extern.sparql_client import StandingQuery
 from semmap.schemas import errors
 from semmap.schemas.backups import Opening
@@ -48,7 +48,7 @@ async def connect(
     identity: str | None = None,
     mode: Literal["peer", "client"] | None = None,
 ) -> AsyncIterator[AsyncClient]:
-    """A client of the system at `where`; see `semmap.connect`. Raises NoAnswer when nothing answers there."""
+    """Connect to the system at `where`; see `semmap.connect`. Raises NoAnswer without a response."""
     threads = ThreadPoolExecutor(_CALLS_AT_ONCE, thread_name_prefix="semmap")
     connection = connect_blocking(
         where, source=source, agent=agent, namespace=namespace, identity=identity, mode=mode
@@ -64,8 +64,8 @@ async def connect(
         threads.shutdown(wait=False, cancel_futures=True)
 
 
-class AsyncClient(Verbs):
-    """Commands over the session of a `Client`; the verbs are coroutines. Owned by one event loop."""
+class AsyncClient(CommandMethods):
+    """A client whose methods are coroutines. It is owned by one event loop."""
 
     def __init__(self, client: Client, threads: ThreadPoolExecutor) -> None:
         self._client = client
@@ -73,35 +73,35 @@ class AsyncClient(Verbs):
 
     async def send(self, command: Command[R], *, timeout_s: float = LONG_S) -> R:
         """Send any command and return its reply; see `Client.send`."""
-        return await self._beside(lambda: self._client.send(command, timeout_s=timeout_s))
+        return await self._in_thread(lambda: self._client.send(command, timeout_s=timeout_s))
 
     async def request(self, make: Callable[[], Command[R]], read: Callable[[R], Any] | None = None) -> Any:
-        """Make a command, send it, and `read` its reply: what each verb does."""
-        return await self._beside(lambda: self._client.request(make, read))
+        """Make a command, send it, and return its reply, converted by `read`."""
+        return await self._in_thread(lambda: self._client.request(make, read))
 
     async def backup(self, file: str | Path, *, overwrite: bool = False) -> Opening:
-        """Write the map with its history to a file here; see `Client.backup`."""
-        return await self._beside(lambda: self._client.backup(file, overwrite=overwrite))
+        """Write the map and its history to a local file; see `Client.backup`."""
+        return await self._in_thread(lambda: self._client.backup(file, overwrite=overwrite))
 
     async def publish_pose(self, name: str, at: Sequence[float], **pose: Any) -> None:
-        """Say where a tracked entity is just now; see `Client.publish_pose`. It waits for nothing."""
+        """Publish the current pose of a tracked entity, without waiting; see `Client.publish_pose`."""
         self._client.publish_pose(name, at, **pose)
 
     async def publish_frame(
         self, name: str, parent: str, at: Sequence[float] = (0.0, 0.0, 0.0), **pose: Any
     ) -> None:
-        """Say where a frame of yours is; see `Client.publish_frame`. It waits for nothing."""
+        """Publish the pose of a custom frame, without waiting; see `Client.publish_frame`."""
         self._client.publish_frame(name, parent, at, **pose)
 
     async def withdraw_frame(self, name: str) -> None:
-        """Take a frame that is published away."""
+        """Remove a published frame."""
         self._client.withdraw_frame(name)
 
     @contextlib.asynccontextmanager
     async def commits(self, *, timeout: float | None = None) -> AsyncIterator[AsyncIterator[Commit]]:
-        """Every commit from now on; see `Client.commits`. None for `timeout` seconds raises NoAnswer."""
-        async with self._entered(self._client.commits()) as commits:
-            yield _handed_over(commits, "no commit came", timeout)
+        """Iterate over new commits; see `Client.commits`."""
+        async with self._enter_in_thread(self._client.commits()) as commits:
+            yield _iterate_in_thread(commits, "no commit received", timeout)
 
     @contextlib.asynccontextmanager
     async def watch(
@@ -115,31 +115,35 @@ class AsyncClient(Verbs):
         near: str | None = None,
         within: float | None = None,
     ) -> AsyncIterator[AsyncStandingQuery]:
-        """`async with client.watch(select) as standing: async for change in standing.changes(): ...`.
+        """Watch the rows of a SELECT query, or the entities at a location.
 
-        Or, instead of a query, `on`, `in_` and `near` as for `list`: a row is an entity's IRI.
+            async with client.watch(query) as standing:
+                async for change in standing.changes(): ...
+
+        `on`, `in_` and `near` have the meaning that they have in `list`; then each row is the IRI of an
+        entity.
         """
         watching = self._client.watch(
             query, inferred=inferred, class_=class_, on=on, in_=in_, near=near, within=within
         )
-        async with self._entered(watching) as standing:
+        async with self._enter_in_thread(watching) as standing:
             yield AsyncStandingQuery(standing)
 
     @contextlib.asynccontextmanager
-    async def _entered(self, context: contextlib.AbstractContextManager[T]) -> AsyncIterator[T]:
-        """Enter and leave on a thread, for both may wait for the system."""
-        entered = await self._beside(context.__enter__)
+    async def _enter_in_thread(self, context: contextlib.AbstractContextManager[T]) -> AsyncIterator[T]:
+        """Enter and exit a context manager on a thread, because both may wait for the system."""
+        entered = await self._in_thread(context.__enter__)
         try:
             yield entered
         finally:
-            await self._beside(functools.partial(context.__exit__, None, None, None))
+            await self._in_thread(functools.partial(context.__exit__, None, None, None))
 
-    async def _beside(self, function: Callable[[], T]) -> T:
+    async def _in_thread(self, function: Callable[[], T]) -> T:
         return await asyncio.get_running_loop().run_in_executor(self._threads, function)
 
 
 class AsyncStandingQuery:
-    """The rows of a query as they were when it began, and news of them; use `AsyncClient.watch`."""
+    """The initial rows of a query, and their changes. It is returned by `AsyncClient.watch`."""
 
     def __init__(self, standing: StandingQuery) -> None:
         self._standing = standing
@@ -149,31 +153,31 @@ class AsyncStandingQuery:
         self.notes = standing.notes
 
     def changes(self, *, timeout: float | None = None) -> AsyncIterator[RowsChanged]:
-        """The news, in order, until it is closed. Raises Refused, NoAnswer; see `StandingQuery.changes`."""
-        return _handed_over(self._standing.changes(), "no rows changed", timeout)
+        """Iterate over the changes until the query is closed; see `StandingQuery.changes`."""
+        return _iterate_in_thread(self._standing.changes(), "no rows changed", timeout)
 
 
-async def _handed_over(items: Iterator[T], nothing: str, timeout_s: float | None) -> AsyncIterator[T]:
-    """What a thread takes from `items`, which must end when what they come from is closed."""
+async def _iterate_in_thread(items: Iterator[T], nothing: str, timeout_s: float | None) -> AsyncIterator[T]:
+    """Iterate over `items` on a thread. `items` must end when their source is closed."""
     loop = asyncio.get_running_loop()
-    taken: asyncio.Queue[tuple[T] | Exception | None] = asyncio.Queue()
+    received: asyncio.Queue[tuple[T] | Exception | None] = asyncio.Queue()
 
-    def hand_over(item: tuple[T] | Exception | None) -> None:
+    def put(item: tuple[T] | Exception | None) -> None:
         with contextlib.suppress(RuntimeError):  # the loop has ended
-            loop.call_soon_threadsafe(taken.put_nowait, item)
+            loop.call_soon_threadsafe(received.put_nowait, item)
 
-    def take() -> None:
+    def iterate() -> None:
         try:
             for item in items:
-                hand_over((item,))
-            hand_over(None)
+                put((item,))
+            put(None)
         except Exception as error:
-            hand_over(error)
+            put(error)
 
-    threading.Thread(target=take, name="semmap", daemon=True).start()
+    threading.Thread(target=iterate, name="semmap", daemon=True).start()
     while True:
         try:
-            item = await asyncio.wait_for(taken.get(), timeout_s)
+            item = await asyncio.wait_for(received.get(), timeout_s)
         except TimeoutError:
             raise errors.NoAnswer(f"{nothing} within {timeout_s:g} s") from None
         if item is None:

@@ -1,4 +1,4 @@
-"""Availability: tells a watcher that the system went down, that it is back, and with which map."""
+"""Reports to a subscriber that the knowledge base went down or came back, and with which map."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ WENT_DOWN = "the knowledge base is down; waiting for it to come back"
 CAME_BACK = "the knowledge base is back, with the same map"
 
 
-class _Beginning(NamedTuple):
-    """What a map began with: no two maps have the same."""
+class _FirstCommit(NamedTuple):
+    """The first commit of a map, which identifies the map."""
 
     stamp_ns: int
     reason: str
 
 
 @contextmanager
-def told(client: Client, tell: Callable[[str], None]) -> Iterator[None]:
-    """Meanwhile `tell(sentence)` is called, on another thread, when the system goes down or comes back."""
+def report_availability(client: Client, tell: Callable[[str], None]) -> Iterator[None]:
+    """Call `tell(text)`, on another thread, whenever the knowledge base goes down or comes back."""
     changes: queue.SimpleQueue[bool | None] = queue.SimpleQueue()
     subscriber = bus.follow_presence(client.session, "kb_node", changes.put)
-    thread = threading.Thread(target=_tell_of, args=(client, changes, tell), daemon=True)
+    thread = threading.Thread(target=_report_changes, args=(client, changes, tell), daemon=True)
     thread.start()
     try:
         yield
@@ -38,29 +38,29 @@ def told(client: Client, tell: Callable[[str], None]) -> Iterator[None]:
         thread.join(timeout=bus.PATIENCE_S)
 
 
-def _tell_of(client: Client, changes: queue.SimpleQueue[bool | None], tell: Callable[[str], None]) -> None:
-    before: _Beginning | None = None
-    while (there := changes.get()) is not None:
-        if not there:
+def _report_changes(
+    client: Client, changes: queue.SimpleQueue[bool | None], tell: Callable[[str], None]
+) -> None:
+    before: _FirstCommit | None = None
+    while (is_up := changes.get()) is not None:
+        if not is_up:
             tell(WENT_DOWN)
             continue
         try:
-            now = _beginning(client)
+            now = _first_commit(client)
             if before is not None:
-                tell(CAME_BACK if now == before else _another(client, now))
+                tell(CAME_BACK if now == before else _other_map_text(client, now))
             before = now
-        except errors.SemmapError:  # it has gone again, or this client may not ask it
+        except errors.SemmapError:  # it went down again, or this client lacks the permission
             continue
 
 
-def _beginning(client: Client) -> _Beginning:
+def _first_commit(client: Client) -> _FirstCommit:
     (first,) = client.history(until=1, limit=1)
-    return _Beginning(first.stamp_ns, first.reason)
+    return _FirstCommit(first.stamp_ns, first.reason)
 
 
-def _another(client: Client, beginning: _Beginning) -> str:
+def _other_map_text(client: Client, beginning: _FirstCommit) -> str:
     status = client.status()
     counts = f"{wording.entities(status.entities)}, commit {status.commit}"
-    return (
-        f"this endpoint now serves another map ({beginning.reason}; {counts}); what follows is about that map"
-    )
+    return f"the endpoint now serves another map ({beginning.reason}; {counts}); further output is about it"

@@ -1,4 +1,4 @@
-"""A backup as a file of the client's: fetched part by part, then read back and verified."""
+"""Backups: a backup is fetched in parts, written to a local file, and verified."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ def write(
     overwrite: bool = False,
     tell: Callable[[int], Any] = lambda size: None,
 ) -> Opening:
-    """Write the map that answers to `ask`, with its history, to `file`; which map it is, and as of when.
+    """Write a map and its history to `file`, and return which map it is and its commit.
 
-    `tell` is told how many bytes there are so far. The file appears when all of it is there and has been
-    verified by its digests. Raises BadFile when it is there already and not to be overwritten, or cannot be
-    written; what `ask` raises.
+    `ask` requests a part of the backup, and `tell` receives the number of bytes written so far. The file is
+    created only after it is complete and verified by its digests. Raises BadFile if the file exists and
+    `overwrite` is not set, or if it cannot be written, and the errors of `ask`.
     """
     path = Path(file)
     if path.exists() and not overwrite:
-        raise errors.BadFile(f"{path} is there already; overwrite it with --overwrite, or give another name")
+        raise errors.BadFile(f"{path} already exists; add --overwrite or choose another name")
     unfinished = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with os.fdopen(os.open(unfinished, _NEW, 0o600), "wb") as opened:

@@ -7,7 +7,7 @@
         for entity in semmap.list("Drinkable"):
             print(entity.name, entity.pose)
 
-Every verb sends one command and returns its reply (`client_verbs.py`).
+Each method sends one command and returns its reply (`client_commands.py`).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import msgspec
 
 from semmap.nodes import bus
 from semmap.nodes.extern import backup
-from semmap.nodes.extern.client_verbs import Verbs
+from semmap.nodes.extern.client_commands import CommandMethods
 from semmap.nodes.extern.connection import endpoint, open_session
 from semmap.nodes.extern.connection import identity as identify
 from semmap.nodes.extern.connection import namespace as robot
@@ -47,7 +47,7 @@ R = TypeVar("R")
 C = TypeVar("C", bound=Command)
 
 LONG_S = 6 * 3600.0
-"""Seconds: longer than any command takes. The end of the node that has it ends the question before."""
+"""Timeout [s], longer than any command takes. If the node that executes it ends, the request ends earlier."""
 _VERSION_S = 2.0
 
 
@@ -61,31 +61,30 @@ def connect(
     identity: str | None = None,
     mode: Literal["peer", "client"] | None = None,
 ) -> Iterator[Client]:
-    """A client of the system at `where`. Raises NoAnswer when nothing answers there.
+    """Connect to the system at `where`, and yield a client. Raises NoAnswer if the system does not respond.
 
-    That is said at once where this machine refuses the connection and no system is starting. `identity` is
-    `DIR/NAME` of a certificate, for a secure system. Changes are signed as `source`: unless it is given,
-    "perception" for a certificate of that role, else "operator".
+    `identity` is `DIR/NAME` of a certificate, for a secure system. `source` is stored with each change; by
+    default it is "perception" for a certificate with that role, else "operator".
 
-    `namespace` is the name of one robot of several (`semmap up --namespace`): by default what
-    `SEMMAP_NAMESPACE` says, or else that of the system at `where`, if it runs on this machine.
+    `namespace` is the name of a robot (`semmap up --namespace`). By default it is `SEMMAP_NAMESPACE`, or the
+    name of the system at `where` if that runs on this machine.
 
-    `mode` is how the session joins, in Zenoh's words. A "peer" has a link to each node, so its questions
-    travel the shortest way; a "client" has one link, to whoever listens at `where`, and has joined at once,
-    where a peer may take 0.1 s. By default it is a peer on the system's own machine, unless that is secure.
+    `mode` is the mode of the Zenoh session. A "peer" has a direct link to each node, so its requests are
+    faster. A "client" has one link, to the endpoint `where`, and connects faster: a peer may take 0.1 s. By
+    default it is a peer on the machine of the system, unless the system is secure.
     """
-    who = identify(identity)
+    certificate = identify(identity)
     where = where or endpoint(robot(namespace))
-    with open_session(where, robot(namespace, where), who, mode=mode) as session:
-        yield Client(session, source=source, agent=agent, identity=who)
+    with open_session(where, robot(namespace, where), certificate, mode=mode) as session:
+        yield Client(session, source=source, agent=agent, identity=certificate)
 
 
 _LONG = (Load, Undo, Clear)
 """What may be at work for long when a node ends: its restart is waited for, so that the end is known."""
 
 
-class Client(Verbs):
-    """Commands over a session of yours; `source` and `agent` sign those that do not say their own."""
+class Client(CommandMethods):
+    """A client over a Zenoh session. `source` and `agent` sign the commands that do not set their own."""
 
     def __init__(
         self,
@@ -105,13 +104,13 @@ class Client(Verbs):
         self._signature: dict[str, Any] = {"source": source or roles.default_source(role), "agent": agent}
 
     def send(self, command: Command[R], *, timeout_s: float = LONG_S) -> R:
-        """Send any command and return its reply; raises the error that it is answered with.
+        """Send a command and return its reply. An error reply is raised as its exception.
 
-        Raises BadRequest, before anything is sent, for a field that is not of its type, Refused for what the
-        role of this client's certificate does not permit, and NoAnswer when the reply takes longer than
+        Before it sends the command, raises BadRequest for a field with a wrong type, and Refused if the role
+        of the certificate does not permit the command. Raises NoAnswer if there is no reply within
         `timeout_s` [s].
         """
-        signed, first_hand = _checked(command, self._signature), command.VERB in keys.OF_THE_MAP
+        signed, first_hand = _prepare(command, self._signature), command.VERB in keys.OF_THE_MAP
         if self.identity is not None and (refusal := roles.refusal(self.identity.role, signed)) is not None:
             raise errors.Refused(refusal)
         reply: R = self._ask(
@@ -125,33 +124,33 @@ class Client(Verbs):
         return reply
 
     def _ask(self, verb: str, command: Command, kind: Any, **how: Any) -> Any:
-        """As `bus.ask`; a misunderstanding between versions is told as one."""
+        """Send a request as `bus.ask` does. An error that different versions cause says so."""
         try:
             return bus.ask(self.session, self.prefix, verb, command, kind, lifelines=self._lifelines, **how)
         except errors.SemmapError as error:
-            if _may_be_of_versions(error) and (difference := version.difference(self._version_of_system())):
+            if _is_version_mismatch(error) and (difference := version.difference(self._system_version())):
                 raise type(error)(f"{error.text}; {difference}", explanation=error.explanation) from None
             raise
 
-    def _version_of_system(self) -> str:
-        """What its status says; this client's own where nobody says."""
+    def _system_version(self) -> str:
+        """Return the version in the status of the system or, without a reply, that of this client."""
         ask = functools.partial(bus.ask, timeout_s=_VERSION_S, patience_s=0.0)
         try:
-            said = ask(self.session, self.prefix, Status.VERB, Status(), dict[str, Any])
+            status = ask(self.session, self.prefix, Status.VERB, Status(), dict[str, Any])
         except errors.SemmapError:
             return version.version()
-        return str(said.get("version", ""))
+        return str(status.get("version", ""))
 
     def request(self, make: Callable[[], Command[R]], read: Callable[[R], Any] | None = None) -> Any:
-        """Make a command, send it, and `read` its reply: what each verb does."""
+        """Make a command, send it, and return its reply, converted by `read`."""
         reply = self.send(make())
         return reply if read is None else read(reply)
 
     def backup(self, file: str | Path, *, overwrite: bool = False) -> Opening:
-        """Write the map with its history to a file here, while the system runs; `semmap restore` reads it.
+        """Write the map and its history to a local file, while the system runs; `semmap restore` reads it.
 
-        Returns which map it is, and as of which commit. Raises BadFile when the file is there and not to be
-        overwritten, or cannot be written.
+        Returns which map it is, and its commit. Raises BadFile if the file exists and `overwrite` is not set,
+        or if it cannot be written.
         """
         return backup.write(self.send, file, overwrite=overwrite)
 
@@ -164,12 +163,14 @@ class Client(Verbs):
         orientation: Sequence[float] | None = None,
         stamp_ns: int = 0,
     ) -> None:
-        """Say where a tracked entity is just now, as often as that is known; the newest pose wins.
+        """Publish the current pose of a tracked entity; the newest pose is used.
 
-        `at` is its bottom centre [m] in the map frame, `yaw` [rad] or `orientation` (unit quaternion wxyz)
-        how it is turned, and `stamp_ns` when that was measured (0: when it arrives). There is no reply: what
-        was taken, `client.get(name).live` tells, and what was not, the problems of `client.status()`. Raises
-        BadRequest for what is no pose, Refused where this client's certificate does not permit it.
+        `at` is the bottom centre [m] in the map frame. `yaw` [rad] or `orientation` (unit quaternion wxyz) is
+        the rotation. `stamp_ns` is the time of the measurement; 0 is the time of arrival.
+
+        There is no reply: accepted poses are in `client.get(name).live`, rejected ones in the problems of
+        `client.status()`. Raises BadRequest for an invalid pose, and Refused if the certificate of this
+        client does not permit it.
         """
         fields = {"at": at, "yaw": yaw, "orientation": orientation, "stamp_ns": stamp_ns}
         self._publish(keys.LIVE_POSE, keys.live_pose_key(name), LivePose, fields)
@@ -185,31 +186,32 @@ class Client(Verbs):
         stamp_ns: int = 0,
         fixed: bool = False,
     ) -> None:
-        """Say where a frame of yours is in its `parent`.
+        """Publish the pose of a custom frame in its `parent`.
 
-        `client.publish_frame("robot1/lidar", "robot1", at=(0.2, 0.0, 0.3))`. `at` is its origin [m] in the
-        parent, `yaw` [rad] or `orientation` (unit quaternion wxyz) how it is turned, and `stamp_ns` when that
-        was measured (0: when it arrives). It is stale when it is not said again within `semmap up --stale`
-        seconds; what is `fixed` is said once, and again after a restart of the coordinator.
+        For example, `client.publish_frame("robot1/lidar", "robot1", at=(0.2, 0.0, 0.3))`. `at` is the origin
+        [m] in the parent. `yaw` [rad] or `orientation` (unit quaternion wxyz) is the rotation. `stamp_ns` is
+        the time of the measurement; 0 is the time of arrival. A frame expires unless it is published again
+        within `semmap up --stale` seconds. A `fixed` frame is published once, and again after a restart of
+        the coordinator.
 
-        There is no reply: what was taken, `client.frames(name)` tells, and what was not, the problems of
-        `client.status()`. Raises BadRequest for what is no pose, Refused where this client's certificate
-        does not permit it.
+        There is no reply: accepted frames are in `client.frames(name)`, rejected ones in the problems of
+        `client.status()`. Raises BadRequest for an invalid pose, and Refused if the certificate of this
+        client does not permit it.
         """
         pose = {"at": at, "yaw": yaw, "orientation": orientation, "stamp_ns": stamp_ns}
         self._publish(keys.FRAME, _frame_key(name), FramePose, {"parent": parent, "fixed": fixed, **pose})
 
     def withdraw_frame(self, name: str) -> None:
-        """Take a frame that is published away, a fixed one too."""
+        """Remove a published frame, including a fixed one."""
         self._publish(keys.FRAME, _frame_key(name), None, {})
 
     def _publish(
         self, topic: keys.Topic, key: str, kind: type[LivePose | FramePose] | None, fields: dict[str, Any]
     ) -> None:
-        """Put a pose on a key; without a `kind` delete what was put there."""
+        """Put a pose on a key or, without a `kind`, delete the key."""
         message: LivePose | FramePose | None = None
         if kind is not None:
-            plain = msgspec.to_builtins(fields, enc_hook=_plain)
+            plain = msgspec.to_builtins(fields, enc_hook=_to_builtin)
             try:
                 message = codec.convert(plain, kind)
                 message.require_pose()
@@ -236,14 +238,16 @@ class Client(Verbs):
         near: str | None = None,
         within: float | None = None,
     ) -> Iterator[StandingQuery]:
-        """`with client.watch(select) as standing: ...`: its rows, and in `standing.changes()` the news.
+        """Watch the rows of a SELECT query, or the entities at a location.
 
-        Or, instead of a query, `on`, `in_` and `near` as for `list`: a row is an entity's IRI.
+        `with client.watch(query) as standing: ...` has the current rows in `standing.rows`, and yields their
+        changes from `standing.changes()`. `on`, `in_` and `near` have the meaning that they have in `list`;
+        then each row is the IRI of an entity.
         """
-        wanted = Watch(
+        command = Watch(
             query=query, inferred=inferred, class_=class_, on=on, in_=in_, near=near, within=within
         )
-        standing = StandingQuery(self.session, self._ask, _checked(wanted, {}))
+        standing = StandingQuery(self.session, self._ask, _prepare(command, {}))
         try:
             yield standing
         finally:
@@ -251,77 +255,79 @@ class Client(Verbs):
 
     @contextlib.contextmanager
     def commits(self, *, timeout: float | None = None) -> Iterator[Iterator[Commit]]:
-        """`with client.commits() as commits: for commit in commits: ...`: every commit from now on.
+        """Iterate over new commits: `with client.commits() as commits: for commit in commits: ...`.
 
-        The next one is waited for without end, or for `timeout` seconds, which then raises NoAnswer.
-
-        A late subscriber is sent some of the past, too (that is how nothing is lost); it is passed over. When
-        the system gives way to one with another map, whose numbers may be lower, that one's commits follow.
+        Raises NoAnswer if there is no commit for `timeout` seconds. If a system with another map replaces the
+        system, its commits follow; their numbers may be lower.
         """
         began_ns = time.time_ns()
         events: queue.SimpleQueue[Commit | None] = queue.SimpleQueue()
         subscriber = bus.follow(self.session, keys.COMMIT, lambda _, commit: events.put(commit))
         try:
             now = self.status().commit
-            yield (c for c in _each(events, timeout) if c.seq > now or c.stamp_ns > began_ns)
+            # A late subscriber also receives cached commits from before, which are skipped.
+            yield (c for c in _wait_for_commits(events, timeout) if c.seq > now or c.stamp_ns > began_ns)
         finally:
             subscriber.undeclare()
-            events.put(None)  # whoever waits for the next one on another thread is told of the end
+            events.put(None)  # ends an iteration that waits on another thread
 
 
 def _frame_key(name: str) -> str:
     if not name or "" in name.split("/"):
-        raise errors.BadRequest(f"'{name}' is no name of a frame; such are robot1/lidar or lidar1")
+        raise errors.BadRequest(f"'{name}' is not a valid frame name; examples: robot1/lidar, lidar1")
     return keys.frame_key(name)
 
 
-def _each(events: queue.SimpleQueue[Commit | None], timeout_s: float | None) -> Iterator[Commit]:
+def _wait_for_commits(events: queue.SimpleQueue[Commit | None], timeout_s: float | None) -> Iterator[Commit]:
     while True:
         try:
             commit = events.get(timeout=timeout_s)
         except queue.Empty:
-            raise errors.NoAnswer(f"no commit came within {timeout_s:g} s") from None
+            raise errors.NoAnswer(f"no commit received within {timeout_s:g} s") from None
         if commit is None:
             return
         yield commit
 
 
-def _may_be_of_versions(error: errors.SemmapError) -> bool:
-    """A message that one end cannot read, a verb that it does not have, or an error of an unknown kind."""
+def _is_version_mismatch(error: errors.SemmapError) -> bool:
+    """Return whether different versions may cause an error.
+
+    That is a message that cannot be decoded, an unknown command, or an error of an unknown type.
+    """
     malformed = isinstance(error, errors.BadRequest) and error.text.startswith(codec.MALFORMED)
     return malformed or isinstance(error, errors.UnknownVerb) or type(error) is errors.SemmapError
 
 
-def _checked(command: C, signature: dict[str, Any]) -> C:
-    """The command as it is sent: signed, in Python's own numbers, with offsets in its times.
+def _prepare(command: C, signature: dict[str, Any]) -> C:
+    """Return the command to send: signed, with Python numbers, and with time zone offsets in its times.
 
-    A change has an id, so that it is executed once even if the coordinator is killed before it replies and
-    the command is sent again. Raises BadRequest.
+    A change without an id gets one. So it is executed once, even if the coordinator is killed before it
+    replies and the command is sent again. Raises BadRequest.
     """
-    fields = msgspec.to_builtins(command, builtin_types=(bytes,), enc_hook=_plain)
-    for moment in _moments(type(command)) & fields.keys():
+    fields = msgspec.to_builtins(command, builtin_types=(bytes,), enc_hook=_to_builtin)
+    for moment in _time_fields(type(command)) & fields.keys():
         fields[moment] = with_offset(fields[moment])
     if reply_type(type(command)) is Changed and not command.id:
         fields["id"] = _new_id()
     try:
         return codec.convert({**signature, **fields}, type(command))
-    except errors.BadRequest as error:  # a message is not what the caller knows of
+    except errors.BadRequest as error:  # the caller did not write a message
         raise errors.BadRequest(error.text.removeprefix(codec.MALFORMED)) from None
 
 
 def _new_id() -> str:
-    """Unique, and later ones after earlier ones: then the journal's index of them grows at its end."""
+    """Return a unique id. Ids increase with time, so that the index of the journal is appended to."""
     return f"{time.time_ns():016x}{os.urandom(8).hex()}"
 
 
 @functools.cache
-def _moments(kind: type[Command]) -> frozenset[str]:
-    """The fields that are points in the map's history."""
+def _time_fields(kind: type[Command]) -> frozenset[str]:
+    """Return the names of the fields that are points in the history of the map."""
     return frozenset(f.encode_name for f in msgspec.structs.fields(kind) if f.type == When | None)
 
 
-def _plain(value: Any) -> Any:
-    """Numbers and arrays of NumPy as Python's own."""
+def _to_builtin(value: Any) -> Any:
+    """Convert NumPy numbers and arrays to Python numbers and lists."""
     if hasattr(value, "tolist"):
         return value.tolist()
     raise errors.BadRequest(f"{value!r} is not a number, a string or a sequence of them")

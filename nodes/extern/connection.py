@@ -1,4 +1,4 @@
-"""Which system a client means, and the way to it."""
+"""Selection of the system that a client connects to, and the session with it."""
 
 from __future__ import annotations
 
@@ -21,21 +21,24 @@ from semmap.schemas.endpoints import (
 )
 
 _START_S = 15.0
-"""Seconds: a system that is starting is waited for."""
-_ANEW_S = 1.0
-"""Seconds: a router that begins anew is back before."""
-_AGAIN_S = 0.1
+"""Timeout for a system that is starting [s]."""
+_ROUTER_RESTART_S = 1.0
+"""Time within which a restarted router accepts connections again [s]."""
+_RETRY_S = 0.1
 
 
 def endpoint(namespace: str | None = None) -> str:
-    """The system that is meant when nothing else is said.
+    """Return the default endpoint. Raises BadRequest if several systems are possible.
 
-    That is `SEMMAP_CONNECT`; or the one that this user runs for the robot `namespace`; or the one at the
-    usual endpoint; or the only one that this user runs on this machine. Raises BadRequest when it could be
-    any of several.
+    It is the first of these that exists:
+
+    - `SEMMAP_CONNECT`
+    - the system that this user runs for the robot `namespace`
+    - the system at the default endpoint
+    - the only system that this user runs on this machine
     """
-    if said := os.environ.get(CONNECT_VARIABLE):
-        return said
+    if configured := os.environ.get(CONNECT_VARIABLE):
+        return configured
     running = registry.systems()
     of_robot = [system for system in running if system.namespace == namespace]
     if namespace and of_robot:
@@ -43,28 +46,27 @@ def endpoint(namespace: str | None = None) -> str:
     if not running or any(system.reachable == bus.DEFAULT_ENDPOINT for system in running):
         return bus.DEFAULT_ENDPOINT
     if len(running) > 1:
-        which = ", ".join(f"{system.reachable} ({system.data})" for system in running)
+        found = ", ".join(f"{system.reachable} ({system.data})" for system in running)
         raise errors.BadRequest(
-            f"{len(running)} systems are running; choose one with --connect or {CONNECT_VARIABLE}: {which}"
+            f"{len(running)} systems are running; choose one with --connect or {CONNECT_VARIABLE}: {found}"
         )
     return running[0].reachable
 
 
-def namespace(said: str | None, where: str | None = None) -> str:
-    """The robot that is meant: `said`, or what `SEMMAP_NAMESPACE` says, or that of the system at `where`.
+def namespace(name: str | None, where: str | None = None) -> str:
+    """Return the name of the robot: `name`, or `SEMMAP_NAMESPACE`, or that of the local system at `where`.
 
-    The latter is known of the systems that this user runs on this machine. Raises BadRequest for a word that
-    no robot can be called.
+    Raises BadRequest for an invalid name.
     """
-    if said is None:
-        said = os.environ.get(NAMESPACE_VARIABLE) or None
-    if said is None and where is not None:
-        said = next((s.namespace for s in registry.systems() if where in (s.reachable, s.listen)), None)
-    return robot_name(said or "")
+    if name is None:
+        name = os.environ.get(NAMESPACE_VARIABLE) or None
+    if name is None and where is not None:
+        name = next((s.namespace for s in registry.systems() if where in (s.reachable, s.listen)), None)
+    return robot_name(name or "")
 
 
 def identity(path: str | None) -> Identity | None:
-    """Who the client is: `DIR/NAME`, or else what `SEMMAP_IDENTITY` says; None without. Raises BadFile."""
+    """Return the identity in `path` (`DIR/NAME`) or `SEMMAP_IDENTITY`, or None. Raises BadFile."""
     path = path or os.environ.get(IDENTITY_VARIABLE)
     return Identity.read(path) if path else None
 
@@ -77,12 +79,11 @@ def open_session(
     *,
     mode: Literal["peer", "client"] | None = None,
 ) -> Iterator[bus.Session]:
-    """A session with whoever listens at `where`, or will do so when the system has started.
+    """Open a session with the system at `where`. A system that is starting is waited for.
 
-    On the system's own machine it is a peer, unless `mode` says otherwise: what the knowledge base answers
-    itself comes straight from it. With an identity it is a client of the router, and the endpoint one of TLS.
-    Raises NoAnswer when nothing answers there, the system takes too long to start, or it wants to know who
-    this is.
+    Without `mode`, the session is a peer on the machine of the system, so that replies of the knowledge base
+    arrive directly. With an identity it is a client of the router, over TLS. Raises NoAnswer if the system
+    does not respond, takes too long to start, or requires a certificate.
     """
     own_config = os.environ.get(CONFIG_VARIABLE) or None
     if identity is not None:
@@ -91,8 +92,8 @@ def open_session(
         bus.require_tls(where)
     elif where.startswith(bus.TLS) and not own_config:
         raise errors.NoAnswer(
-            f"the system at {where} only answers those who show a certificate; say who you are:"
-            f" --identity DIR/NAME or {IDENTITY_VARIABLE}"
+            f"the system at {where} requires a client certificate; add --identity DIR/NAME or set"
+            f" {IDENTITY_VARIABLE}"
         )
     here = presence.is_loopback(where)
     network = bus.Network(
@@ -110,14 +111,14 @@ def open_session(
                 session = stack.enter_context(bus.open_session(network))
                 break
             except errors.NoAnswer as error:
-                turned_away = isinstance(error, bus.HungUp) or (
+                is_rejected = isinstance(error, bus.HungUp) or (
                     identity is not None
-                    and time.monotonic() > deadline_s - _START_S + _ANEW_S
+                    and time.monotonic() > deadline_s - _START_S + _ROUTER_RESTART_S
                     and presence.is_listening(where)
                 )
-                if turned_away or not presence.is_announced(where):
+                if is_rejected or not presence.is_announced(where):
                     raise
                 if time.monotonic() > deadline_s:
                     raise errors.NoAnswer(f"the system at {where} has not started yet") from None
-                time.sleep(_AGAIN_S)
+                time.sleep(_RETRY_S)
         yield session

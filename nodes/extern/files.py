@@ -1,4 +1,4 @@
-"""Files of the client: read whole or refused in one sentence, written atomically."""
+"""Local files of the client: reading with a size limit, and atomic writing."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from semmap.schemas.packing import LARGEST
 
 
 def read_file(path: Path) -> bytes:
-    """The content of a file. Raises BadFile in one sentence when there is none, or no end of it."""
+    """Return the content of a file. Raises BadFile if it cannot be read or is too large."""
     try:
         with path.open("rb") as file:
             content = file.read(LARGEST + 1)
@@ -29,17 +29,17 @@ def read_file(path: Path) -> bytes:
 
 
 def read_label_map(path: Path) -> dict[str, str]:
-    """From a detector's labels to classes, as a JSON file has them. Raises BadFile."""
+    """Return the classes by label of a detector, from a JSON file. Raises BadFile."""
     try:
         return msgspec.json.decode(read_file(path), type=dict[str, str])
     except msgspec.DecodeError:
         raise errors.BadFile(
-            f'{path} is no map of labels to classes, such as {{"coffee mug": "Cup"}}'
+            f'{path} is not a JSON object of labels and classes, such as {{"coffee mug": "Cup"}}'
         ) from None
 
 
 def write_atomically(file: Path, content: bytes) -> None:
-    """All of `content` under that name, or nothing; into what is no file, such as a pipe, it is just written.
+    """Write a file completely or not at all. Another target, such as a pipe, is written directly.
 
     Raises BadFile.
     """

@@ -1,4 +1,4 @@
-"""Floor plans as files: what a robot's navigation takes, or a person."""
+"""Floor plans as files, for robot navigation or for people."""
 
 from __future__ import annotations
 
@@ -29,24 +29,22 @@ def write_floorplan(
     as_of: When | None = None,
     furniture: bool = True,
 ) -> tuple[Path, ...]:
-    """Write the plan of a system's map, of the kind that the name of `file` says; answers what was written.
+    """Write the floor plan of a map in the format of the suffix of `file`, and return the written files.
 
-    A grid (`.png`, `.pgm`) comes with its `.yaml`, as ROS's map server has them: `resolution` is metres a
-    pixel, and what has a part within `heights` [m] above the floor is occupied. Where places are forbidden,
-    it comes with a mask of them, too. Raises BadRequest, Refused.
+    A grid (`.png`, `.pgm`) is written with a `.yaml` file, as the ROS map server reads them. `resolution` is
+    the cell size [m]. Objects with a part within `heights` [m] above the floor are occupied cells. If there
+    are forbidden places, a mask of them is also written. Raises BadRequest, Refused.
     """
     extras.require("a floor plan", "kb")
     kind = file.suffix.lower()
     if kind not in (".png", ".pgm", ".svg", ".geojson"):
-        raise errors.BadRequest(f"{file.name} is no kind of floor plan; there are {_KINDS}")
+        raise errors.BadRequest(f"{file.name}: unknown floor plan format; supported: {_KINDS}")
     if not _FINEST_M <= resolution <= _COARSEST_M:
         raise errors.BadRequest(
-            f"the resolution is {resolution:g} m a pixel; it is from {_FINEST_M:g} to {_COARSEST_M:g} m"
+            f"--resolution {resolution:g} is out of range; use {_FINEST_M:g} to {_COARSEST_M:g} m"
         )
     if not heights[0] < heights[1]:
-        raise errors.BadRequest(
-            f"the height range is from {heights[0]:g} to {heights[1]:g} m; it begins below where it ends"
-        )
+        raise errors.BadRequest(f"--height-range {heights[0]:g} {heights[1]:g}: LOW must be less than HIGH")
     if kind == ".svg":
         return (_svg(client, file, as_of),)
     plan = client.floorplan(as_of=as_of)
@@ -80,7 +78,7 @@ def _svg(client: Client, file: Path, as_of: When | None) -> Path:
 
     entities = client.list(as_of=as_of)
     if not entities:
-        raise errors.Refused("there is nothing to plan on: no place has an extent, and no thing a size")
+        raise errors.Refused("the map has no entities to draw")
     commits = client.history(until=as_of, limit=1)
     last = commits[-1]
     text = drawing(floor_of(entities), title="Floor plan", commit=last.seq, stamp_ns=last.stamp_ns)

@@ -1,4 +1,4 @@
-"""Ontologies of whoever asks, with what they import: the system reads no files of its clients."""
+"""Ontologies with their imports, combined by the client: the system does not read files of its clients."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from semmap.nodes.runtime import extras
 
 
 def ontology(path: Path, imports: Mapping[str, str | Path]) -> tuple[bytes, str]:
-    """A document with an ontology and all that it imports, as far as that is found, and what it is called.
+    """Return a document with an ontology and the imports that are found, and a name for it.
 
-    `imports` says in which file an import is. The document is the file itself where there is only that one,
-    and else of N-Triples. Where only a client is installed, a file is taken without its imports, as nothing
-    there can read it. Raises BadFile, and BadRequest for what that client cannot do.
+    `imports` has the files of imported IRIs. Without imports, the document is the file itself; otherwise it
+    is in N-Triples. If only the client is installed, the file is returned without its imports, because it
+    cannot be parsed. Raises BadFile, and BadRequest for options that need the extra `kb`.
     """
     if extras.missing(["kb"]) and not imports and not path.is_dir():
         return read_file(path), path.name

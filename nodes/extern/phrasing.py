@@ -1,4 +1,4 @@
-"""How the parts of a reply are written for people: in the terminal and in the page alike."""
+"""Texts for parts of replies, in the terminal and on the page."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from semmap.schemas.replies import LoggedCommit
 
 _STILL_M = 0.005
 _NOTED_M = 0.95
-"""From here on a way is told in metres."""
+"""Distances from this value are in metres, shorter ones in centimetres."""
 
 
 def pose_cells(pose: Pose | None) -> tuple[str, str, str, str]:
-    """x, y, z [m] and yaw [degrees]."""
+    """Return x, y, z [m] and yaw [degrees] as texts."""
     if pose is None:
         return ("-", "-", "-", "-")
     x, y, z = (plain(value, 3) for value in pose.position_m)
@@ -25,20 +25,20 @@ def pose_cells(pose: Pose | None) -> tuple[str, str, str, str]:
 
 
 def pose_text(pose: Pose | None) -> str:
-    """A pose in one line."""
+    """Return a pose as one line."""
     return "none" if pose is None else "({}, {}, {}) m, yaw {}°".format(*pose_cells(pose))
 
 
 def provenance_text(p: Provenance) -> str:
-    """Which commit, when, who, why and how sure, in one line."""
+    """Return commit, time, author, reason and confidence as one line."""
     if p.commit == 0:
         return p.reason
-    sure = "" if p.confidence is None else f" (confidence {p.confidence:.2f})"
-    return f"commit {p.commit}, {moment(p.stamp_ns)}, {author(p)}: {p.reason}{sure}"
+    confidence = "" if p.confidence is None else f" (confidence {p.confidence:.2f})"
+    return f"commit {p.commit}, {moment(p.stamp_ns)}, {author(p)}: {p.reason}{confidence}"
 
 
 def author(p: Provenance | Commit | LoggedCommit) -> str:
-    """The source with the agent: `@bob` if a certificate has proved the name, `bob` if it was claimed."""
+    """Return source and agent: `@bob` if a certificate authenticated the name, else `bob`."""
     if not p.agent:
         return p.source
     proved = not isinstance(p, Provenance) and p.authenticated
@@ -46,12 +46,12 @@ def author(p: Provenance | Commit | LoggedCommit) -> str:
 
 
 def moment(stamp_ns: int) -> str:
-    """A time, local, as `--as-of` takes it."""
+    """Return a local time in the format that `--as-of` accepts."""
     return time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(stamp_ns // 1_000_000_000))
 
 
 def changed_in_short(was: Entity, now: Entity) -> str:
-    """What became of an entity, as short as a label is: `moved 1.2 m`; nothing where it is the same."""
+    """Return the change of an entity as a short label, such as `moved 1.2 m`; empty if nothing changed."""
     found = changes.between(was, now)
     if [change.kind for change in found] != ["pose"] or was.pose is None or now.pose is None:
         return changes.in_words(found)
@@ -62,21 +62,21 @@ def changed_in_short(was: Entity, now: Entity) -> str:
 
 
 def plain(value: float, digits: int) -> str:
-    """Rounded, and never minus zero."""
+    """Return a rounded number, never minus zero."""
     return f"{round(value, digits) + 0.0:.{digits}f}"
 
 
 def size_text(e: Entity) -> str:
-    """Extent along its own axes [m], to three digits; nothing where it is not known."""
+    """Return the size along the object's axes [m] with three digits; empty if unknown."""
     extents = e.size_m or ()
     return " x ".join(f"{extent:.3g}" if extent < 100 else f"{extent:.0f}" for extent in extents)
 
 
 def labelled(name: str, label: str) -> str:
-    """A name with its label, where that says more: `isOpen (is open)`."""
+    """Return a name with its label, if that differs: `isOpen (is open)`."""
     return f"{name} ({label})" if label and label != name else name
 
 
 def english(labels: Mapping[str, str]) -> str:
-    """The English label, or one without a language, or else any."""
+    """Return the English label, else one without a language, else any."""
     return labels.get("en") or labels.get("") or next(iter(labels.values()), "")

@@ -1,4 +1,4 @@
-"""Plans of ROS's map server as files: a YAML file, and the image that it names."""
+"""Plan files of the ROS map server: a YAML file and its image."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 
 def is_plan(path: Path) -> bool:
-    """Whether a file is the description of a plan, by its name."""
+    """Return whether a file is a plan, by its suffix."""
     return path.suffix.lower() in (".yaml", ".yml")
 
 
 def read_plan(path: Path) -> LoadedPlan:
-    """The rooms and doors of a plan, told by its YAML file. Raises BadFile."""
+    """Return the rooms and doors of a plan, from its YAML file. Raises BadFile."""
     extras.require("a plan", "sim")
     from semmap.nodes.navigation.loaded_plan import loaded_plan
     from semmap.nodes.navigation.map_server import read_image, read_yaml
@@ -29,9 +29,9 @@ def read_plan(path: Path) -> LoadedPlan:
     try:
         text = read_file(path).decode()
     except UnicodeDecodeError:
-        raise errors.BadFile(f"{path.name} is not a text in UTF-8") from None
+        raise errors.BadFile(f"{path.name} is not a UTF-8 text file") from None
     described = read_yaml(text, path.name)
-    image = path.parent / described.image  # one that is absolute stays so
+    image = path.parent / described.image  # an absolute path stays absolute
     if not image.is_file():
         raise errors.BadFile(f"the image of {path.name} is missing: there is no file {image}")
     return loaded_plan(described, read_image(read_file(image), image.name, _png), path.name)
@@ -47,7 +47,9 @@ def _png(content: bytes) -> Pixels:
         with Image.open(io.BytesIO(content)) as picture:
             width, height = picture.size
             if width * height > MOST_CELLS:
-                raise errors.BadFile(f"the image is {width} x {height}; it has at most {MOST_CELLS:,} pixels")
+                raise errors.BadFile(
+                    f"the image has {width} x {height} pixels; the maximum is {MOST_CELLS:,} pixels"
+                )
             return np.asarray(picture.convert("L"), dtype=np.uint8)
     except (OSError, SyntaxError, ValueError) as error:
-        raise errors.BadFile(f"the image is not a PNG file that can be read: {error}") from None
+        raise errors.BadFile(f"the image is not a readable PNG file: {error}") from None

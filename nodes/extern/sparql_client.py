@@ -1,4 +1,4 @@
-"""A standing query on the client's side: its rows, and what appears and disappears from then on."""
+"""The client of a standing query: its rows, and the rows that appear and disappear."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _ASK_S = 200.0
 
 
 class StandingQuery:
-    """The rows of a query as they are, and news of them; use `Client.watch`.
+    """The rows of a query, and their changes. It is returned by `Client.watch`.
 
-    `changes` waits for the news and renews the lease meanwhile; when the knowledge base was restarted, it
-    asks again and tells what changed in between, too.
+    `changes` waits for changes and renews the lease. After a restart of the knowledge base, it runs the query
+    again and returns the difference.
     """
 
     def __init__(self, session: bus.Session, ask: Callable[..., Any], wanted: commands.Watch) -> None:
-        """`ask(verb, command, kind)` asks the system. Raises BadRequest, Refused for nothing to watch."""
+        """Start the query; `ask(verb, command, type)` sends requests. Raises BadRequest, Refused."""
         self._ask = ask
         self._name = f"q{uuid.uuid4().hex[:12]}"
         self._command = structs.replace(wanted, watch=self._name, lease=_LEASE_S)
@@ -48,9 +48,10 @@ class StandingQuery:
         self.notes = self._seen.notes
 
     def changes(self, *, timeout: float | None = None) -> Iterator[RowsChanged]:
-        """The news, in order, until it is closed.
+        """Iterate over the changes, in order, until the query is closed.
 
-        Raises Refused when the query had to be cancelled, NoAnswer when `timeout` seconds have brought none.
+        Raises Refused if the system cancelled the query, and NoAnswer after `timeout` seconds without a
+        change.
         """
         rows, seq = Counter(self.rows), self.seq
         renew_at = time.monotonic() + _RENEW_S
@@ -71,7 +72,7 @@ class StandingQuery:
                 if not news.appeared and not news.disappeared:
                     seq = again.seq
                     continue
-                seq = min(seq, again.seq - 1)  # another map's numbers may be lower
+                seq = min(seq, again.seq - 1)  # the numbers of another map may be lower
             if news.error:
                 raise errors.Refused(news.error)
             if news.seq <= seq:
@@ -82,7 +83,7 @@ class StandingQuery:
             end_at = time.monotonic() + patience_s
 
     def close(self) -> None:
-        """End it; whoever waits for news on another thread gets no more."""
+        """End the query. An iteration over `changes` on another thread ends, too."""
         self._subscriber.undeclare()
         self._news.put(None)
         with contextlib.suppress(errors.SemmapError):
@@ -94,13 +95,13 @@ class StandingQuery:
         return watching
 
     def _renew(self) -> Watching | None:
-        """Renew the lease; returns the present rows if the query had ended and was started again."""
+        """Renew the lease. Returns the current rows if the query had ended and was started again."""
         try:
             self._ask("renew", commands.Renew(watch=self._name), replies.Done)
         except errors.UnknownName:
             return self._watch()
         except errors.NoAnswer:
-            pass  # it may come back, and the lease lasts for several times
+            pass  # the next renewal may succeed before the lease expires
         return None
 
 

@@ -1,4 +1,4 @@
-"""A private system for the tests of programs that talk to semmap."""
+"""A private system for tests of programs that use semmap."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from semmap.nodes.extern.client import Client, connect
 from semmap.schemas import errors
 
 _READY = "stop "
-"""How the last line of the greeting begins."""
+"""The beginning of the last line that `semmap up` prints at its start."""
 _END_S = 60.0
-"""Seconds: longer than a system takes to stop; one that has not is killed, and its nodes end after it."""
+"""Timeout of the stop [s]; then the supervisor is killed, and its nodes end after it."""
 _FIRST_PORT, _AFTER_PORTS = 20_000, 32_000
 _dice = random.SystemRandom()
 
@@ -26,10 +26,11 @@ _dice = random.SystemRandom()
 def own_system(
     data: Path, *words: str, endpoint: str | None = None, identity: str | None = None
 ) -> Iterator[Client]:
-    """A client of `semmap up --data DATA WORDS...`, which is stopped at the end.
+    """Start `semmap up --data DATA WORDS...`, yield a client, and stop the system at the end.
 
-    It listens at `endpoint`, or else on a free port of this machine; with `--secure` among the words,
-    `identity` is the client's. Raises RuntimeError, with what it printed, when it does not start.
+    The system listens at `endpoint`, or on a free port of this machine. With `--secure` in `words`,
+    `identity` is that of the client. Raises RuntimeError, with the output of the system, if it does not
+    start.
     """
     endpoint = endpoint or free_endpoint()
     up = [str(Path(sys.executable).with_name("semmap")), "up", "--data", str(data), "--listen", endpoint]
@@ -39,14 +40,14 @@ def own_system(
         try:
             if process.stdout is None:
                 raise errors.InternalError("the output of the system is not a pipe")
-            said = []
+            printed = []
             for line in process.stdout:
-                said.append(line)
+                printed.append(line)
                 if line.startswith(_READY):
                     break
             else:
-                raise RuntimeError("the system did not start:\n" + "".join(said))
-            threading.Thread(target=process.stdout.read, daemon=True).start()  # or a full pipe would stop it
+                raise RuntimeError("the system did not start:\n" + "".join(printed))
+            threading.Thread(target=process.stdout.read, daemon=True).start()  # a full pipe would block it
             with connect(endpoint, identity=identity) as client:
                 yield client
         finally:
@@ -58,10 +59,10 @@ def own_system(
 
 
 def free_endpoint() -> str:
-    """A port of this machine that nobody uses just now.
+    """Return an endpoint with a free port of this machine.
 
-    It is none of those that the operating system gives to outgoing connections, one of which might have it
-    before a system listens there.
+    The port is outside the range of outgoing connections, so that none of them takes it before a system
+    listens there.
     """
     while True:
         port = _dice.randrange(_FIRST_PORT, _AFTER_PORTS)

@@ -1,7 +1,7 @@
 """Codecs for the zenoh CLI: `zenoh put --encoder msgpack`, `zenoh get --decoder msgpack`.
 
-A value is JSON on the command line and MessagePack on the wire, which is plain: any library reads and writes
-it, and here that is `msgpack`, not the one that the nodes use.
+A value is JSON on the command line and MessagePack on the wire. The package `msgpack` is used instead of the
+library of the nodes, which shows that any MessagePack library is compatible.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ import msgpack
 
 
 def encode(key: str, value: str) -> bytes:
-    """JSON text as MessagePack. Raises ValueError when `value` is not JSON."""
+    """Convert JSON text to MessagePack. Raises ValueError if `value` is not JSON."""
     packed: bytes = msgpack.packb(json.loads(value))
     return packed
 
 
 def decode(key: str, value: bytes) -> str:
-    """MessagePack (or JSON, which some replies are) as JSON text on one line; bytes become base64."""
+    """Convert MessagePack or JSON to JSON text on one line, with bytes as base64."""
     if not value:
         return ""
     if value.lstrip()[:1] in (b"{", b"["):

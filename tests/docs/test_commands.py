@@ -14,7 +14,7 @@ from pathlib import Path
 import click
 import pytest
 
-from semmap.nodes.extern.cli.all_verbs import app
+from semmap.nodes.extern.cli.all_commands import app
 from semmap.nodes.extern.cli.app import execute
 from semmap.ontology import FLAT_TTL
 from tests.conftest import until

@@ -47,7 +47,7 @@ def test_a_commit_that_does_not_come_is_waited_for_so_long():
         publish(3)
         publish(4)
         assert next(commits).seq == 4
-        with pytest.raises(errors.NoAnswer, match=r"no commit came within 0\.5 s"):
+        with pytest.raises(errors.NoAnswer, match=r"no commit received within 0\.5 s"):
             next(commits)
 
 

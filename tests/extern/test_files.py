@@ -32,5 +32,5 @@ def test_a_map_of_labels(tmp_path):
     file.write_text('{"coffee mug": "Cup"}')
     assert files.read_label_map(file) == {"coffee mug": "Cup"}
     file.write_text("[]")
-    with pytest.raises(errors.BadFile, match="no map of labels"):
+    with pytest.raises(errors.BadFile, match="not a JSON object of labels"):
         files.read_label_map(file)

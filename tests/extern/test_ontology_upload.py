@@ -1,6 +1,6 @@
 import pytest
 
-from semmap.nodes.extern.client_verbs import Verbs
+from semmap.nodes.extern.client_commands import CommandMethods
 from semmap.nodes.extern.ontology_upload import ontology
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.runtime import extras
@@ -48,7 +48,7 @@ def test_a_client_alone_sends_the_file(file, tmp_path, monkeypatch):
 
 
 def test_imports_are_for_tboxes(file):
-    class Client(Verbs):
+    class Client(CommandMethods):
         def request(self, make, read=None):
             return make()
 

@@ -44,7 +44,7 @@ def test_beyond_this_machine_it_takes_certificates(starting, capsys, listen):
     assert execute(["up", "--listen", listen]) == 2
     assert "--secure DIR" in capsys.readouterr().err
     assert execute(["up", "--listen", listen, "--insecure"]) == 0
-    assert "may read and change the map" in capsys.readouterr().err
+    assert "can read and change the map" in capsys.readouterr().err
     assert [settings.listen for settings in starting] == [listen]
 
 
@@ -86,7 +86,7 @@ def test_what_the_certificate_is_not_for_is_told(starting, keys, capsys):
 
 def test_what_does_not_go_together_is_told(starting, keys, capsys):
     assert execute(["up", "--secure", str(keys), "--insecure"]) == 2
-    assert "either --secure or --insecure" in capsys.readouterr().err
+    assert "--secure and --insecure exclude each other" in capsys.readouterr().err
 
 
 def test_a_folder_without_keys_is_told(starting, tmp_path, capsys):

@@ -82,7 +82,7 @@ def test_a_live_register_sees_what_is_added_and_revoked(folder):
 def test_to_show_a_certificate_and_to_run_a_system_takes_no_library(folder):
     program = (
         "import sys; sys.modules['cryptography'] = None\n"
-        "import semmap.nodes.extern.cli.verbs.lifecycle, semmap.nodes.extern.client\n"
+        "import semmap.nodes.extern.cli.commands.lifecycle, semmap.nodes.extern.client\n"
         "import semmap.nodes.coordinator.node, semmap.nodes.router.node\n"
         "from semmap.nodes.identity import Identity\n"
         f"print(Identity.read({str(folder / 'vera')!r}).role)\n"

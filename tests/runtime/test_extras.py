@@ -160,7 +160,7 @@ for module in {m for modules in extras.MODULES.values() for m in modules}:
 
 import semmap, semmap.aio, semmap.commands, semmap.reasoner, semmap.testing, semmap.wire
 from semmap.nodes.extern import zenoh_codec
-from semmap.nodes.extern.cli.all_verbs import app
+from semmap.nodes.extern.cli.all_commands import app
 from semmap.nodes.extern.cli.app import execute
 
 for verb in app.list_commands(None):

@@ -89,7 +89,7 @@ def test_commits_are_iterated(endpoint):
 def test_a_commit_that_does_not_come_is_waited_for_so_long(endpoint):
     async def main():
         async with aio.connect(endpoint) as client, client.commits(timeout=0.2) as commits:
-            with pytest.raises(semmap.NoAnswer, match=r"no commit came within 0\.2 s"):
+            with pytest.raises(semmap.NoAnswer, match=r"no commit received within 0\.2 s"):
                 await anext(commits)
 
     run(main())

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import semmap
-from semmap.nodes.extern.client_verbs import Verb, Verbs
+from semmap.nodes.extern.client_commands import CommandMethod, CommandMethods
 from semmap.nodes.runtime import extras
 
 ROOT = Path(__file__).parents[2]
@@ -51,9 +51,9 @@ def test_the_reasoner_s_example_runs(capsys):
     assert "every urn:Cup is an urn:Dish" in capsys.readouterr().out
 
 
-def test_every_verb_is_named():
-    verbs = {name for name, verb in vars(Verbs).items() if isinstance(verb, Verb)} - {"list_as"}
-    assert verbs <= set(re.findall(r"`(\w+)`", PYTHON))
+def test_every_command_is_named():
+    methods = {name for name, found in vars(CommandMethods).items() if isinstance(found, CommandMethod)}
+    assert methods - {"list_as"} <= set(re.findall(r"`(\w+)`", PYTHON))
 
 
 def test_every_extra_has_a_row():

@@ -1,4 +1,5 @@
-"""The command line: `app.py` is the entry point, `all_verbs.py` lists the verbs.
+"""The command line.
 
-`calling.py` is what the verbs share, `output/` formats replies, `completing.py` completes words in a shell.
+`app.py` is the entry point, `all_commands.py` lists the commands, and `common.py` has their common options.
+`output/` formats replies, and `shell_completion.py` completes words in a shell.
 """

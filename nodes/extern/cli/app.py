@@ -1,6 +1,7 @@
-"""`semmap`: the entry point of the command line.
+"""The entry point of the command line, `semmap`.
 
-It imports what it is made of when it is called, so that Ctrl-C ends it quietly while it still starts, too.
+It imports the commands only when it is called, so that Ctrl-C during the start also ends it without a
+traceback.
 """
 
 from __future__ import annotations
@@ -8,22 +9,22 @@ from __future__ import annotations
 import gc
 import sys
 
-_KEPT = 50_000
-"""Objects that an import makes and keeps: looking for garbage among them finds none."""
+_GC_THRESHOLD = 50_000
+"""Imports create many objects that live on, so frequent garbage collections during the start find nothing."""
 
 
 def main() -> None:
-    """Run the command line; exit with 0 done, 1 refused, 2 bad request, 3 no answer."""
-    gc.set_threshold(_KEPT)
+    """Run the command line and exit with 0 (success), 1 (rejected), 2 (invalid usage) or 3 (no response)."""
+    gc.set_threshold(_GC_THRESHOLD)
     sys.exit(execute(sys.argv[1:]))
 
 
 def execute(arguments: list[str]) -> int:
-    """Run one command line and return its exit status; what is wrong goes to stderr in one line."""
+    """Run one command line and return its exit status. An error is printed to stderr in one line."""
     try:
-        from semmap.nodes.extern.cli.all_verbs import app
-        from semmap.nodes.extern.cli.calling import run_words
+        from semmap.nodes.extern.cli.all_commands import app
+        from semmap.nodes.extern.cli.common import run_arguments
 
-        return run_words(app, arguments)
+        return run_arguments(app, arguments)
     except KeyboardInterrupt:
         return 130

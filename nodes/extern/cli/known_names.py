@@ -1,4 +1,4 @@
-"""The names that a running system knows, for completion; it is given a moment to answer."""
+"""The names of entities and classes of a running system, for completion, with a short timeout."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from semmap.nodes.supervisor import presence
 from semmap.schemas import commands
 from semmap.schemas.entities import ClassInfo, Entity
 
-_MEET_S = 0.5
+_DISCOVERY_S = 0.5
 _ANSWER_S = 1.0
 
 Named = Iterable[tuple[str, str | None]]
-"""Names, each with what to say of it."""
+"""Names, each with a description."""
 
 
 def _entities(where: str | None) -> Named:
@@ -29,18 +29,20 @@ def _classes(where: str | None) -> Named:
 
 
 KINDS: Mapping[str, Callable[[str | None], Named]] = {"entities": _entities, "classes": _classes}
-"""Each asks the system at an endpoint, or the one that is meant when none is given. They raise NoAnswer."""
+"""Functions that query the system at an endpoint, or the default system. They raise NoAnswer."""
 
 
-def _ask(where: str | None, verb: str, command: Any, kind: Any) -> Any:
+def _ask(where: str | None, verb: str, command: Any, reply_type: Any) -> Any:
     where = where or endpoint(namespace(None))
     here, who = presence.is_loopback(where), identity(None)
     network = bus.Network(
         connect=(where if who is None else bus.over_tls(where),),
         namespace=namespace(None, where),
-        patience_s=0.0 if here else _MEET_S,
+        patience_s=0.0 if here else _DISCOVERY_S,
         identity=who,
     )
     with bus.open_session(network) as session:
         prefix = network.commands
-        return bus.ask(session, prefix, verb, command, kind, timeout_s=_ANSWER_S, patience_s=_MEET_S)
+        return bus.ask(
+            session, prefix, verb, command, reply_type, timeout_s=_ANSWER_S, patience_s=_DISCOVERY_S
+        )

@@ -1,4 +1,4 @@
-"""The option by which a person says in which file an imported ontology is."""
+"""The options of commands that load ontologies."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class _Import(click.ParamType[tuple[str, Path]]):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[str, Path]:
-        """`IRI=FILE` as a pair. An IRI may have a `=`, too: what follows one and is a file counts."""
+        """Return `IRI=FILE` as a pair. The IRI may contain `=`: it ends before the first existing file."""
         if isinstance(value, tuple):
             iri, file = value
             return iri, file
@@ -30,23 +30,23 @@ class _Import(click.ParamType[tuple[str, Path]]):
 
 
 def spatial_root_option(function: Callable[..., Any]) -> Callable[..., Any]:
-    """`--spatial-root CLASS`, which may be repeated: the function gets the words as `spatial_root`."""
+    """Add `--spatial-root CLASS`, which may be repeated, as the parameter `spatial_root`."""
     return click.option(
         "--spatial-root",
         "spatial_root",
         multiple=True,
         metavar="CLASS",
-        help="A class (IRI or name) whose instances are things in space; may be repeated.",
+        help="Class (IRI or name) whose instances have a position; may be repeated.",
     )(function)
 
 
 def import_option(function: Callable[..., Any]) -> Callable[..., Any]:
-    """`--import IRI=FILE`, which may be repeated: the function gets the pairs as `imports`."""
+    """Add `--import IRI=FILE`, which may be repeated, as the pairs in the parameter `imports`."""
     return click.option(
         "--import",
         "imports",
         multiple=True,
         type=_Import(),
         metavar="IRI=FILE",
-        help="Where an imported ontology is, unless a catalogue or a file beside says; may be repeated.",
+        help="File of an imported ontology, if no catalogue or neighbouring file has it; may be repeated.",
     )(function)

@@ -1,1 +1,1 @@
-"""More than one robot: asked together, and mirrored into one SPARQL server."""
+"""Several robots: joint queries, and mirroring to a SPARQL server."""

@@ -1,11 +1,11 @@
-"""Several robots asked together, each with the commit that its answer is about.
+"""Joint queries to several robots. Each reply includes the commit that it refers to.
 
     with robots("arm*") as found:
         for answer in found.list("Cup"):
             print(answer.robot, answer.commit, answer.value)
 
-A robot is a system with a namespace (`semmap up --namespace`). Which there are their liveliness tokens tell,
-and each is asked over a session of its own in its namespace, so that a robot is asked like any other system.
+A robot is a system with a namespace (`semmap up --namespace`). Robots are discovered by their liveliness
+tokens. Each one is queried over a separate session in its namespace, like any other system.
 """
 
 from __future__ import annotations
@@ -34,28 +34,29 @@ from semmap.schemas.sparql import SparqlResult
 R = TypeVar("R")
 
 ANSWER_S: Final = 10.0
-"""Seconds: a robot that takes longer to say how it is does not answer."""
+"""The timeout of a status request to a robot [s]."""
 _AT_ONCE: Final = 32
 _GLOB: Final = re.compile(r"[*?\[]")
 
 
 class Robots:
-    """The robots that match a pattern, by name; each question goes to all of them at once."""
+    """The robots that match a pattern, by name. Each request is sent to all of them at the same time."""
 
     def __init__(self, clients: dict[str, Client], missing: Sequence[Answer[Any]]) -> None:
-        """`missing` is said of those that cannot be asked."""
+        """Store the clients, and the errors of robots that are `missing`."""
         self.clients = clients
         self._missing = tuple(missing)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Those that are there."""
+        """The names of the available robots."""
         return tuple(self.clients)
 
     def each(self, ask: Callable[[Client], tuple[int | None, R]]) -> tuple[Answer[R], ...]:
-        """What `ask(client)` returns of each robot: the commit that it is about, and the reply.
+        """Call `ask(client)` for each robot; it returns a commit and a reply.
 
-        In the order of their names; with an error of each that does not answer, or refuses.
+        Returns the replies in the order of the names, with the error of each robot that does not respond or
+        rejects the request.
         """
 
         def answer(robot: str) -> Answer[R]:
@@ -70,7 +71,7 @@ class Robots:
         return tuple(sorted([*answers, *self._missing], key=lambda one: one.robot))
 
     def status(self) -> tuple[Answer[SystemStatus], ...]:
-        """How each of them is."""
+        """Return the status of each robot."""
 
         def ask(client: Client) -> tuple[int, SystemStatus]:
             status = client.send(Status(), timeout_s=ANSWER_S)
@@ -81,47 +82,49 @@ class Robots:
     def list(
         self, class_: str | None = None, *, as_of: When | None = None, **where: Any
     ) -> tuple[Answer[tuple[Entity, ...]], ...]:
-        """The entities of each; see `Client.list`."""
-        return self.each(_at_one_commit(lambda client, then: client.list(class_, as_of=then, **where), as_of))
+        """Return the entities of each robot; see `Client.list`."""
+        return self.each(
+            _read_at_one_commit(lambda client, then: client.list(class_, as_of=then, **where), as_of)
+        )
 
     def get(
         self, name: str, *, where: bool = False, as_of: When | None = None
     ) -> tuple[Answer[Entity | Described], ...]:
-        """The entity of that name of each; UnknownName of those that have none."""
+        """Return the entity with this name of each robot, or the error UnknownName."""
         return self.each(
-            _at_one_commit(lambda client, then: client.get(name, where=where, as_of=then), as_of)
+            _read_at_one_commit(lambda client, then: client.get(name, where=where, as_of=then), as_of)
         )
 
     def sparql(self, query: str, **options: Any) -> tuple[Answer[SparqlResult], ...]:
-        """The rows of each; see `Client.sparql`."""
+        """Return the rows of each robot; see `Client.sparql`."""
 
         def ask(client: Client) -> tuple[int, SparqlResult]:
-            _now(client)
+            _current_commit(client)
             result = client.sparql(query, **options)
             return result.seq, result
 
         return self.each(ask)
 
 
-def _now(client: Client) -> int:
-    """The number of its last commit. Raises NoAnswer soon."""
+def _current_commit(client: Client) -> int:
+    """Return the number of the last commit. Raises NoAnswer."""
     return client.send(Status(), timeout_s=ANSWER_S).commit
 
 
-def _at_one_commit(
+def _read_at_one_commit(
     ask: Callable[[Client, When | None], R], as_of: When | None
 ) -> Callable[[Client], tuple[int | None, R]]:
-    """Of a question whose reply does not say which commit it is about.
+    """Add the commit to a query whose reply does not include it.
 
-    Where one came meanwhile, it is asked again about the map as it was before.
+    If there was a commit during the query, the query is repeated for the commit before.
     """
 
     def answer(client: Client) -> tuple[int | None, R]:
-        before = _now(client)
+        before = _current_commit(client)
         reply = ask(client, as_of)
         if as_of is not None:
             return (as_of if isinstance(as_of, int) and as_of <= before else None), reply
-        return before, reply if _now(client) == before else ask(client, before)
+        return before, reply if _current_commit(client) == before else ask(client, before)
 
     return answer
 
@@ -134,29 +137,29 @@ def robots(
     identity_: str | None = None,
     agent: str = "",
 ) -> Iterator[Robots]:
-    """The robots whose names match `pattern`: names with `*`, `?` and `[...]`, several separated by commas.
+    """Connect to the robots whose names match `pattern`, which may contain `*`, `?`, `[...]` and commas.
 
-    `where` are the endpoints at which they are reached; by default those of `SEMMAP_CONNECT`, or of all
-    systems that this user runs on this machine. Names without wildcards that are not there are answered for
-    with an error. Raises NoAnswer when there is no robot at all.
+    `where` are their endpoints: by default those in `SEMMAP_CONNECT`, or all systems that this user runs on
+    this machine. A name without wildcards that is not found has an error in each reply. Raises NoAnswer if no
+    robot is found.
     """
-    patterns = words(pattern)
+    patterns = split_names(pattern)
     who = identity(identity_)
     missing: list[Answer[Any]] = []
     with contextlib.ExitStack() as stack:
         places: dict[str, str] = {}
         for place in endpoints(where):
             try:
-                for name in _there(place, who):
+                for name in _discover_robots(place, who):
                     places.setdefault(name, place)
             except errors.NoAnswer as error:
                 missing.append(Answer(robot=f"at {place}", error=errors.to_message(error)))
         wanted = sorted(name for name in places if any(fnmatchcase(name, one) for one in patterns))
         for name in patterns:
             if not _GLOB.search(name) and name not in places:
-                missing.append(_not_there(name, places))
+                missing.append(_missing_robot(name, places))
         if not wanted and not missing:
-            raise errors.NoAnswer(f"no robot matches {', '.join(patterns)}; {_which(places)}")
+            raise errors.NoAnswer(f"no robot matches {', '.join(patterns)}; {_available(places)}")
         clients = {}
         for name in wanted:
             session = stack.enter_context(open_session(places[name], name, who, mode="client"))
@@ -164,44 +167,41 @@ def robots(
         yield Robots(clients, missing)
 
 
-def robots_there(where: str | None, identity_: str | None) -> tuple[str, ...]:
-    """The names of the robots that are reached at an endpoint, or at all that could be meant.
-
-    Raises NoAnswer, BadFile.
-    """
+def robot_names(where: str | None, identity_: str | None) -> tuple[str, ...]:
+    """Return the names of the robots at an endpoint or the default endpoints. Raises NoAnswer, BadFile."""
     who = identity(identity_)
-    return tuple(dict.fromkeys(name for place in endpoints(where) for name in _there(place, who)))
+    return tuple(dict.fromkeys(name for place in endpoints(where) for name in _discover_robots(place, who)))
 
 
-def _there(place: str, who: Identity | None) -> dict[str, frozenset[str]]:
-    """The robots that are reached at an endpoint. Raises NoAnswer."""
+def _discover_robots(place: str, who: Identity | None) -> dict[str, frozenset[str]]:
+    """Return the robots at an endpoint. Raises NoAnswer."""
     with open_session(place, "", who, mode="client") as session:
         return bus.robots(session)
 
 
 def endpoints(where: str | Sequence[str] | None) -> tuple[str, ...]:
-    """Those that are given, or of the system that is meant, or of all that this user runs here."""
+    """Return the endpoints in `where`, or the default endpoint, or those of all local systems."""
     if where:
-        return words(where)
+        return split_names(where)
     try:
-        return words(endpoint())
-    except errors.BadRequest:  # it could be any of several: all of them, then
+        return split_names(endpoint())
+    except errors.BadRequest:  # there are several systems: use all of them
         return tuple(dict.fromkeys(system.reachable for system in registry.systems()))
 
 
-def words(text: str | Sequence[str]) -> tuple[str, ...]:
-    """Several, separated by commas."""
-    said = text.split(",") if isinstance(text, str) else text
-    return tuple(word.strip() for word in said if word.strip())
+def split_names(text: str | Sequence[str]) -> tuple[str, ...]:
+    """Split a comma-separated list of names."""
+    names = text.split(",") if isinstance(text, str) else text
+    return tuple(name.strip() for name in names if name.strip())
 
 
-def _not_there(name: str, others: Sequence[str] | dict[str, str]) -> Answer[Any]:
-    error = errors.NoAnswer(f"no node of {name} is there; {_which(others)}")
+def _missing_robot(name: str, others: Sequence[str] | dict[str, str]) -> Answer[Any]:
+    error = errors.NoAnswer(f"robot {name} not found; {_available(others)}")
     return Answer(robot=name, error=errors.to_message(error))
 
 
-def _which(names: Sequence[str] | dict[str, str]) -> str:
+def _available(names: Sequence[str] | dict[str, str]) -> str:
     named = sorted(name for name in names if name)
     if named:
-        return f"there are: {', '.join(named)}"
-    return "a system is there, but it has no namespace" if "" in names else "none is there"
+        return f"available robots: {', '.join(named)}"
+    return "the system found has no namespace" if "" in names else "no robots found"

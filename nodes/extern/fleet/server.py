@@ -1,4 +1,4 @@
-"""A SPARQL 1.1 server, spoken to by the SPARQL 1.1 Protocol over one connection that is kept."""
+"""A client of a SPARQL 1.1 server, which uses the SPARQL 1.1 Protocol over a persistent connection."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from semmap.schemas.sparql import Row, SparqlResult
 TIMEOUT_S: Final = 30.0
 _RESULTS: Final = "application/sparql-results+json"
 _LONGEST: Final = 300
-_SPENT: Final = (ConnectionError, HTTPException)
-"""What becomes of a kept connection that the server has closed meanwhile."""
+_CLOSED: Final = (ConnectionError, HTTPException)
+"""The errors of a persistent connection that the server has closed."""
 
 
 class _Answer(NamedTuple):
@@ -30,13 +30,13 @@ class SparqlServer:
     """The update or the query endpoint of a server. Owned by one thread."""
 
     def __init__(self, url: str, *, timeout_s: float = TIMEOUT_S) -> None:
-        """Raises BadRequest for what is no URL of HTTP; user and password may be in it."""
+        """Raise BadRequest unless `url` is an HTTP URL; it may include a user and a password."""
         try:
             parts = urlsplit(url)
-            sound = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
+            is_valid = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
         except ValueError:
-            sound = False
-        if not sound:
+            is_valid = False
+        if not is_valid:
             raise errors.BadRequest(
                 f"'{url}' is not the URL of a SPARQL server; example: http://127.0.0.1:7878/update"
             )
@@ -45,24 +45,24 @@ class SparqlServer:
         self._path = (parts.path or "/") + (f"?{parts.query}" if parts.query else "")
         at = self._host if parts.port is None else f"{self._host}:{parts.port}"
         self.url = f"{parts.scheme}://{at}{self._path}"
-        """Without user and password."""
+        """The URL without user and password."""
         self._headers = {"User-Agent": "semmap"}
         if parts.username is not None:
-            said = f"{unquote(parts.username)}:{unquote(parts.password or '')}"
-            self._headers["Authorization"] = f"Basic {base64.b64encode(said.encode()).decode()}"
+            user = f"{unquote(parts.username)}:{unquote(parts.password or '')}"
+            self._headers["Authorization"] = f"Basic {base64.b64encode(user.encode()).decode()}"
         self._timeout_s = timeout_s
         self._connection: HTTPConnection | None = None
 
     def update(self, operations: Sequence[str]) -> None:
-        """Carry out operations in one request.
+        """Execute operations in one request.
 
-        Raises BadRequest for what the server finds wrong with it, Refused when it wants to know who asks or
-        does not know the URL, and NoAnswer for a server that is down, slow or in trouble.
+        Raises BadRequest if the server rejects the request, Refused for missing permissions or a wrong URL,
+        and NoAnswer if the server is down, slow or reports an internal error.
         """
         self._send(";\n".join(operations).encode(), "application/sparql-update", "*/*")
 
     def query(self, query: str, *, default: Sequence[str] = (), named: Sequence[str] = ()) -> SparqlResult:
-        """The rows or the verdict; of `default` graphs, or else of the server's own. Raises as `update`."""
+        """Return the result of a query on the `default` and `named` graphs. Raises as `update`."""
         fields = [("query", query)]
         fields += [("default-graph-uri", graph) for graph in default]
         fields += [("named-graph-uri", graph) for graph in named]
@@ -70,7 +70,7 @@ class SparqlServer:
         return _result(self._send(body, "application/x-www-form-urlencoded", _RESULTS), self.url)
 
     def close(self) -> None:
-        """Hang up."""
+        """Close the connection."""
         if self._connection is not None:
             self._connection.close()
             self._connection = None
@@ -81,32 +81,32 @@ class SparqlServer:
             answer = self._exchange(body, headers)
         except TimeoutError:
             self.close()
-            raise errors.NoAnswer(f"{self.url} did not answer within {self._timeout_s:g} s") from None
+            raise errors.NoAnswer(f"no response from {self.url} within {self._timeout_s:g} s") from None
         except (OSError, HTTPException) as error:
             self.close()
             reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
-            raise errors.NoAnswer(f"no SPARQL server answers at {self.url}: {reason}") from None
+            raise errors.NoAnswer(f"no response from the SPARQL server at {self.url}: {reason}") from None
         if 200 <= answer.status < 300:
             return answer.body
-        raise self._refusal(answer)
+        raise self._error(answer)
 
     def _exchange(self, body: bytes, headers: dict[str, str]) -> _Answer:
-        """Send and receive; over a new connection where the kept one turns out to be closed."""
+        """Send a request and receive the response, over a new connection if the current one is closed."""
         kept = self._connection is not None
         try:
-            return self._exchange_over(self._opened(), body, headers)
-        except _SPENT:
+            return self._exchange_over(self._open(), body, headers)
+        except _CLOSED:
             self.close()
             if not kept:
                 raise
-            return self._exchange_over(self._opened(), body, headers)
+            return self._exchange_over(self._open(), body, headers)
 
     def _exchange_over(self, connection: HTTPConnection, body: bytes, headers: dict[str, str]) -> _Answer:
         connection.request("POST", self._path, body, headers)
         response = connection.getresponse()
         return _Answer(response.status, response.read())
 
-    def _opened(self) -> HTTPConnection:
+    def _open(self) -> HTTPConnection:
         if self._connection is None:
             if self._is_tls:
                 context = ssl.create_default_context()
@@ -117,21 +117,21 @@ class SparqlServer:
                 self._connection = HTTPConnection(self._host, self._port, timeout=self._timeout_s)
         return self._connection
 
-    def _refusal(self, answer: _Answer) -> errors.SemmapError:
-        said = " ".join(answer.body.decode(errors="replace").split())[:_LONGEST]
+    def _error(self, answer: _Answer) -> errors.SemmapError:
+        text = " ".join(answer.body.decode(errors="replace").split())[:_LONGEST]
         if answer.status in (401, 403):
             return errors.Refused(
-                f"{self.url} does not let this program in ({answer.status}); give a user and a password"
-                " in the URL: http://USER:PASSWORD@HOST/..."
+                f"{self.url}: access denied ({answer.status}); add user and password to the URL:"
+                " http://USER:PASSWORD@HOST/..."
             )
         if answer.status in (404, 405):
             return errors.Refused(
-                f"there is no SPARQL endpoint at {self.url} ({answer.status}); Oxigraph's are /update and"
-                " /query, Virtuoso's is /sparql"
+                f"there is no SPARQL endpoint at {self.url} ({answer.status}); Oxigraph uses /update and"
+                " /query, Virtuoso uses /sparql"
             )
         if answer.status in (400, 413, 415, 422):
-            return errors.BadRequest(f"{self.url} does not take the request ({answer.status}): {said}")
-        return errors.NoAnswer(f"{self.url} is in trouble ({answer.status}): {said or 'it does not say why'}")
+            return errors.BadRequest(f"{self.url} rejected the request ({answer.status}): {text}")
+        return errors.NoAnswer(f"{self.url}: server error ({answer.status}): {text or 'no details'}")
 
 
 def _result(body: bytes, url: str) -> SparqlResult:
@@ -149,13 +149,13 @@ def _result(body: bytes, url: str) -> SparqlResult:
         )
     except (ValueError, KeyError, TypeError, AttributeError):
         raise errors.NoAnswer(
-            f"{url} does not answer with results of SPARQL in JSON; is it the query endpoint?"
+            f"{url} does not return SPARQL results in JSON; check that it is the query endpoint"
         ) from None
     return SparqlResult(kind="select", variables=variables, rows=rows, seq=0)
 
 
 def _term(value: Any) -> Term | None:
-    """As N-Triples."""
+    """Return a term of a JSON result in the syntax of N-Triples."""
     if value is None:
         return None
     content = str(value["value"])
@@ -171,6 +171,6 @@ def _term(value: Any) -> Term | None:
 
 
 _ASKED_OF_VIRTUOSO: Final = "__ASK_RETVAL"
-"""Virtuoso 7 answers an ASK with a row."""
+"""The variable in the reply of Virtuoso 7 to an ASK query, which is a row."""
 _STRING: Final = "http://www.w3.org/2001/XMLSchema#string"
 _ESCAPED: Final = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n", "\r": r"\r"})

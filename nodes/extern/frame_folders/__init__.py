@@ -1,1 +1,1 @@
-"""Recordings of depth cameras as folders of frames, which `semmap perceive --frames` reads."""
+"""Conversion of recordings of depth cameras to frame folders, which `semmap perceive --frames` reads."""

@@ -1,4 +1,4 @@
-"""Messages in rosbags and MCAP files of ROS 1 and 2, whichever tool wrote them."""
+"""Messages in rosbags and MCAP files of ROS 1 and 2."""
 
 from __future__ import annotations
 
@@ -22,33 +22,33 @@ _PARSERS: Final[dict[str, Callable[[str, str], Any]]] = {
     "ros2idl": lambda text, _: get_types_from_idl(text),
 }
 Message = tuple[str, Any]
-"""A topic, and what was said on it."""
+"""A topic and a message."""
 Reader = Callable[[Collection[str]], Iterator[Message]]
-"""The messages of topics."""
+"""A function that returns the messages of topics."""
 
 
 class Bag:
-    """A recording of topics. Made by `opened`."""
+    """A recording of topics, opened by `open_bag`."""
 
     def __init__(self, path: Path, types: dict[str, str], messages: Reader) -> None:
-        """`types`: of each topic, as `sensor_msgs/msg/Image`."""
+        """`types` are the message types by topic, such as `sensor_msgs/msg/Image`."""
         self.types = types
         self._path, self._messages = path, messages
 
     def messages(self, topics: Collection[str]) -> Iterator[Message]:
-        """Those of some topics, in the order in which they were recorded. Raises BadFile."""
+        """Yield the messages of some topics in the order of the recording. Raises BadFile."""
         with _readable(self._path):
             yield from self._messages(topics)
 
 
 def is_bag(path: Path) -> bool:
-    """Whether it is called so, or is a folder of rosbag2."""
+    """Return whether a path is a bag, by its suffix, or a rosbag2 folder."""
     return path.suffix.lower() in SUFFIXES or (path / "metadata.yaml").exists()
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[Bag]:
-    """A recording to read from. Raises BadFile for one that is none, that is damaged, or was never closed."""
+def open_bag(path: Path) -> Iterator[Bag]:
+    """Open a recording. Raises BadFile if it is not a recording, is damaged, or was not closed."""
     with ExitStack() as stack:
         with _readable(path):
             bag = _mcap(path, stack) if path.suffix.lower() == ".mcap" else _rosbag(path, stack)
@@ -63,9 +63,9 @@ def _readable(path: Path) -> Iterator[None]:
         raise
     except OSError as error:
         raise BadFile(f"{path} cannot be read: {error.strerror or error}") from None
-    except Exception as error:  # of rosbags, mcap or what these read with: it is no whole recording
-        said = " ".join(str(error).split()) or type(error).__name__
-        raise BadFile(f"{path} is damaged, cut off, or was not closed by its recorder: {said}") from None
+    except Exception as error:  # rosbags and mcap raise many types for incomplete recordings
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise BadFile(f"{path} is damaged, truncated, or was not closed by its recorder: {reason}") from None
 
 
 def _rosbag(path: Path, stack: ExitStack) -> Bag:
@@ -73,7 +73,7 @@ def _rosbag(path: Path, stack: ExitStack) -> Bag:
 
     def messages(topics: Collection[str]) -> Iterator[Message]:
         wanted = [connection for connection in reader.connections if connection.topic in topics]
-        if not wanted:  # to the reader that would be all
+        if not wanted:  # the reader would return all topics
             return
         for connection, _, raw in reader.messages(wanted):
             yield connection.topic, reader.deserialize(raw, connection.msgtype)
@@ -86,7 +86,7 @@ def _mcap(path: Path, stack: ExitStack) -> Bag:
     reader = make_reader(stack.enter_context(path.open("rb")))
     summary = reader.get_summary()
     if summary is None:
-        raise BadFile(f"{path} is cut off, or was not closed by its recorder: it has no summary")
+        raise BadFile(f"{path} is truncated, or was not closed by its recorder: it has no summary")
     types = get_typestore(Stores.EMPTY)
     for schema in summary.schemas.values():
         if schema.encoding in _PARSERS:
@@ -112,6 +112,6 @@ def _mcap(path: Path, stack: ExitStack) -> Bag:
 
 
 def _type(schema: Schema) -> str:
-    """ROS 1 leaves the middle out."""
+    """Return the type of a schema; ROS 1 omits the middle part `msg`."""
     package, *_, name = schema.name.split("/")
     return f"{package}/msg/{name}" if package != name else name

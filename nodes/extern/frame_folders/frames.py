@@ -1,4 +1,4 @@
-"""A frame of a recording, and its folder."""
+"""The frame of a recording, and its folder."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from semmap.schemas.errors import BadFile, BadRequest, SemmapError
 _MM = 1000.0
 _FARTHEST_MM = 65_535
 _DIGITS = 9
-"""Of the seconds in a folder's name: in the order of names frames are in the order of time."""
+"""The decimals of the seconds in a folder name, so that names are in the order of time."""
 
 
 @dataclass(frozen=True)
 class RecordedFrame:
-    """What a camera saw at one moment, its depth aligned to its colour.
+    """A frame of a camera, with depth aligned to colour.
 
-    `rgb`: (H, W, 3). `depth_m`: (H, W) along the optical axis [m], 0 for nothing. `intrinsics`: (3, 3)
-    [pixel], the corner of the picture at 0. `map_from_camera`: (4, 4) of the optical frame [m], where known.
+    `rgb`: (H, W, 3). `depth_m`: (H, W) along the optical axis [m], 0 for no measurement. `intrinsics`: (3, 3)
+    [pixel], with the corner of the image at 0. `map_from_camera`: (4, 4) of the optical frame [m], if known.
     """
 
     stamp_ns: int
@@ -37,32 +37,31 @@ class RecordedFrame:
 
     @property
     def name(self) -> str:
-        """What its folder is called: when it was taken [s]."""
+        """The name of its folder: the time of the frame [s]."""
         seconds, rest = divmod(self.stamp_ns, 1_000_000_000)
         return f"{seconds:010d}.{rest:0{_DIGITS}d}"
 
 
 @dataclass(frozen=True)
 class Recording:
-    """The frames of a recording, or what is wrong with one; `notes` are for whoever wants them."""
+    """The frames of a recording, or the errors of frames; `notes` are messages for the user."""
 
     count: int
     frames: Iterator[RecordedFrame | SemmapError]
     notes: Sequence[str] = ()
 
 
-def check_unit(depth_m: NDArray[np.float32], scale_m: float) -> None:
-    """Raises BadFile for depth (H, W) [m] that is in another unit, it seems, than `scale_m` metres."""
-    told = units.doubt(depth_m / scale_m, scale_m)
-    if told is not None:
+def require_plausible_unit(depth_m: NDArray[np.float32], scale_m: float) -> None:
+    """Raise BadFile if depth (H, W) [m] seems to be in another unit than `scale_m` metres."""
+    doubt = units.doubt(depth_m / scale_m, scale_m)
+    if doubt is not None:
         raise BadFile(
-            f"{told}: say so by --intrinsics FILE.json with fx, fy, cx, cy and"
-            f' "depth_scale": {told.scale_m:g}'
+            f'{doubt}: add --intrinsics FILE.json with fx, fy, cx, cy and "depth_scale": {doubt.scale_m:g}'
         )
 
 
-def check_free(folder: Path) -> None:
-    """Raises BadRequest for a folder with something in it, and BadFile for what can be none."""
+def require_empty(folder: Path) -> None:
+    """Raise BadRequest for a folder that is not empty, and BadFile for a path that cannot be a folder."""
     try:
         if folder.exists() and any(folder.iterdir()):
             raise BadRequest(f"{folder} is not empty; name a new folder for the frames")
@@ -71,15 +70,15 @@ def check_free(folder: Path) -> None:
 
 
 def make(folder: Path) -> None:
-    """Make a folder for frames. Raises BadFile."""
+    """Create a folder for frames. Raises BadFile."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise BadFile(f"{folder} cannot be made: {error.strerror}") from None
+        raise BadFile(f"{folder} cannot be created: {error.strerror}") from None
 
 
 def write(frame: RecordedFrame, dataset: Path) -> None:
-    """Write a frame's folder into `dataset`, whole or not at all. Raises BadFile."""
+    """Write the folder of a frame into `dataset`, completely or not at all. Raises BadFile."""
     height, width = frame.depth_m.shape
     depth_mm = np.round(np.nan_to_num(frame.depth_m, posinf=0.0, neginf=0.0) * _MM)
     depth_mm[(depth_mm < 0) | (depth_mm > _FARTHEST_MM)] = 0

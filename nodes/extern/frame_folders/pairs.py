@@ -1,4 +1,4 @@
-"""Which colour picture and which depth picture were taken together."""
+"""Pairing of colour and depth images by time."""
 
 from __future__ import annotations
 
@@ -11,17 +11,16 @@ from semmap.schemas.wording import counted
 
 
 class Pairs(NamedTuple):
-    """Numbers of (colour, depth) pictures in the order of time, and a sentence for each kind left out."""
+    """The indices of (colour, depth) images in the order of time, and notes on skipped images."""
 
     taken: list[tuple[int, int]]
     notes: list[str]
 
 
 def pairs(colour_ns: Sequence[int], depth_ns: Sequence[int], within_s: float, every_s: float) -> Pairs:
-    """Each picture with the nearest of the other kind, each once, no farther than `within_s` apart.
+    """Pair each image with the nearest one of the other kind, at most `within_s` apart.
 
-    Of pictures of one kind with one stamp the first counts. Between two pairs that are taken there are
-    `every_s` or more.
+    If images of one kind have the same stamp, the first is used. Pairs are at least `every_s` apart.
     """
     colours, depths = _firsts(colour_ns), _firsts(depth_ns)
     nearest: list[tuple[int, int, int]] = []
@@ -47,7 +46,7 @@ def pairs(colour_ns: Sequence[int], depth_ns: Sequence[int], within_s: float, ev
 
 
 def _firsts(stamps_ns: Sequence[int]) -> dict[int, int]:
-    """From each stamp to the number of the first picture that has it."""
+    """Return the index of the first image by stamp."""
     found: dict[int, int] = {}
     for number, stamp in enumerate(stamps_ns):
         found.setdefault(stamp, number)
@@ -59,7 +58,7 @@ def _notes(
 ) -> list[str]:
     notes = []
     if twice := count - len(colours) - len(depths):
-        notes.append(f"{counted(twice, 'picture')} left out: another has the same stamp")
+        notes.append(f"{counted(twice, 'image')} skipped: duplicate stamp")
     if alone := len(colours) - len(partner):
-        notes.append(f"{counted(alone, 'colour picture')} without a depth picture within {within_s:g} s")
+        notes.append(f"{counted(alone, 'colour image')} without a depth image within {within_s:g} s")
     return notes

@@ -1,4 +1,4 @@
-"""The pinhole of a recorded camera [pixel], the corner of the picture at 0."""
+"""The intrinsics of a recorded camera [pixel], with the corner of the image at 0."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SAME_SHAPE = 0.02
 
 
 def read_pinhole(path: Path) -> PinholeCamera:
-    """The camera in a JSON file, as `semmap perceive --intrinsics` takes it. Raises BadFile."""
+    """Return the camera in a JSON file, as for `semmap perceive --intrinsics`. Raises BadFile."""
     try:
         return read_camera(path)
     except OSError as error:
@@ -25,24 +25,26 @@ def read_pinhole(path: Path) -> PinholeCamera:
         raise BadFile(f"{path}: {error}") from None
 
 
-def of_centres(fx: float, fy: float, cx: float, cy: float) -> NDArray[np.float64]:
-    """(3, 3) from numbers that count from the first pixel's middle, as ROS and OpenCV do."""
+def from_pixel_centres(fx: float, fy: float, cx: float, cy: float) -> NDArray[np.float64]:
+    """Return the matrix (3, 3) of intrinsics relative to the centre of the first pixel, as in OpenCV."""
     return np.array([[fx, 0.0, cx + 0.5], [0.0, fy, cy + 0.5], [0.0, 0.0, 1.0]])
 
 
-def of_info(info: Any, *, rectified: bool) -> NDArray[np.float64]:
-    """(3, 3) of a `sensor_msgs/CameraInfo` of ROS 1 or 2; of a rectified picture its projection's."""
+def from_camera_info(info: Any, *, rectified: bool) -> NDArray[np.float64]:
+    """Return the matrix (3, 3) of a `sensor_msgs/CameraInfo`; for a rectified image, from its projection."""
     k = np.asarray(info.k if hasattr(info, "k") else info.K, float)
     p = np.asarray(info.p if hasattr(info, "p") else info.P, float)
     if rectified and p[0] > 0 and p[5] > 0:
-        return of_centres(p[0], p[5], p[2], p[6])
-    return of_centres(k[0], k[4], k[2], k[5])
+        return from_pixel_centres(p[0], p[5], p[2], p[6])
+    return from_pixel_centres(k[0], k[4], k[2], k[5])
 
 
-def scaled(intrinsics: NDArray[np.float64], of: tuple[int, int], to: tuple[int, int]) -> NDArray[np.float64]:
-    """Intrinsics for pictures of (width, height) `of`, for the same pictures at the size `to`.
+def scale_intrinsics(
+    intrinsics: NDArray[np.float64], of: tuple[int, int], to: tuple[int, int]
+) -> NDArray[np.float64]:
+    """Scale intrinsics from images of (width, height) `of` to the size `to`.
 
-    Raises ValueError where these are of another shape, or the intrinsics those of no camera.
+    Raises ValueError for another aspect ratio, or invalid intrinsics.
     """
     width, height = to
     if min(of) < 1:
@@ -50,7 +52,7 @@ def scaled(intrinsics: NDArray[np.float64], of: tuple[int, int], to: tuple[int, 
     across, down = width / of[0], height / of[1]
     if abs(across / down - 1.0) > _SAME_SHAPE:
         raise ValueError(
-            f"the intrinsics are those of pictures of {of[0]} x {of[1]}; these have {width} x {height} pixels"
+            f"the intrinsics are for {of[0]} x {of[1]} pixels, the images have {width} x {height} pixels"
         )
     found = intrinsics * np.array([[across], [down], [1.0]])
     if not fits(found, width, height):
@@ -58,5 +60,5 @@ def scaled(intrinsics: NDArray[np.float64], of: tuple[int, int], to: tuple[int, 
             f"{name} {n:g}"
             for name, n in zip(("fx", "fy", "cx", "cy"), found[[0, 1, 0, 1], [0, 1, 2, 2]], strict=True)
         )
-        raise ValueError(f"the intrinsics {numbers} do not fit a picture of {width} x {height} pixels")
+        raise ValueError(f"the intrinsics {numbers} do not fit an image of {width} x {height} pixels")
     return np.asarray(found)

@@ -1,4 +1,4 @@
-"""Where a frame was at each moment of a recording."""
+"""The poses of frames over time in a recording."""
 
 from __future__ import annotations
 
@@ -8,31 +8,31 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.extern.ros.frames import Transform, placed
+from semmap.nodes.extern.ros.frames import Transform, to_matrix
 
 _GAP_NS: Final = 1_000_000_000
-"""Between two poses so far apart in time nobody knows."""
+"""The maximum time between two poses for interpolation."""
 _EDGE_NS: Final = 100_000_000
-"""So long before and after a pose that has no neighbour there, it holds."""
+"""The maximum extrapolation before and after a pose."""
 _DEEPEST: Final = 100
 MAPS: Final = ("map", "world", "odom")
-"""Frames in which z is up, as they are called; the first that there is counts."""
+"""The usual names of frames with z up; the first that exists is used."""
 
 
 class Trajectory:
-    """Poses of one frame in another, by time."""
+    """The poses of one frame in another, by time."""
 
     def __init__(self) -> None:
         self._poses: dict[int, NDArray[np.float64]] = {}
         self._order: list[int] = []
 
     def add(self, stamp_ns: int, position_m: tuple[float, ...], wxyz: tuple[float, ...]) -> None:
-        """A pose; what is none is passed over."""
-        if placed(position_m, wxyz) is not None:
+        """Add a pose; invalid ones are ignored."""
+        if to_matrix(position_m, wxyz) is not None:
             self._poses[stamp_ns] = np.array([*position_m, *wxyz])
 
     def at(self, stamp_ns: int) -> Transform | None:
-        """The pose (4, 4) then, between those before and after; None where there are none near enough."""
+        """Return the interpolated pose (4, 4); None if there are no poses close enough in time."""
         if len(self._order) != len(self._poses):
             self._order = sorted(self._poses)
         if stamp_ns in self._poses:
@@ -49,8 +49,8 @@ class Trajectory:
         return _matrix(self._poses[nearest])
 
 
-class Tree:
-    """All of /tf and /tf_static of a recording."""
+class TransformTree:
+    """The transforms on /tf and /tf_static of a recording."""
 
     def __init__(self) -> None:
         self._parents: dict[str, str] = {}
@@ -58,11 +58,11 @@ class Tree:
         self._still: dict[str, Transform] = {}
 
     def take(self, message: Any, *, static: bool) -> None:
-        """A `tf2_msgs/TFMessage`; what is no transform is passed over."""
-        for said in message.transforms:
-            child, parent = plain(said.child_frame_id), plain(said.header.frame_id)
-            t, r = said.transform.translation, said.transform.rotation
-            pose = placed((t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
+        """Add a `tf2_msgs/TFMessage`; invalid transforms are ignored."""
+        for stamped in message.transforms:
+            child, parent = plain(stamped.child_frame_id), plain(stamped.header.frame_id)
+            t, r = stamped.transform.translation, stamped.transform.rotation
+            pose = to_matrix((t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
             if pose is None or not child or not parent or child == parent:
                 continue
             self._parents[child] = parent
@@ -70,17 +70,17 @@ class Tree:
                 self._still[child] = pose
             else:
                 track = self._moving.setdefault(child, Trajectory())
-                track.add(stamp_ns_of(said.header.stamp), (t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
+                track.add(stamp_ns_of(stamped.header.stamp), (t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
 
     def above(self, frame: str) -> list[str]:
-        """A frame and those that it is in, outwards."""
+        """Return a frame and its ancestors, in this order."""
         found = [plain(frame)]
         while (parent := self._parents.get(found[-1])) and parent not in found and len(found) < _DEEPEST:
             found.append(parent)
         return found
 
     def pose(self, frame: str, base: str, stamp_ns: int) -> Transform | None:
-        """Where `frame` is in `base`, one that is above it; None where nobody said so then."""
+        """Return the pose of `frame` in its ancestor `base`; None if it is unknown at that time."""
         pose = np.eye(4)
         for link in self.above(frame):
             if link == plain(base):
@@ -93,7 +93,7 @@ class Tree:
         return None
 
     def between(self, one: str, other: str, stamp_ns: int) -> Transform | None:
-        """Where `one` is in `other`, if some frame is above both."""
+        """Return the pose of `one` in `other`, if they have a common ancestor."""
         shared = next((base for base in self.above(one) if base in self.above(other)), None)
         if shared is None:
             return None
@@ -104,20 +104,20 @@ class Tree:
 
 
 def plain(frame: str) -> str:
-    """A frame's name without the slash that ROS 1 began it with."""
+    """Return the name of a frame without the leading slash of ROS 1."""
     return frame.lstrip("/")
 
 
 def stamp_ns_of(stamp: Any) -> int:
-    """A time of ROS."""
+    """Convert a ROS time to nanoseconds."""
     return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
 
 
 def _between(one: NDArray[np.float64], other: NDArray[np.float64], share: float) -> NDArray[np.float64]:
-    """Position and quaternion in between; neighbours are near enough to go straight."""
+    """Interpolate position and quaternion linearly."""
     turned = -1.0 if one[3:] @ other[3:] < 0 else 1.0
     return np.asarray(one * (1.0 - share) + np.r_[other[:3], turned * other[3:]] * share)
 
 
 def _matrix(pose: NDArray[np.float64]) -> Transform | None:
-    return placed(tuple(pose[:3]), tuple(pose[3:]))
+    return to_matrix(tuple(pose[:3]), tuple(pose[3:]))

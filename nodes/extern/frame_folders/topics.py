@@ -1,4 +1,4 @@
-"""Which topics of a recording are those of its camera."""
+"""Selection of the camera topics of a recording."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, NamedTuple
 
-from semmap.nodes.extern.frame_folders.pictures import is_colour, is_depth
+from semmap.nodes.extern.frame_folders.images import is_colour, is_depth
 from semmap.schemas.errors import BadFile, BadRequest
 from semmap.schemas.wording import few
 
@@ -19,8 +19,8 @@ _INFRARED = re.compile(r"(^|[/_])(ir|infra\d?|infrared)([/_]|$)")
 _TRANSPORT = re.compile(r"/(compressed|compressedDepth)$")
 
 
-class Chosen(NamedTuple):
-    """The topics of a camera; `infos` of its depth and of its colour, where there are any."""
+class CameraTopicNames(NamedTuple):
+    """The topics of a camera; `infos` are the camera_info topics of depth and colour, if there are any."""
 
     colour: str
     depth: str
@@ -29,14 +29,15 @@ class Chosen(NamedTuple):
 
 def choose(
     encodings: Mapping[str, str], infos: Iterable[str], colour: str | None, depth: str | None
-) -> Chosen:
-    """From each picture's topic to its encoding, and the topics of camera_info; some may be told.
+) -> CameraTopicNames:
+    """Choose the topics of a camera from the image encodings by topic and the camera_info topics.
 
-    Raises BadFile where there is no such topic, and BadRequest where there are several.
+    `colour` and `depth` are set by the user, or None. Raises BadFile if there is no such topic, and
+    BadRequest if there are several.
     """
     for option, said in (("--rgb-topic", colour), ("--depth-topic", depth)):
         if said is not None and said not in encodings:
-            raise BadRequest(f"{option}: no pictures on {said}; there are some on {few(sorted(encodings))}")
+            raise BadRequest(f"{option}: no images on {said}; image topics: {few(sorted(encodings))}")
     seen = {topic: said for topic, said in encodings.items() if not _INFRARED.search(topic)}
     depths = [topic for topic, said in seen.items() if is_depth(said)]
     colours = [topic for topic, said in seen.items() if is_colour(said) and topic not in depths]
@@ -45,24 +46,24 @@ def choose(
     depth = depth or _only("depth", "--depth-topic", aligned or depths, encodings)
     colour = colour or _only("colour", "--rgb-topic", colours, encodings)
     known = list(infos)
-    return Chosen(colour, depth, (_nearest(depth, known), _nearest(colour, known)))
+    return CameraTopicNames(colour, depth, (_nearest(depth, known), _nearest(colour, known)))
 
 
 def _only(kind: str, option: str, topics: Sequence[str], encodings: Mapping[str, str]) -> str:
-    """Of the same pictures as they are and compressed, those as they are."""
+    """Return the only topic; of raw and compressed topics with the same images, the raw one."""
     plain = [topic for topic in topics if _TRANSPORT.sub("", topic) == topic]
     rest = [topic for topic in topics if _TRANSPORT.sub("", topic) not in plain]
     found = sorted({*plain, *rest})
     if not found:
         there = few([f"{topic} ({said})" for topic, said in sorted(encodings.items())])
-        raise BadFile(f"it has no {kind} pictures; its pictures: {there}")
+        raise BadFile(f"no {kind} images found; image topics: {there}")
     if len(found) > 1:
-        raise BadRequest(f"it has {kind} pictures on {few(found)}; name one with {option}")
+        raise BadRequest(f"{kind} images on several topics: {few(found)}; choose one with {option}")
     return found[0]
 
 
 def _nearest(topic: str, infos: Sequence[str]) -> str | None:
-    """The camera_info beside a topic: the one that shares most of its path, if no other does."""
+    """Return the camera_info topic with the longest common path, unless there are several."""
     parts = topic.split("/")
 
     def shared(info: str) -> int:

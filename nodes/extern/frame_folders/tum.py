@@ -1,4 +1,4 @@
-"""Folders of PNGs as TUM's tools write them: rgb.txt and depth.txt, and maybe groundtruth.txt."""
+"""Image folders in the TUM format: rgb.txt, depth.txt and, optionally, groundtruth.txt."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.extern.frame_folders.frames import RecordedFrame, Recording, check_unit
+from semmap.nodes.extern.frame_folders.frames import RecordedFrame, Recording, require_plausible_unit
 from semmap.nodes.extern.frame_folders.pairs import pairs
-from semmap.nodes.extern.frame_folders.pinhole import of_centres, read_pinhole, scaled
+from semmap.nodes.extern.frame_folders.pinhole import from_pixel_centres, read_pinhole, scale_intrinsics
 from semmap.nodes.extern.frame_folders.poses import Trajectory
 from semmap.nodes.perception_node.input.files.image_files import is_depth, opened
 from semmap.schemas import errors
@@ -20,34 +20,34 @@ from semmap.schemas.errors import BadFile, BadRequest, SemmapError
 
 _COLOUR, _DEPTH, _POSES = "rgb", "depth", "groundtruth.txt"
 _SCALE_M: Final = 1.0 / 5000.0
-"""TUM's depth pictures have 5000 for a metre."""
+"""The depth unit of the TUM format: 5000 per metre."""
 _CALIBRATED: Final = {
     "1": (517.3, 516.5, 318.6, 255.3),
     "2": (520.9, 521.0, 325.1, 249.7),
     "3": (535.4, 539.2, 320.1, 247.6),
 }
-"""The cameras of TUM's own recordings, `freiburg1` to 3: fx, fy, cx, cy."""
+"""The cameras of the TUM datasets, `freiburg1` to 3: fx, fy, cx, cy."""
 _SIZE: Final = (640, 480)
 _PICTURES: Final = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
 
 Listed = list[tuple[int, Path]]
-"""Pictures with their stamps [ns]."""
+"""Images with their stamps [ns]."""
 
 
 def read(folder: Path, *, within_s: float, every_s: float, intrinsics: Path | None) -> Recording:
-    """The frames of such a folder. Raises BadFile and BadRequest where there can be none."""
+    """Return the frames of a folder. Raises BadFile and BadRequest if there are none."""
     colours, depths = (_listed(folder, kind) for kind in (_COLOUR, _DEPTH))
     pinhole, scale_m, note = _camera(folder, intrinsics)
     found = pairs([at for at, _ in colours], [at for at, _ in depths], within_s, every_s)
     if not found.taken:
         raise BadFile(
-            f"{folder} has no colour and depth pictures within {within_s:g} s of one another; --within takes"
-            " more"
+            f"{folder}: no colour and depth images are within {within_s:g} s of each other; use a larger"
+            " --within"
         )
     poses = _poses(folder / _POSES)
     notes = [*found.notes, note]
     if poses is None:
-        notes.append(f"no camera poses: there is no {_POSES}")
+        notes.append(f"no camera poses: there is no file {_POSES}")
 
     def frames() -> Iterator[RecordedFrame | SemmapError]:
         for colour, depth in found.taken:
@@ -59,7 +59,7 @@ def read(folder: Path, *, within_s: float, every_s: float, intrinsics: Path | No
                         f"{of.name} is {rgb.shape[1]} x {rgb.shape[0]} pixels,"
                         f" {of_depth.name} {depth_m.shape[1]} x {depth_m.shape[0]}"
                     )
-                check_unit(depth_m, scale_m)
+                require_plausible_unit(depth_m, scale_m)
                 pose = None if poses is None else poses.at(stamp_ns)
                 size = (depth_m.shape[1], depth_m.shape[0])
                 yield RecordedFrame(stamp_ns, rgb, depth_m, pinhole(size), pose)
@@ -70,7 +70,7 @@ def read(folder: Path, *, within_s: float, every_s: float, intrinsics: Path | No
 
 
 def _listed(folder: Path, kind: str) -> Listed:
-    """The pictures that `rgb.txt` or `depth.txt` lists, or else those in the folder of that name."""
+    """Return the images listed in `rgb.txt` or `depth.txt`, or else those in the folder of that name."""
     index = folder / f"{kind}.txt"
     try:
         if index.exists():
@@ -89,16 +89,14 @@ def _listed(folder: Path, kind: str) -> Listed:
             " rosbag2 folder, or a folder with rgb, depth, rgb.txt and depth.txt"
         ) from None
     if not found:
-        raise BadFile(f"{folder} lists no {kind} pictures")
+        raise BadFile(f"{folder}: no {kind} images found")
     return found
 
 
 def _stamp_ns(text: str, of: Path) -> int:
-    """Seconds as a picture is listed or named by. Raises BadFile."""
+    """Return the stamp of an image from a text in seconds. Raises BadFile."""
     if not re.fullmatch(r"\d+(\.\d+)?", text):
-        raise BadFile(
-            f"{of} has '{text}' for a time; pictures are listed, or named, by seconds: 1305031102.1753"
-        )
+        raise BadFile(f"{of}: '{text}' is not a time in seconds, such as 1305031102.1753")
     seconds, _, rest = text.partition(".")
     return int(seconds) * 1_000_000_000 + int(rest[:9].ljust(9, "0"))
 
@@ -106,37 +104,41 @@ def _stamp_ns(text: str, of: Path) -> int:
 def _camera(
     folder: Path, intrinsics: Path | None
 ) -> tuple[Callable[[tuple[int, int]], NDArray[np.float64]], float, str]:
-    """From (width, height) to intrinsics, metres of a depth picture's 1, and what to say of both."""
-    told = re.search(r"freiburg([123])", folder.resolve().name)
-    if intrinsics is None and told is None:
+    """Return a function from (width, height) to intrinsics, the depth unit [m], and a note."""
+    dataset = re.search(r"freiburg([123])", folder.resolve().name)
+    if intrinsics is None and dataset is None:
         raise BadRequest(
-            f"{folder} does not say what its camera is like; add --intrinsics FILE.json with fx, fy, cx, cy"
-            " and, unless 1 m is 5000 in its depth pictures, depth_scale"
+            f"{folder}: unknown camera; add --intrinsics FILE.json with fx, fy, cx, cy and, unless 5000 is"
+            " 1 m in the depth images, depth_scale"
         )
     if intrinsics is not None:
         camera = read_pinhole(intrinsics)
         matrix, scale_m = (
-            of_centres(camera.fx, camera.fy, camera.cx, camera.cy),
+            from_pixel_centres(camera.fx, camera.fy, camera.cx, camera.cy),
             camera.depth_scale or _SCALE_M,
         )
         whence, of_size = str(intrinsics), camera.size
     else:
-        if told is None:
+        if dataset is None:
             raise errors.InternalError("the calibration of the camera is unknown")
-        matrix, scale_m, whence = of_centres(*_CALIBRATED[told[1]]), _SCALE_M, f"TUM's freiburg{told[1]}"
+        matrix, scale_m, whence = (
+            from_pixel_centres(*_CALIBRATED[dataset[1]]),
+            _SCALE_M,
+            f"TUM's freiburg{dataset[1]}",
+        )
         of_size = _SIZE
 
     def of(size: tuple[int, int]) -> NDArray[np.float64]:
         try:
-            return scaled(matrix, of_size or size, size)
+            return scale_intrinsics(matrix, of_size or size, size)
         except ValueError as error:
             raise BadFile(f"{whence}: {error}") from None
 
-    return of, scale_m, f"camera of {whence}, 1 m is {1 / scale_m:g} in depth pictures"
+    return of, scale_m, f"camera of {whence}, 1 m is {1 / scale_m:g} in depth images"
 
 
 def _poses(path: Path) -> Trajectory | None:
-    """`time x y z qx qy qz qw` a line; None without such a file. Raises BadFile."""
+    """Read lines of `time x y z qx qy qz qw`; return None without such a file. Raises BadFile."""
     if not path.exists():
         return None
     found = Trajectory()
@@ -147,7 +149,7 @@ def _poses(path: Path) -> Trajectory | None:
         try:
             x, y, z, qx, qy, qz, qw = map(float, words[1:])
         except ValueError:
-            raise BadFile(f"{path}: line {number} is no pose: time x y z qx qy qz qw") from None
+            raise BadFile(f"{path}: line {number} is not a pose: time x y z qx qy qz qw") from None
         found.add(_stamp_ns(words[0], path), (x, y, z), (qw, qx, qy, qz))
     return found
 
@@ -163,10 +165,10 @@ def _colour(path: Path) -> NDArray[np.uint8]:
 
 
 def _depth_m(path: Path, scale_m: float) -> NDArray[np.float32]:
-    """(H, W) [m]; a picture of floats is in metres."""
+    """Return the depth (H, W) [m] of an image; floats are in metres."""
     try:
         if not is_depth(path):
-            raise BadFile(f"{path}: it must have 16 bits in a single channel")
+            raise BadFile(f"{path}: not a depth image with 16 bits in a single channel")
         with opened(path) as image:
             numbers = np.asarray(image, np.float32)
             return numbers if image.mode == "F" else numbers * np.float32(scale_m)

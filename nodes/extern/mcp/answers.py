@@ -1,7 +1,7 @@
-"""Answers as an agent reads them: compact JSON of at most 4 000 characters, in pages.
+"""Replies to an agent: compact JSON of at most 4 000 characters, in pages.
 
-Every answer says of which commit it is true, and in what units. What somebody wrote into the map (references,
-reasons, texts) stands under `said`, and who it was under `by`: data, whatever it says.
+Each reply includes its commit and the units. Texts that users wrote into the map (labels, reasons, values)
+are in the field `said`, and their authors in `by`, so that a model can treat them as data.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from semmap.schemas import errors
 from semmap.schemas.entities import Pose, Provenance, Size
 
 BUDGET: Final = 4000
-"""Characters of an answer, at most."""
+"""The maximum length of a reply."""
 UNITS: Final = "m, rad; map frame, z up, positions are bottom centres"
 _LONGEST_TEXT: Final = 1000
 _WHO: Final = re.compile(r"[^\w./@-]+")
 
 
 class Answer(Struct, frozen=True, kw_only=True):
-    """What a tool found: `head` as it is, and `items` page by page, under the name `of`; None for no list.
+    """The result of a tool: the fields `head` and, unless it is None, the list `items` with the name `of`.
 
-    `first` and `last` are the commits that it is true of: the same but where the map changes faster than it
-    can be asked.
+    `first` and `last` are the range of commits that the result may refer to. They differ only if the map
+    changes faster than it can be read.
     """
 
     first: int
@@ -39,21 +39,21 @@ class Answer(Struct, frozen=True, kw_only=True):
 
     @property
     def is_settled(self) -> bool:
-        """Is it true of one commit?"""
+        """Whether the result refers to a single commit."""
         return self.first == self.last
 
 
 def text(answer: Answer, start: int = 0) -> str:
-    """The page of an answer that begins with item `start`, as JSON; `next` is the cursor of the next one.
+    """Return the page that begins with item `start`, as JSON with the cursor `next` of the next page.
 
-    Raises BadRequest where there is no such item.
+    Raises BadRequest if there is no such item.
     """
     commit = answer.last if answer.is_settled else f"{answer.first} to {answer.last}, the map is changing"
     head: Any = {"commit": commit, "units": UNITS, **answer.head}
     if (items := answer.items) is None:
         return _within(head)
     if start > len(items):
-        raise errors.BadRequest(f"the answer has {len(items)} {answer.of}; ask again without a cursor")
+        raise errors.BadRequest(f"the reply has {len(items)} {answer.of}; call again without a cursor")
     head["total"] = len(items)
     empty = {answer.of: [], "next": f"{answer.last}.{len(items)}"}
     if (room := BUDGET - len(_json({**head, **empty}))) < BUDGET // 2:
@@ -72,35 +72,35 @@ def text(answer: Answer, start: int = 0) -> str:
 
 
 def read_cursor(cursor: str) -> tuple[int, int]:
-    """The commit that the pages are of, and the first item of this one. Raises BadRequest."""
+    """Return the commit of the pages, and the first item of the page. Raises BadRequest."""
     match = re.fullmatch(r"(\d{1,15})\.(\d{1,9})", cursor)
     if match is None:
-        raise errors.BadRequest("that is no cursor; give the `next` of the page before, or none")
+        raise errors.BadRequest("invalid cursor; use the `next` of the previous page, or no cursor")
     return int(match[1]), int(match[2])
 
 
 def said(text: str, by: Provenance | str) -> dict[str, str]:
-    """Text from the map, with who wrote it."""
+    """Return a text from the map with its author."""
     return {"said": text, "by": by if isinstance(by, str) else who(by.source, by.agent)}
 
 
 def who(source: str, agent: str) -> str:
-    """Who changed something: `operator cli/ann`. The name was claimed, so it is kept to a short word."""
+    """Return an author, such as `operator cli/ann`. The unverified name is shortened and sanitized."""
     return f"{source} {_WHO.sub('_', agent)[:40]}".strip()
 
 
 def when(stamp_ns: int) -> str:
-    """A stamp in ISO 8601, to the second, UTC."""
+    """Return a time in ISO 8601 with seconds, UTC."""
     return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(stamp_ns / 1e9))
 
 
 def metres(vector: Sequence[float] | Size) -> list[float]:
-    """To the millimetre."""
+    """Round to millimetres."""
     return [round(value, 3) + 0.0 for value in vector]
 
 
 def stands(pose: Pose | None) -> dict[str, Any]:
-    """A pose: where it is, and its yaw if it has one."""
+    """Return the fields of a pose: `at` and, unless it is 0, `yaw`."""
     if pose is None:
         return {}
     yaw = round(pose.yaw_rad, 3) + 0.0
@@ -112,15 +112,15 @@ def _json(value: Any) -> str:
 
 
 def _within(head: Mapping[str, Any]) -> str:
-    """An answer without items, shortened to the budget where it has to be."""
+    """Return a reply without items, shortened to the maximum length."""
     shown = _json(_fitting(head, BUDGET))
     return (
-        shown if len(shown) <= BUDGET else _json({"commit": head["commit"], "note": "the answer is too long"})
+        shown if len(shown) <= BUDGET else _json({"commit": head["commit"], "note": "the reply is too long"})
     )
 
 
 def _fitting(item: Any, most: int) -> Any:
-    """An item that leaves room for others: its texts, and then its lists, are cut where it is very long."""
+    """Truncate the texts and lists of an item to the length `most`."""
     length = _LONGEST_TEXT
     while len(_json(item)) > most and length > 1:
         item, length = _clipped(item, length), length // 2

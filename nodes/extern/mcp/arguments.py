@@ -1,7 +1,6 @@
-"""What the tools take: one Struct a tool, whose fields are named as those of the commands.
+"""The arguments of the tools: one Struct per tool, with the field names of the commands.
 
-The JSON schema that a model sees is made from these types and descriptions, and so are the sentences that
-tell it what is wrong.
+The JSON schema of a tool, and the error texts for invalid arguments, are made from these types.
 """
 
 from __future__ import annotations
@@ -20,74 +19,80 @@ Moment = Annotated[
     When, Meta(description="A commit number, or a time in ISO 8601 such as 2026-03-01T12:30 or 12:30.")
 ]
 Cursor = Annotated[
-    str, Meta(max_length=100, description="The `next` of the page before, to read on from there.")
+    str, Meta(max_length=100, description="The `next` of the previous page, to get the next page.")
 ]
-_NAME = "The name of an entity, such as cup1; or a reference or class that only one entity has."
+_NAME = "Name of an entity, such as cup1; or a label or class that only one entity has."
 Named = Annotated[str, Meta(max_length=1000, description=_NAME)]
 
 
 class Arguments(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
-    """What a tool is called with."""
+    """The arguments of a tool."""
 
 
 class Paged(Arguments, frozen=True, kw_only=True):
-    """Arguments of a tool whose answer may take several pages."""
+    """The arguments of a tool whose reply may have several pages."""
 
     cursor: Cursor | None = None
 
 
 class Overview(Arguments, frozen=True, kw_only=True):
-    """Nothing is asked for in particular."""
+    """No arguments."""
 
 
 class Find(Paged, frozen=True, kw_only=True):
-    """A description."""
+    """A noun phrase, and its speaker and viewer."""
 
     text: Annotated[Text, Meta(description="A noun phrase: the red cup on the kitchen table.")]
-    viewer: (
-        Annotated[str, Meta(max_length=1000, description="Who sees what is left, right or behind.")] | None
+    viewer: Annotated[str, Meta(max_length=1000, description="Viewer for left, right and behind.")] | None = (
+        None
+    )
+    viewpoint: (
+        Annotated[ViewPoint, Meta(description="Pose of the viewer: x, y, z [m], yaw [rad].")] | None
     ) = None
-    viewpoint: Annotated[ViewPoint, Meta(description="The same: x, y, z [m], yaw [rad].")] | None = None
-    asker: Annotated[str, Meta(max_length=1000, description="Who says 'my'.")] | None = None
+    asker: (
+        Annotated[str, Meta(max_length=1000, description="Speaker: the person that 'my' refers to.")] | None
+    ) = None
 
 
 class Get(Paged, frozen=True, kw_only=True):
-    """One entity."""
+    """An entity."""
 
     name: Named
     as_of: Moment | None = None
 
 
 class Relations(Paged, frozen=True, kw_only=True):
-    """Where an entity is relative to others."""
+    """An entity and, optionally, another one and a viewer."""
 
     name: Named
     other: Annotated[str, Meta(max_length=1000, description="Only relations to this entity.")] | None = None
     viewer: (
-        Annotated[str, Meta(max_length=1000, description="Adds left, right, front, behind as this one sees.")]
+        Annotated[str, Meta(max_length=1000, description="Viewer: adds left, right, front and behind.")]
         | None
     ) = None
     viewpoint: (
-        Annotated[ViewPoint, Meta(description="The same from a pose: x, y, z [m], yaw [rad].")] | None
+        Annotated[ViewPoint, Meta(description="Pose of the viewer: x, y, z [m], yaw [rad].")] | None
     ) = None
     as_of: Moment | None = None
 
 
 class List(Paged, frozen=True, kw_only=True):
-    """Which entities."""
+    """A selection of entities."""
 
     class_: (
         Annotated[str, Meta(max_length=200, description="Only this class with its subclasses, e.g. Cup.")]
         | None
     ) = field(name="class", default=None)
-    on: Annotated[Text, Meta(description="Only what stands on this entity.")] | None = None
-    in_: Annotated[Text, Meta(description="Only what is in this place or container.")] | None = field(
+    on: Annotated[Text, Meta(description="Only entities on this entity.")] | None = None
+    in_: Annotated[Text, Meta(description="Only entities in this place or container.")] | None = field(
         name="in", default=None
     )
-    near: Annotated[Text, Meta(description="Only what is near this entity.")] | None = None
-    within: Annotated[float, Meta(gt=0.0, le=20_000.0, description="With near: metres.")] | None = None
-    nearest: Annotated[int, Meta(ge=1, le=10_000, description="With to: only so many.")] | None = None
-    to: Annotated[Text, Meta(description="With nearest: to this entity.")] | None = None
+    near: Annotated[Text, Meta(description="Only entities near this entity.")] | None = None
+    within: (
+        Annotated[float, Meta(gt=0.0, le=20_000.0, description="With near: maximum distance [m].")] | None
+    ) = None
+    nearest: Annotated[int, Meta(ge=1, le=10_000, description="With to: number of entities.")] | None = None
+    to: Annotated[Text, Meta(description="With nearest: reference entity.")] | None = None
     as_of: Moment | None = None
 
 
@@ -97,41 +102,39 @@ class Query(Paged, frozen=True, kw_only=True):
     query: Annotated[
         str, Meta(min_length=1, max_length=20_000, description="SELECT, ASK, CONSTRUCT or DESCRIBE.")
     ]
-    inferred: Annotated[bool, Meta(description="Ask also what follows, and where things are measured.")] = (
-        True
-    )
+    inferred: Annotated[bool, Meta(description="Include inferred and computed facts.")] = True
     as_of: Moment | None = None
 
 
 class Explain(Paged, frozen=True, kw_only=True):
-    """Which statement is to be explained."""
+    """A statement."""
 
     name: Named
     predicate: Annotated[Word, Meta(description="A property such as isLocatedIn, or type for a class.")]
     value: Annotated[str, Meta(max_length=1000, description="An entity, a class or a literal.")]
-    negated: Annotated[bool, Meta(description="Explain why it cannot be so.")] = False
+    negated: Annotated[bool, Meta(description="Explain why the statement cannot hold.")] = False
 
 
 class History(Paged, frozen=True, kw_only=True):
-    """Which commits."""
+    """A selection of commits."""
 
     name: (
-        Annotated[str, Meta(max_length=1000, description="Only commits that touched this entity.")] | None
+        Annotated[str, Meta(max_length=1000, description="Only commits that changed this entity.")] | None
     ) = None
     since: Moment | None = None
     until: Moment | None = None
-    limit: Annotated[int, Meta(ge=1, le=1000, description="The newest so many.")] = 20
+    limit: Annotated[int, Meta(ge=1, le=1000, description="Number of commits; the newest are returned.")] = 20
 
 
 class Diff(Paged, frozen=True, kw_only=True):
-    """Between which two moments."""
+    """Two commits or times."""
 
     since: Moment
     until: Moment | None = None
 
 
 class WasWhen(Paged, frozen=True, kw_only=True):
-    """Which relation of which two entities."""
+    """A relation of two entities."""
 
     name: Named
     relation: KeptRelation
@@ -139,7 +142,7 @@ class WasWhen(Paged, frozen=True, kw_only=True):
 
 
 class Picture(Arguments, frozen=True, kw_only=True):
-    """Of what, and how large."""
+    """A place and an image size."""
 
     place: Annotated[str, Meta(max_length=1000, description="Only this place, by name.")] | None = None
     width: Annotated[int, Meta(ge=64, le=1600, description="Pixels.")] = 960
@@ -147,64 +150,60 @@ class Picture(Arguments, frozen=True, kw_only=True):
 
 
 class Propose(Arguments, frozen=True, kw_only=True):
-    """A change to try out; which fields apply depends on the verb."""
+    """A change; which fields apply depends on `verb`."""
 
     verb: Literal["add", "update", "set", "unset", "remove"]
-    reason: Annotated[str, Meta(min_length=1, max_length=300, description="Why, in one sentence.")]
-    name: (
-        Annotated[str, Meta(max_length=1000, description="Of add: optional. Else: which entity.")] | None
-    ) = None
-    names: Annotated[tuple[Word, ...], Meta(description="Of remove: which entities.")] | None = None
-    class_: Annotated[str, Meta(max_length=200, description="Of add; of update: the new class.")] | None = (
-        field(name="class", default=None)
+    reason: Annotated[str, Meta(min_length=1, max_length=300, description="Reason, in one sentence.")]
+    name: Annotated[str, Meta(max_length=1000, description="Entity; optional for add.")] | None = None
+    names: Annotated[tuple[Word, ...], Meta(description="Remove: entities.")] | None = None
+    class_: Annotated[str, Meta(max_length=200, description="Add: class. Update: new class.")] | None = field(
+        name="class", default=None
     )
     at: Annotated[Vector, Meta(description="Bottom centre x, y, z [m], map frame, z up.")] | None = None
     yaw: Annotated[Angle, Meta(description="Rotation about z [rad].")] | None = None
-    size: Annotated[Size, Meta(description="Extent along its own x, y, z [m].")] | None = None
-    ref: Annotated[Text, Meta(description="What it is called.")] | None = None
-    alt: Annotated[tuple[Text, ...], Meta(description="What else it is called.")] | None = None
-    carry: Annotated[bool, Meta(description="Of update with at: what stands on it moves along.")] | None = (
-        None
-    )
-    property_: Annotated[Text, Meta(description="Of set and unset, e.g. isOpen.")] | None = field(
+    size: Annotated[Size, Meta(description="Size along its own x, y, z [m].")] | None = None
+    ref: Annotated[Text, Meta(description="Label.")] | None = None
+    alt: Annotated[tuple[Text, ...], Meta(description="Aliases.")] | None = None
+    carry: Annotated[bool, Meta(description="Update with at: also move the objects on it.")] | None = None
+    property_: Annotated[Text, Meta(description="Set and unset: property, e.g. isOpen.")] | None = field(
         name="property", default=None
     )
-    values: Annotated[tuple[Value, ...], Meta(description="Of set.")] | None = None
-    value: Annotated[Value, Meta(description="Of unset; all values without it.")] | None = None
+    values: Annotated[tuple[Value, ...], Meta(description="Set: values.")] | None = None
+    value: Annotated[Value, Meta(description="Unset: value; without it, all values.")] | None = None
     confidence: Probability | None = None
 
 
 class Commit(Arguments, frozen=True, kw_only=True):
-    """Which proposal."""
+    """A proposal."""
 
-    token: Annotated[str, Meta(min_length=1, max_length=100, description="The token that propose gave.")]
+    token: Annotated[str, Meta(min_length=1, max_length=100, description="Token that propose returned.")]
 
 
 class Undo(Arguments, frozen=True, kw_only=True):
-    """Which commit."""
+    """A commit."""
 
-    commit: Annotated[int, Meta(ge=1, le=1 << 53, description="A commit of your own.")]
+    commit: Annotated[int, Meta(ge=1, le=1 << 53, description="One of your own commits.")]
     reason: Annotated[str, Meta(max_length=300)] = ""
 
 
 def schema(kind: type[Arguments]) -> dict[str, Any]:
-    """The JSON schema of a tool's arguments: one object, without references and without our docstrings.
+    """Return the JSON schema of the arguments: one object, without references and docstrings.
 
-    Whoever may leave a field out need not be told that it could be null, too.
+    Optional fields are not described as nullable: they can be left out.
     """
     _, parts = msgspec.json.schema_components([kind])
     found = parts[kind.__name__]
-    properties = {name: _given(field) for name, field in found["properties"].items()}
+    properties = {name: _without_null(field) for name, field in found["properties"].items()}
     return {"type": "object", "properties": properties, **{key: found[key] for key in _KEPT}}
 
 
 _KEPT: Final = ("required", "additionalProperties")
 
 
-def _given(field: dict[str, Any]) -> dict[str, Any]:
-    """The schema of a field that is given."""
+def _without_null(field: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of a field without null."""
     choices = [choice for choice in field.get("anyOf", ()) if choice != {"type": "null"}]
     if len(choices) != 1 or "default" not in field:
         return field
-    given: dict[str, Any] = choices[0]
-    return given
+    found: dict[str, Any] = choices[0]
+    return found

@@ -1,4 +1,4 @@
-"""Whose words a sentence of the system repeats: it calls things what somebody once called them."""
+"""The authors of labels that a message of the system quotes."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _Words = tuple[str, ...]
 
 
 class Authors:
-    """Who wrote the references of these entities."""
+    """The authors of the labels of these entities."""
 
     def __init__(self, entities: Iterable[Entity]) -> None:
         self._by_words: dict[_Words, set[str]] = {}
-        self._beginning: dict[str, set[_Words]] = {}  # references (as words), by their first word
+        self._beginning: dict[str, set[_Words]] = {}  # labels (as words), by their first word
         for entity in entities:
             by = who(entity.reference_provenance.source, entity.reference_provenance.agent)
             for reference in (entity.preferred_reference, *entity.alternative_references):
@@ -29,7 +29,7 @@ class Authors:
                     self._beginning.setdefault(words[0], set()).add(words)
 
     def by(self, *texts: str) -> str:
-        """Who is behind texts of the system: `semmap`, or `semmap, quoting agent helper and file`."""
+        """Return the author of texts of the system: `semmap`, or `semmap, quoting agent helper and file`."""
         found: set[str] = set()
         for text in texts:
             words = _words(text)
@@ -45,5 +45,5 @@ class Authors:
 
 
 def _words(text: str) -> _Words:
-    """Words and signs, in lower case."""
+    """Return the words and punctuation marks, in lower case."""
     return tuple(_WORD.findall(text.casefold()))

@@ -1,4 +1,4 @@
-"""The server over streamable HTTP: on this machine only, and only for who knows its token."""
+"""The server over streamable HTTP, on this machine only, for clients with the token."""
 
 from __future__ import annotations
 
@@ -25,28 +25,28 @@ Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 
-def new_token(said: str | None) -> str:
-    """The token that somebody chose, or a new one that nobody can guess. Raises BadRequest if too short."""
-    if not said:
+def choose_token(token: str | None) -> str:
+    """Return the configured token, or a new random one. Raises BadRequest for a token that is too short."""
+    if not token:
         return secrets.token_urlsafe(24)
-    if len(said) < SHORTEST_TOKEN or not said.isascii():
+    if len(token) < SHORTEST_TOKEN or not token.isascii():
         raise errors.BadRequest(f"{TOKEN_VARIABLE} must have at least {SHORTEST_TOKEN} ASCII characters")
-    return said
+    return token
 
 
 def run_http(tools: Tools, port: int, token: str, tell: Callable[[str], None]) -> None:
-    """Serve on loopback until it is interrupted. Raises BadRequest for a port that is taken."""
+    """Serve on loopback until interrupted. Raises BadRequest if the port is in use."""
     listening = _listen(port)
     made = server(tools)
-    app = behind(token, made.streamable_http_app(host=HOST, max_request_body_size=_LARGEST_BODY))
+    app = require_token(token, made.streamable_http_app(host=HOST, max_request_body_size=_LARGEST_BODY))
     config = uvicorn.Config(app, log_level="warning", lifespan="on")
     tell(f"http://{HOST}:{listening.getsockname()[1]}/mcp")
     tell(f"Authorization: Bearer {token}")
     uvicorn.Server(config).run(sockets=[listening])
 
 
-def behind(token: str, app: App) -> App:
-    """`app`, for requests that bear the token; the others are answered with 401 and never reach it."""
+def require_token(token: str, app: App) -> App:
+    """Wrap `app`: requests without the token are rejected with status 401."""
     expected = f"Bearer {token}".encode()
 
     async def guarded(scope: Scope, receive: Receive, send: Send) -> None:
@@ -62,7 +62,7 @@ def behind(token: str, app: App) -> App:
             return
         headers = [(b"www-authenticate", b"Bearer"), (b"content-type", b"text/plain")]
         await send({"type": "http.response.start", "status": 401, "headers": headers})
-        text = b"give the token that semmap mcp printed: Authorization: Bearer TOKEN\n"
+        text = b"missing or wrong token; use the one printed by semmap mcp: Authorization: Bearer TOKEN\n"
         await send({"type": "http.response.body", "body": text})
 
     return guarded
@@ -77,6 +77,6 @@ def _listen(port: int) -> socket.socket:
     except OSError as error:
         listening.close()
         raise errors.BadRequest(
-            f"cannot listen on {HOST}:{port}: {error.strerror}; choose another: --http PORT"
+            f"cannot listen on {HOST}:{port}: {error.strerror}; choose another port: --http PORT"
         ) from None
     return listening

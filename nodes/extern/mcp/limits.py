@@ -1,4 +1,4 @@
-"""What an agent may change: of which classes, in which places, and how often."""
+"""The limits of an agent: the classes and places that it may change, and the rate of changes."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from msgspec import Struct
 from semmap.schemas import errors
 
 CHANGES_PER_MIN: Final = 30.0
-"""Commits that an agent may make a minute, unless it is said otherwise."""
+"""The default rate limit of commits per minute."""
 _LOCATED: Final = "isLocatedIn"
 
 
 class Limits(Struct, frozen=True, kw_only=True):
-    """Classes (with their subclasses) and places, by name; none means all."""
+    """The permitted classes (with subclasses) and places, by name; an empty set permits all."""
 
     classes: frozenset[str] = frozenset()
     places: frozenset[str] = frozenset()
 
 
 class Touched(Struct, frozen=True, kw_only=True):
-    """An entity that a change touches: its classes, and the places that it is in, before and after it."""
+    """An entity of a change, with its classes and places before and after the change."""
 
     name: str
     classes_before: frozenset[str] = frozenset()
@@ -34,25 +34,25 @@ class Touched(Struct, frozen=True, kw_only=True):
 
 
 def require(limits: Limits, touched: Iterable[Touched]) -> None:
-    """Raises Refused, with what is allowed, for an entity that is beyond the limits before or after."""
+    """Raise Refused for an entity that is beyond the limits before or after the change."""
     for one in touched:
         before = () if one.is_new else (("is not", one.classes_before, one.places_before),)
         after = () if one.is_gone else (("would not be", one.classes_after, one.places_after),)
         for is_not, classes, places in (*before, *after):
             _require_one_of(limits.classes, classes, f"{one.name} {is_not} of a class that you may change")
-            _require_one_of(limits.places, places, f"{one.name} {is_not} where you may change things")
+            _require_one_of(limits.places, places, f"{one.name} {is_not} in a place that you may change")
 
 
 def after(
     places: Collection[str], name: str, follows: Iterable[str], no_longer: Iterable[str]
 ) -> frozenset[str]:
-    """The places that `name` is in after a change, by what follows from it and what does no longer."""
+    """Return the places of `name` after a change, from its inferred facts."""
     return (frozenset(places) - _located(name, no_longer)) | _located(name, follows)
 
 
 def _located(name: str, facts: Iterable[str]) -> frozenset[str]:
-    said = (fact.split(" ") for fact in facts)
-    return frozenset(words[2] for words in said if len(words) == 3 and words[:2] == [name, _LOCATED])
+    split = (fact.split(" ") for fact in facts)
+    return frozenset(words[2] for words in split if len(words) == 3 and words[:2] == [name, _LOCATED])
 
 
 def _require_one_of(allowed: Collection[str], given: Collection[str], refusal: str) -> None:
@@ -60,8 +60,8 @@ def _require_one_of(allowed: Collection[str], given: Collection[str], refusal: s
         raise errors.Refused(f"{refusal}: {errors.enumerated(sorted(allowed))}")
 
 
-def in_the_maps_words(words: Collection[str], known: Mapping[str, str]) -> frozenset[str]:
-    """Classes as the map names them. `known` has their names by themselves in lower case.
+def resolve_classes(words: Collection[str], known: Mapping[str, str]) -> frozenset[str]:
+    """Return the names of classes in the map. `known` has the names by key in lower case.
 
     Raises UnknownClass.
     """

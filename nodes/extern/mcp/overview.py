@@ -1,4 +1,4 @@
-"""The overview: how much there is of what and where, in less than 2 000 characters for a map of any size."""
+"""The overview: the number of entities per class and place, in less than 2 000 characters for any map."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.replies import SystemStatus
 
 BUDGET: Final = 1800
-"""Characters that this takes, so that the whole answer stays below 2 000."""
+"""The maximum length of the overview, so that the whole reply stays below 2 000 characters."""
 _LONGEST_REFERENCE: Final = 40
 
 
 def overview(
     status: SystemStatus, entities: Sequence[Entity], where: Mapping[str, Mapping[str, Sequence[str]]]
 ) -> dict[str, Any]:
-    """The places with what they hold, the rest, and what is wrong. `where` has the places under `in`.
+    """Return the places with their contents, the other entities, and problems. `where` has places under `in`.
 
-    A thing in several places counts for the smallest of them. Where it is too much, the rarest classes and
-    then the emptiest places go.
+    An object in several places is counted in the smallest of them. If the overview is too long, the rarest
+    classes and the places with the fewest objects are left out.
     """
     places = {e.name: e for e in entities if e.place}
     things = [e for e in entities if not e.place]
@@ -56,7 +56,7 @@ def _place(place: Entity, held: Counter[str], classes: int) -> dict[str, Any]:
 
 
 def _counts(held: Counter[str], most: int) -> str:
-    """`12: 4 Chair, 2 Cup, 6 others`."""
+    """Return the counts as text: `12: 4 Chair, 2 Cup, 6 others`."""
     ranked = sorted(held.items(), key=lambda item: (-item[1], item[0]))
     first = ranked if len(ranked) <= most + 1 else ranked[:most]
     shown = [f"{count} {class_[:40]}" for class_, count in first]

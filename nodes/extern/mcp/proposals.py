@@ -1,4 +1,4 @@
-"""Proposals: changes that were tried out and wait to be committed, each once, by its token."""
+"""Proposals: changes after a dry run, which can be committed once, by a token."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from semmap.schemas.commands import Command
 from semmap.schemas.replies import Changed
 
 LASTS_S: Final = 1800.0
-"""Seconds after which a proposal is forgotten."""
+"""The lifetime of a proposal [s]."""
 _MOST: Final = 200
-"""Proposals that are kept at most: the oldest go."""
+"""The maximum number of proposals; the oldest are dropped."""
 
 
 class Proposal(Struct, frozen=True, kw_only=True):
-    """A change as it was tried out after commit `commit`; `rests_on` are the entities that it is about.
+    """A change with its dry run after commit `commit`; it depends on the entities `rests_on`.
 
-    `began_s` is on the clock of the store. `done` is the commit that it became.
+    `began_s` is on the clock of the store. `done` is the commit of the executed proposal.
     """
 
     token: str
@@ -38,7 +38,7 @@ class Proposal(Struct, frozen=True, kw_only=True):
 
 
 class Proposals:
-    """Those of one server. For any thread."""
+    """The proposals of one server. They can be used from any thread."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -46,7 +46,7 @@ class Proposals:
         self._by_token: OrderedDict[str, Proposal] = OrderedDict()
 
     def add(self, **fields: Any) -> Proposal:
-        """A new one, with a token that nobody can guess."""
+        """Add a proposal with a random token."""
         made = Proposal(token=secrets.token_urlsafe(12), began_s=self._clock(), **fields)
         with self._lock:
             self._by_token[made.token] = made
@@ -55,34 +55,36 @@ class Proposals:
         return made
 
     def take(self, token: str) -> Proposal:
-        """The one of this token, which nobody else can take until `put_back` or `finish`. Raises Refused."""
+        """Return the proposal with this token, and lock it until `put_back` or `finish`. Raises Refused."""
         with self._lock:
             found = self._by_token.get(token)
             if found is None:
-                raise errors.Refused("there is no proposal with that token; propose the change again")
+                raise errors.Refused("unknown token; propose the change again")
             if found.done is not None:
-                raise errors.Refused(f"that token was used: it became commit {found.done}; propose anew")
+                raise errors.Refused(
+                    f"this token was already used for commit {found.done}; propose the change again"
+                )
             if self._clock() - found.began_s > LASTS_S:
                 del self._by_token[token]
                 raise errors.Refused(
-                    f"that proposal is older than {LASTS_S / 60:g} minutes; propose the change again"
+                    f"the proposal expired after {LASTS_S / 60:g} minutes; propose the change again"
                 )
             if found.at_work:
-                raise errors.Refused("that token is being committed just now")
+                raise errors.Refused("the proposal with this token is currently being committed")
             self._by_token[token] = taken = structs.replace(found, at_work=True)
             return taken
 
     def put_back(self, proposal: Proposal) -> None:
-        """It was not committed, and may be tried again."""
+        """Unlock a proposal that was not committed."""
         with self._lock:
             self._by_token[proposal.token] = structs.replace(proposal, at_work=False)
 
     def drop(self, proposal: Proposal) -> None:
-        """It cannot be committed any more."""
+        """Delete a proposal that can no longer be committed."""
         with self._lock:
             self._by_token.pop(proposal.token, None)
 
     def finish(self, proposal: Proposal, commit: int) -> None:
-        """It became a commit."""
+        """Record the commit of a proposal."""
         with self._lock:
             self._by_token[proposal.token] = structs.replace(proposal, at_work=False, done=commit)

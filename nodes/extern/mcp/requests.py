@@ -1,7 +1,7 @@
-"""What a person reads of a change that waits for approval: a line of words, and facts, the telling first.
+"""Summaries of changes that wait for approval: a line of text, and inferred facts, the most important first.
 
-The words are made from the command itself. What an agent wrote (a reference, the value of a property, a
-reason) stands in double quotes, with escapes for whatever would end the quotation or the line.
+The text is made from the command. Texts of an agent (labels, values of properties, reasons) are in double
+quotes, with quotes and line ends escaped.
 """
 
 from __future__ import annotations
@@ -20,48 +20,48 @@ from semmap.schemas.entities import Pose, Size
 from semmap.schemas.replies import Changed, LoggedCommit
 
 _TELLING: Final = ("isOn", "isInside", "isLocatedIn", "isAttachedTo", "touches")
-"""Relations that a person wants to hear of first: where things would be."""
+"""The most important relations, which are listed first: the locations of objects."""
 _IMPLIED: Final = ("type", "hasReference")
-"""Properties whose facts say little: the words of the change have said as much."""
+"""Properties that are listed last, because the text of the change already includes them."""
 _PLAIN: Final = re.compile(r"[\w:.-]{1,128}")
 _LONGEST: Final = 200
-"""Characters of a quotation, at most."""
+"""The maximum length of a quoted text."""
 _FEW: Final = 5
 _MOST_FACTS: Final = 150
 
 
 class Summary(Struct, frozen=True, kw_only=True):
-    """A change in words, why it is asked for, and the facts that would come and go."""
+    """A change as text, its reason, and the facts that it would add and remove."""
 
     text: str
     reason: str
     follows: tuple[str, ...] = ()
 
 
-def of_change(command: Any, tried: Changed) -> Summary:
-    """Of a proposal, as it was tried out."""
+def summarize_change(command: Any, tried: Changed) -> Summary:
+    """Summarize a proposal after its dry run."""
     return Summary(text=_change_in_words(command, tried), reason=command.reason, follows=facts(tried))
 
 
-def of_undo(undone: LoggedCommit, tried: Changed, reason: str) -> Summary:
-    """Of the undoing of a commit: what that would take back, and why the commit was made."""
-    taken = [_taken_back(change) for change in undone.changes[:_FEW]]
-    if (rest := len(undone.changes) - len(taken)) > 0:
-        taken.append(f"and {wording.counted(rest, 'more change')}")
-    what = "; ".join(taken) or f"it touched {wording.few(tried.names)}"
-    was = f" (the reason given for it was {_text(undone.reason)})" if undone.reason else ""
+def summarize_undo(undone: LoggedCommit, tried: Changed, reason: str) -> Summary:
+    """Summarize the undoing of a commit: the reverted changes, and the reason of the commit."""
+    reverted = [_reverted(change) for change in undone.changes[:_FEW]]
+    if (rest := len(undone.changes) - len(reverted)) > 0:
+        reverted.append(f"and {wording.counted(rest, 'more change')}")
+    what = "; ".join(reverted) or f"it changed {wording.few(tried.names)}"
+    was = f" (reason of the commit: {_text(undone.reason)})" if undone.reason else ""
     return Summary(text=f"undo commit {undone.seq}: {what}{was}", reason=reason, follows=facts(tried))
 
 
 def facts(tried: Changed) -> tuple[str, ...]:
-    """What would follow and what no longer: where things are comes first, what the words imply last."""
-    told = [(_rank(fact), fact) for fact in tried.follows]
-    told += [(_rank(fact), f"no longer: {fact}") for fact in tried.no_longer_follows]
-    return tuple(fact for _, fact in sorted(told, key=itemgetter(0))[:_MOST_FACTS])
+    """Return the facts that would be added and removed, the most important first."""
+    ranked = [(_rank(fact), fact) for fact in tried.follows]
+    ranked += [(_rank(fact), f"no longer: {fact}") for fact in tried.no_longer_follows]
+    return tuple(fact for _, fact in sorted(ranked, key=itemgetter(0))[:_MOST_FACTS])
 
 
 def _rank(fact: str) -> int:
-    """The lower, the more telling."""
+    """Return the rank of a fact; the most important one has the lowest."""
     words = fact.split(" ", 2)
     predicate = words[1] if len(words) > 1 else ""
     if predicate in _TELLING:
@@ -86,7 +86,7 @@ def _change_in_words(command: Any, tried: Changed) -> str:
 
 
 def _details(command: commands.Add | commands.Update) -> Iterator[str]:
-    """The fields that add and update share, as far as they are given."""
+    """Yield the set fields that `add` and `update` have in common."""
     if command.at is not None:
         yield f"at {_numbers(command.at)}"
     if command.yaw is not None:
@@ -94,30 +94,30 @@ def _details(command: commands.Add | commands.Update) -> Iterator[str]:
     if command.size is not None:
         yield f"size {_numbers(command.size)}"
     if command.ref is not None:
-        yield f"called {_text(command.ref)}"
+        yield f"label {_text(command.ref)}"
     if command.alt or (command.alt is not None and isinstance(command, commands.Update)):
-        yield f"also called {', '.join(map(_text, command.alt)) or 'nothing'}"
+        yield f"aliases {', '.join(map(_text, command.alt)) or 'none'}"
     if isinstance(command, commands.Update) and command.carry:
-        yield "with what is on it"
+        yield "with the objects on it"
 
 
-def _taken_back(change: Change) -> str:
+def _reverted(change: Change) -> str:
     name = change.name
     match change.kind, change.was:
         case "added", _:
             return f"{name} ({change.now}) would be removed"
         case "removed", _:
-            return f"{name} ({change.was}) would be back"
+            return f"{name} ({change.was}) would be restored"
         case "pose", Pose(position_m=position):
             return f"{name} would be at {_numbers(position)} again"
         case kind, was:
             values = was if isinstance(was, tuple) else () if was is None else (was,)
-            told = ", ".join(_value(value) for value in values) or "nothing"
-            return f"{change.property_ or kind} of {name} would be {told} again"
+            shown = ", ".join(_value(value) for value in values) or "not set"
+            return f"{change.property_ or kind} of {name} would be {shown} again"
 
 
 def _value(value: Any) -> str:
-    """A property's value: texts in quotes."""
+    """Return the value of a property; texts are quoted."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return f"{value:g}" if isinstance(value, int | float) else _text(str(value))
@@ -128,7 +128,7 @@ def _text(text: str) -> str:
 
 
 def _word(word: str) -> str:
-    """A class or a property as an agent wrote it: in quotes unless it is one plain word."""
+    """Return a class or property of an agent's command, quoted unless it is a plain word."""
     return word if _PLAIN.fullmatch(word) else _text(word)
 
 

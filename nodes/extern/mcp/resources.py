@@ -1,7 +1,7 @@
-"""The resources: the schema, for who writes queries, and standing questions, whose changes are notified.
+"""The resources: the schema for queries, and standing queries, which notify subscribers of changes.
 
-A standing question is in its URI: `semmap://watch/in/kitchen1`, `on/table1`, `near/cup1`, `class/Cup`, or
-`query/` with a SELECT, percent-encoded.
+The URI of a standing query is `semmap://watch/in/kitchen1`, `on/table1`, `near/cup1`, `class/Cup`, or
+`query/` with a percent-encoded SELECT.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from urllib.parse import unquote
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.mcp import answers, rows
 from semmap.nodes.extern.mcp.answers import Answer
-from semmap.nodes.extern.mcp.moment import newest
+from semmap.nodes.extern.mcp.consistent_read import newest
 from semmap.ontology.prefixes import WELL_KNOWN
 from semmap.schemas import errors
 
@@ -26,7 +26,7 @@ _CLASS: Final = re.compile(r"[\w.-]{1,200}")
 
 
 def read(client: Client, uri: str) -> str:
-    """What a resource says now, as JSON of at most 4 000 characters. Raises SemmapError."""
+    """Return the content of a resource, as JSON of at most 4 000 characters. Raises SemmapError."""
     if uri == SCHEMA:
         return answers.text(_schema(client))
     for page, of in ((CLASSES, _classes), (PROPERTIES, _properties)):
@@ -40,21 +40,22 @@ def read(client: Client, uri: str) -> str:
             return answers.text(
                 Answer(first=standing.seq, last=standing.seq, head=head, items=found, of="rows")
             )
-    there = f"{SCHEMA}, {CLASSES}, {PROPERTIES} and {WATCH}KIND/WORD"
-    raise errors.Refused(f"there is no such resource; there are: {there}")
+    raise errors.Refused(
+        f"unknown resource; available: {SCHEMA}, {CLASSES}, {PROPERTIES} and {WATCH}KIND/WORD"
+    )
 
 
 def asked(uri: str) -> dict[str, Any]:
-    """What a standing question's URI asks, as the arguments of `Client.watch`. Raises BadRequest."""
+    """Return the arguments of `Client.watch` for the URI of a standing query. Raises BadRequest."""
     kind, _, word = uri.removeprefix(WATCH).partition("/")
     word = unquote(word)
     if kind not in KINDS or not word:
-        raise errors.BadRequest(f"write {WATCH}KIND/WORD, where KIND is {errors.enumerated(KINDS)}")
+        raise errors.BadRequest(f"use {WATCH}KIND/WORD, where KIND is {errors.enumerated(KINDS)}")
     if kind == "query":
         return {"query": word, "inferred": True}
     if kind == "class":
         if not _CLASS.fullmatch(word):
-            raise errors.BadRequest(f"'{word[:100]}' is no name of a class; try {WATCH}class/Cup")
+            raise errors.BadRequest(f"'{word[:100]}' is not a class name; example: {WATCH}class/Cup")
         return {"query": f"SELECT ?entity {{ ?entity a <{WELL_KNOWN['dm']}{word}> }}", "inferred": True}
     return {"in_" if kind == "in" else kind: word}
 
@@ -72,7 +73,7 @@ def _schema(client: Client) -> Answer:
 
 
 def _classes(client: Client) -> Answer:
-    """Every class with its parents: `Cup < Drinking_Vessel`."""
+    """Return the classes with their parents: `Cup < Drinking_Vessel`."""
     found = [
         f"{info.prefixed or info.name} < {', '.join(info.parents)}" if info.parents else info.name
         for info in client.classes()
@@ -81,7 +82,7 @@ def _classes(client: Client) -> Answer:
 
 
 def _properties(client: Client) -> Answer:
-    """Every property with what it is of and what it takes: `isOpen: Door -> boolean`."""
+    """Return the properties with domain and range: `isOpen: Door -> boolean`."""
     found = [
         f"{info.name}: {', '.join(info.domain) or 'anything'} -> {', '.join(info.range) or 'anything'}"
         for info in client.properties()

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from semmap.nodes.extern.cli.output.sparql_formats import spoken
-from semmap.nodes.extern.mcp.advice import for_agents
 from semmap.nodes.extern.mcp.answers import metres, said, stands, when, who
+from semmap.nodes.extern.mcp.hints import translate_hints
 from semmap.ontology import vocabulary as v
 from semmap.schemas import changes
 from semmap.schemas.entities import Entity
@@ -19,12 +19,12 @@ from semmap.schemas.replies import LoggedCommit
 from semmap.schemas.sparql import Row
 
 PLACED: Final = {"isOn": "on", "isInside": "inside", "isLocatedIn": "in"}
-"""The relations that say where a thing is, and how a row calls them."""
+"""The location relations, and their field names in a row."""
 _FEW_NAMES: Final = 10
 
 
 def entity(found: Entity, where: Mapping[str, list[str]]) -> dict[str, Any]:
-    """One row of a list. `where` is what it is on, inside and in."""
+    """Return an entity as a row of a list. `where` has what it is on, inside and in."""
     return {
         "name": found.name,
         "class": found.class_,
@@ -35,14 +35,14 @@ def entity(found: Entity, where: Mapping[str, list[str]]) -> dict[str, Any]:
 
 
 def called(found: Entity) -> dict[str, Any]:
-    """What it is called, if it is."""
+    """Return the label with its author, if there is one."""
     if not found.preferred_reference:
         return {}
     return said(found.preferred_reference, found.reference_provenance)
 
 
 def described(found: Described) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """An entity: the main facts, and the others one by one."""
+    """Return the main data of an entity, and its other facts as items."""
     head: dict[str, Any] = {"name": found.name, "class": found.class_, **stands(found.pose)}
     if found.size_m is not None:
         head["size"] = metres(found.size_m)
@@ -63,7 +63,7 @@ def _facts(found: Described) -> Iterator[dict[str, Any]]:
     for relation in found.denied:
         yield {"not_so": relation.text}
     for text in found.withheld:
-        yield {"withheld": for_agents(text)}
+        yield {"withheld": translate_hints(text)}
     if found.on_nothing:
         yield {"where": found.on_nothing}
     for types in _by_tens(found.types):
@@ -85,13 +85,13 @@ def _by_tens(names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
 
 
 def candidate(found: Candidate, by: str) -> dict[str, Any]:
-    """An entity that a description may mean; its reference and reasons repeat words of the map, `by` whom."""
-    told = {"called": found.called, "reasons": found.reasons}
-    return {"name": found.entity, "class": found.class_, "said": told, "by": by}
+    """Return an entity that matches a description; its label and reasons quote the authors `by`."""
+    quoted = {"called": found.called, "reasons": found.reasons}
+    return {"name": found.entity, "class": found.class_, "said": quoted, "by": by}
 
 
 def relation(found: Relation) -> dict[str, Any]:
-    """One measured relation."""
+    """Return a computed relation."""
     row: dict[str, Any] = {"relation": found.relation, "other": found.object, "fact": found.text}
     if found.and_object is not None:
         row["and"] = found.and_object
@@ -99,26 +99,26 @@ def relation(found: Relation) -> dict[str, Any]:
 
 
 def commit(found: LoggedCommit) -> dict[str, Any]:
-    """One commit of the history; its reason and what it changed are its author's words."""
+    """Return a commit of the history; its reason and changes are texts of its author."""
     by_name: dict[str, list[changes.Change]] = {}
     for change in found.changes:
         by_name.setdefault(change.name, []).append(change)
-    told = [f"{name}: {changes.in_words(of)}" for name, of in list(by_name.items())[:_FEW_NAMES]]
+    shown = [f"{name}: {changes.in_words(of)}" for name, of in list(by_name.items())[:_FEW_NAMES]]
     touched = [*found.changed, *found.removed]
-    rest = len(touched) - len(told)
+    rest = len(touched) - len(shown)
     return {
         "commit": found.seq,
         "when": when(found.stamp_ns),
         "by": who(found.source, found.agent),
         **({"verb": found.verb} if found.verb else {}),
         **({"undoes": found.undoes} if found.undoes else {}),
-        "said": {"reason": found.reason, "changes": told},
+        "said": {"reason": found.reason, "changes": shown},
         **({"and_others": rest} if rest > 0 else {}),
     }
 
 
 def difference(found: Difference) -> Iterator[dict[str, Any]]:
-    """What is otherwise, entity by entity: what was said of it, and what is measured."""
+    """Yield the changed entities: their asserted changes, and their computed relations."""
     names = dict.fromkeys([*(c.name for c in found.changes), *(r.subject for r in found.relations)])
     for name in sorted(names):
         of = [change for change in found.changes if change.name == name]
@@ -131,7 +131,7 @@ def difference(found: Difference) -> Iterator[dict[str, Any]]:
 
 
 def solution(row: Row) -> list[Any]:
-    """A row of a query's answer: IRIs with prefixes, numbers and truth values plain, texts under `said`."""
+    """Return a row of a query result: prefixed IRIs, numbers, truth values, and texts in `said`."""
     return [_value(term) for term in row]
 
 
@@ -159,7 +159,7 @@ def _number(lexical: str) -> Any:
 
 
 def places_of(rows: Iterable[Row]) -> dict[str, dict[str, list[str]]]:
-    """Of rows entity, relation, other: by entity, what it is `on`, `inside` and `in`, sorted by name."""
+    """Group rows (entity, relation, other) by entity: what it is `on`, `inside` and `in`, sorted by name."""
     found: dict[str, dict[str, list[str]]] = {}
     for subject, predicate, other in sorted((s or "", p or "", o or "") for s, p, o in rows):
         kind = PLACED.get(v.local_name(predicate))

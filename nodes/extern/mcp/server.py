@@ -1,4 +1,4 @@
-"""The tools over the Model Context Protocol, by its SDK. Nobody else here knows it."""
+"""The tools over the Model Context Protocol. Only this module and `http.py` use the SDK of the protocol."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from mcp.server.subscriptions import InMemorySubscriptionBus, ListenHandler, Res
 from mcp.shared.exceptions import MCPError
 
 from semmap.nodes.extern.mcp import resources
-from semmap.nodes.extern.mcp.standing import Standing
-from semmap.nodes.extern.mcp.tools import Page, Tool, Tools, complaint
+from semmap.nodes.extern.mcp.subscriptions import Subscriptions
+from semmap.nodes.extern.mcp.tools import Page, Tool, Tools, error_text
 from semmap.nodes.runtime.version import version
 from semmap.schemas import errors
 
@@ -32,18 +32,18 @@ R = TypeVar("R")
 Context = ServerRequestContext[Any, Any]
 
 MOST_LISTENERS: Final = 64
-"""Streams of notifications of one server."""
+"""The maximum number of notification streams of one server."""
 _AT_ONCE: Final = 8
-"""Calls that are at work at the same time."""
+"""The maximum number of concurrent calls."""
 _log = logging.getLogger(__name__)
 
 
 def server(tools: Tools) -> Server[Any]:
-    """A server of these tools and of the resources, for any transport."""
+    """Return a server of these tools and of the resources, for any transport."""
     threads = anyio.CapacityLimiter(_AT_ONCE)
     bus = InMemorySubscriptionBus()
     listen = ListenHandler(bus, max_subscriptions=MOST_LISTENERS)
-    sessions: dict[str, set[ServerSession]] = {}  # of the protocol before 2026-07-28, by what they follow
+    sessions: dict[str, set[ServerSession]] = {}  # with the protocol before 2026-07-28, by subscribed URI
 
     async def beside(function: Callable[[], R]) -> R:
         return await anyio.to_thread.run_sync(function, limiter=threads, abandon_on_cancel=True)
@@ -56,13 +56,13 @@ def server(tools: Tools) -> Server[Any]:
             page = await beside(partial(tools.call, asked.name, asked.arguments or {}))
         except errors.SemmapError as error:
             return _refused(error)
-        except Exception:  # a fault of ours: told as one, and the server lives on
+        except Exception:  # a bug: report it, and keep the server running
             _log.exception("the tool %r failed", asked.name)
-            return _refused(errors.InternalError("a fault in semmap itself; it has been logged"))
+            return _refused(errors.InternalError("internal error of semmap; see its log"))
         return types.CallToolResult(content=_contents(page))
 
     @asynccontextmanager
-    async def lifespan(_: Server[Any]) -> AsyncIterator[Standing]:
+    async def lifespan(_: Server[Any]) -> AsyncIterator[Subscriptions]:
         loop = asyncio.get_running_loop()
         tasks: set[asyncio.Task[None]] = set()
 
@@ -71,7 +71,7 @@ def server(tools: Tools) -> Server[Any]:
             for session in tuple(sessions.get(uri, ())):
                 try:
                     await session.send_resource_updated(uri)
-                except Exception:  # whoever is gone is told no more
+                except Exception:  # the session has ended
                     sessions[uri].discard(session)
 
         def begin(uri: str) -> None:
@@ -83,11 +83,11 @@ def server(tools: Tools) -> Server[Any]:
             with suppress(RuntimeError):  # the loop has ended
                 loop.call_soon_threadsafe(begin, uri)
 
-        standing = tools.standing(changed)
+        subscriptions = tools.subscriptions(changed)
         try:
-            yield standing
+            yield subscriptions
         finally:
-            standing.close()
+            subscriptions.close()
 
     async def list_resources(
         _: Context, __: types.PaginatedRequestParams | None
@@ -105,33 +105,33 @@ def server(tools: Tools) -> Server[Any]:
         return types.ReadResourceResult(contents=[contents])
 
     async def subscribe(context: Context, asked: types.SubscribeRequestParams) -> types.EmptyResult:
-        standing: Standing = context.lifespan_context
+        subscriptions: Subscriptions = context.lifespan_context
         if context.session not in sessions.get(asked.uri, ()):
-            await _answered(beside(partial(standing.follow, asked.uri)))
+            await _answered(beside(partial(subscriptions.subscribe, asked.uri)))
             sessions.setdefault(asked.uri, set()).add(context.session)
         return types.EmptyResult()
 
     async def unsubscribe(context: Context, asked: types.UnsubscribeRequestParams) -> types.EmptyResult:
-        standing: Standing = context.lifespan_context
+        subscriptions: Subscriptions = context.lifespan_context
         if context.session in sessions.get(asked.uri, ()):
             sessions[asked.uri].discard(context.session)
-            await beside(partial(standing.leave, asked.uri))
+            await beside(partial(subscriptions.unsubscribe, asked.uri))
         return types.EmptyResult()
 
     async def listen_to(
         context: Context, asked: types.SubscriptionsListenRequestParams
     ) -> types.SubscriptionsListenResult:
-        standing: Standing = context.lifespan_context
+        subscriptions: Subscriptions = context.lifespan_context
         followed: list[str] = []
         try:
             for uri in asked.notifications.resource_subscriptions or ():
-                await _answered(beside(partial(standing.follow, uri)))
+                await _answered(beside(partial(subscriptions.subscribe, uri)))
                 followed.append(uri)
             return await listen(context, asked)
         finally:
             with anyio.CancelScope(shield=True):
                 for uri in followed:
-                    await beside(partial(standing.leave, uri))
+                    await beside(partial(subscriptions.unsubscribe, uri))
 
     return Server(
         "semmap",
@@ -152,7 +152,7 @@ def server(tools: Tools) -> Server[Any]:
 
 
 def run_stdio(tools: Tools) -> None:
-    """Serve on stdin and stdout until stdin ends, or nobody reads stdout any more."""
+    """Serve on stdin and stdout until stdin ends or stdout is closed."""
 
     async def serve() -> None:
         made = server(tools)
@@ -161,9 +161,7 @@ def run_stdio(tools: Tools) -> None:
 
     try:
         anyio.run(serve)
-    except* (
-        BrokenPipeError
-    ):  # the client is gone; what is still to be flushed at the end has nobody to read it
+    except* BrokenPipeError:  # the client has ended; discard the remaining output
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -171,19 +169,19 @@ _RESOURCES: Final = (
     types.Resource(
         uri=resources.SCHEMA,
         name="schema",
-        description="For queries: the prefixes, and where the classes and properties are.",
+        description="For queries: the prefixes, and the URIs of the classes and properties.",
         mime_type="application/json",
     ),
     types.Resource(
         uri=resources.CLASSES,
         name="classes",
-        description="The classes, each with its parents; by pages.",
+        description="The classes with their parents, in pages.",
         mime_type="application/json",
     ),
     types.Resource(
         uri=resources.PROPERTIES,
         name="properties",
-        description="The properties that may be set, with what they are of and what they take; by pages.",
+        description="The properties that can be set, with domain and range, in pages.",
         mime_type="application/json",
     ),
 )
@@ -191,7 +189,7 @@ _TEMPLATES: Final = tuple(
     types.ResourceTemplate(
         uri_template=f"{resources.WATCH}{kind}/{{{word}}}",
         name=f"watch {kind}",
-        description=f"{what}; subscribe to be told when that changes.",
+        description=f"{what}; subscribe to be notified of changes.",
         mime_type="application/json",
     )
     for kind, word, what in (
@@ -205,7 +203,7 @@ _TEMPLATES: Final = tuple(
 
 
 async def _answered(waiting: Awaitable[R]) -> R:
-    """Its result; what is wrong is told as an error of the protocol."""
+    """Return the result; raise a SemmapError as an error of the protocol."""
     try:
         return await waiting
     except errors.SemmapError as error:
@@ -232,4 +230,4 @@ def _contents(page: Page) -> list[types.ContentBlock]:
 
 
 def _refused(error: errors.SemmapError) -> types.CallToolResult:
-    return types.CallToolResult(content=[types.TextContent(text=complaint(error))], is_error=True)
+    return types.CallToolResult(content=[types.TextContent(text=error_text(error))], is_error=True)

@@ -1,6 +1,6 @@
-"""A movie of a span of the map's history.
+"""Videos of a period of the history.
 
-`wanted.py` says what it is to be like, `storyboard.py` what is seen when, and `filming.py` films it.
+`film.py` has the settings, `storyboard.py` computes the scenes, and `rendering.py` renders them.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from pathlib import Path
 
 from msgspec import structs
 
-from semmap.nodes.extern.journals import journal_copy
-from semmap.nodes.extern.movie.wanted import Film
-from semmap.nodes.extern.replaying import settings_of
+from semmap.nodes.extern.journal_copy import journal_copy
+from semmap.nodes.extern.movie.film import Film
+from semmap.nodes.extern.replay import read_settings
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors
 
@@ -31,22 +31,22 @@ def movie(
     overwrite: bool = False,
     tell: Callable[[str], None] = lambda text: None,
 ) -> str:
-    """Film a span of the history of the map in the data folder `data`, or else of a running system.
+    """Export a video of a period of the history of the map in `data`, or of a running system.
 
-    Neither is touched; the file appears when it is whole. Returns what there is to say of it, in a sentence;
-    `tell` is told how far it is. Raises BadFile for a file that cannot be written, or is there and not to be
-    overwritten; Refused for a span that is not in the history; BadRequest for what no movie can be like.
+    The map is only read. The file is created when the video is complete. Returns a summary; `tell` receives
+    progress messages. Raises BadFile if the file cannot be written, or exists and `overwrite` is not set.
+    Raises Refused for a period that is not in the history, and BadRequest for invalid settings.
     """
     file, data = Path(file), None if data is None else Path(data)
-    wanted.require_sound()
+    wanted.validate()
     if file.suffix.lower() != ".mp4":
-        raise errors.BadRequest(f"movies are written as MP4; name the file {file.stem or 'movie'}.mp4")
+        raise errors.BadRequest(f"{file}: the suffix must be .mp4, as in {file.stem or 'movie'}.mp4")
     if file.exists() and not overwrite:
-        raise errors.BadFile(f"{file} is there already; overwrite it with --overwrite, or give another name")
+        raise errors.BadFile(f"{file} already exists; add --overwrite or choose another name")
     if not file.absolute().parent.is_dir():
         raise errors.BadFile(f"there is no folder {file.absolute().parent}")
     extras.require("semmap movie", "kb", "sim", "movie")
-    from semmap.nodes.extern.movie.filming import film
+    from semmap.nodes.extern.movie.rendering import render_video
     from semmap.nodes.kb_node.storage.journal import Journal
 
     unfinished = file.with_name(f".{file.stem}.part.mp4")
@@ -55,12 +55,12 @@ def movie(
         closing(Journal(copy.path)) as journal,
     ):
         if copy.data is not None:
-            settings = settings_of(copy.data, wanted.world)
+            settings = read_settings(copy.data, wanted.world)
             models = None if settings.models is None else Path(settings.models)
             wanted = structs.replace(wanted, world=Path(settings.world), models=models, data=copy.data)
         try:
-            told = film(journal, unfinished, wanted, tell)
+            summary = render_video(journal, unfinished, wanted, tell)
             unfinished.replace(file)
         finally:
             unfinished.unlink(missing_ok=True)
-    return told.replace(str(unfinished), str(file))
+    return summary.replace(str(unfinished), str(file))

@@ -1,4 +1,4 @@
-"""What a movie shows when: a scene for each commit, in which things glide, come and go. Pure."""
+"""The storyboard of a video: one scene per commit, in which objects move, appear and disappear. Pure."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity, Pose
 
 GLIDE_S: Final = 0.6
-"""How long a thing takes from where it was to where it is."""
+"""The duration of the motion of an object [s]."""
 LEAST_S: Final = 1.2
-"""How long a commit is seen at least: its caption is to be read."""
+"""The minimum duration of a scene, so that its caption can be read [s]."""
 FIRST_S: Final = 1.5
 _LABELLED: Final = 8
-"""Things whose labels are shown at once."""
+"""The maximum number of labels in a scene."""
 
 
 class Scene(Struct, frozen=True, kw_only=True):
-    """What a commit changes of what is to be seen, and for how long it is shown [s]."""
+    """The visible changes of a commit, and how long they are shown [s]."""
 
     seconds: float
     caption: str
     add: tuple[Entity, ...] = ()
-    """Those that come, or are made anew in another shape."""
+    """The entities that appear, or get a new shape."""
     remove: tuple[str, ...] = ()
     glide: tuple[tuple[str, Pose, Pose], ...] = ()
-    """Name, from where and to where."""
+    """The moved entities: name, start and end."""
     labels: dict[str, str] = {}
-    """What is said of a thing, beside it."""
+    """The label of a changed entity, by name."""
 
 
 def scenes(
@@ -47,42 +47,42 @@ def scenes(
     speed: float = 1.0,
     longest_s: float = rhythm.LONGEST_S,
 ) -> Iterator[Scene]:
-    """The scenes of a movie: the map as it is at the start, by name, after commit `since`; then each commit.
+    """Yield the scenes of a video: the initial map, by name, after commit `since`; then each commit.
 
-    A scene is as long as it was until the next commit, divided by `speed`, and long enough to be read.
+    A scene lasts until the next commit, divided by `speed`, but at least as long as reading takes.
     """
     there = dict(start)
     stamps = [start_ns, *(commit.stamp_ns for commit in commits)]
     waits = [*rhythm.waits_s(stamps, speed=speed, longest_s=longest_s), 0.0]
     yield Scene(
         seconds=max(waits[0], FIRST_S),
-        caption=f"commit {since} · {_at(start_ns)} · how it was in the beginning",
-        add=tuple(entity for entity in there.values() if is_seen(entity)),
+        caption=f"commit {since} · {_format_time(start_ns)} · initial state",
+        add=tuple(entity for entity in there.values() if has_body(entity)),
     )
     for commit, wait_s in zip(commits, waits[1:], strict=True):
-        yield _of_commit(commit, there, max(wait_s, LEAST_S))
+        yield _commit_scene(commit, there, max(wait_s, LEAST_S))
 
 
-def is_seen(entity: Entity) -> bool:
-    """Has it a body? Places, and what is nowhere, have none."""
+def has_body(entity: Entity) -> bool:
+    """Return whether an entity has a body: places and entities without a pose do not."""
     return not entity.place and entity.pose is not None
 
 
-def _of_commit(commit: Commit, there: dict[str, Entity], seconds: float) -> Scene:
-    """The scene of a commit; `there` becomes what is there after it."""
+def _commit_scene(commit: Commit, there: dict[str, Entity], seconds: float) -> Scene:
+    """Return the scene of a commit; `there` is updated to the entities after it."""
     add, remove, glide, labels = [], [], [], dict[str, str]()
     for gone in commit.removed:
-        if (was := there.pop(gone.name, None)) is not None and is_seen(was):
+        if (was := there.pop(gone.name, None)) is not None and has_body(was):
             remove.append(gone.name)
             labels[gone.name] = f"{gone.name} is removed"
     for entity in commit.changed:
         was = there.get(entity.name)
         there[entity.name] = entity
-        if not is_seen(entity):
-            if was is not None and is_seen(was):
+        if not has_body(entity):
+            if was is not None and has_body(was):
                 remove.append(entity.name)
             continue
-        if was is None or was.pose is None or not is_seen(was):
+        if was is None or was.pose is None or not has_body(was):
             add.append(entity)
             labels[entity.name] = f"{entity.name} is added"
             continue
@@ -105,19 +105,19 @@ def _of_commit(commit: Commit, there: dict[str, Entity], seconds: float) -> Scen
 
 
 def caption(commit: Commit) -> str:
-    """`commit 12 · 2026-11-23 00:44:31 · operator/cli: move cup1`."""
+    """Return a caption such as `commit 12 · 2026-11-23 00:44:31 · operator/cli: move cup1`."""
     what = commit.reason or wording.entities(len(commit.names))
-    return f"commit {commit.seq} · {_at(commit.stamp_ns)} · {author(commit)}: {what}"
+    return f"commit {commit.seq} · {_format_time(commit.stamp_ns)} · {author(commit)}: {what}"
 
 
-def _at(stamp_ns: int) -> str:
+def _format_time(stamp_ns: int) -> str:
     return f"{datetime.fromtimestamp(stamp_ns // 1_000_000_000):%Y-%m-%d %H:%M:%S}"
 
 
 def steps(scene: Scene, fps: int) -> Iterator[tuple[float, int]]:
-    """The pictures of a scene: how far things have glided in each (0 to 1), and how many frames it stays.
+    """Yield the images of a scene: the fraction of the motion (0 to 1), and the number of frames.
 
-    What goes is there until things have arrived.
+    Removed objects are shown until the motion ends.
     """
     frames = max(1, round(scene.seconds * fps))
     gliding = min(frames - 1, round(GLIDE_S * fps)) if scene.glide or scene.remove else 0
@@ -129,8 +129,8 @@ def steps(scene: Scene, fps: int) -> Iterator[tuple[float, int]]:
     yield 1.0, frames - gliding
 
 
-def between(was: Pose, now: Pose, share: float) -> Pose:
-    """The pose when so much of the way is behind: straight, and turned the shorter way round."""
+def interpolate(was: Pose, now: Pose, share: float) -> Pose:
+    """Interpolate between two poses: in a straight line, with the shorter rotation."""
     at = tuple(a + share * (b - a) for a, b in zip(was.position_m, now.position_m, strict=True))
     p, q = was.orientation_wxyz, now.orientation_wxyz
     sign = 1.0 if sum(a * b for a, b in zip(p, q, strict=True)) >= 0.0 else -1.0
@@ -141,5 +141,5 @@ def between(was: Pose, now: Pose, share: float) -> Pose:
 
 
 def total_s(board: Iterable[Scene]) -> float:
-    """How long the movie is [s]."""
+    """Return the duration of the video [s]."""
     return sum(scene.seconds for scene in board)

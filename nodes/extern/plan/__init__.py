@@ -1,1 +1,1 @@
-"""Plans to print: rooms, furniture as it stands, and names, as SVG at a scale."""
+"""Floor plans to print: rooms, furniture and names, as SVG at a scale."""

@@ -1,4 +1,4 @@
-"""What a plan shows, in the map frame [m]: rooms, parts of rooms, and the footprints of things."""
+"""The contents of a plan in the map frame [m]: rooms, parts of rooms, and the footprints of objects."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from semmap.schemas.polygons import Polygon as Outline
 from semmap.schemas.polygons import extent_of
 
 Kind = Literal["furniture", "small", "person", "door", "window", "overhead"]
-"""`small`: what stands on something. `overhead`: what hangs above where people walk."""
+"""`small`: an object on another one. `overhead`: an object above the height of people."""
 
 OVERHEAD_M: Final = 2.0
-"""What begins higher than this above the floor is drawn dashed."""
+"""Objects whose bottom is higher above the floor are drawn dashed."""
 _ON_SOMETHING_M: Final = 0.25
 _SMALL_M2: Final = 0.12
 _MOSTLY: Final = 0.6
-"""The share of its floor by which one place counts as part of another, or as made up of others."""
+"""The fraction of its floor from which a place counts as part of another one, or as composed of others."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Area:
 
 @dataclass(frozen=True)
 class Piece:
-    """A thing as it stands; `outline` is its footprint, counterclockwise."""
+    """An object; `outline` is its footprint, counterclockwise."""
 
     name: str
     kind: Kind
@@ -50,22 +50,22 @@ class Piece:
 
 @dataclass(frozen=True)
 class Floor:
-    """All that one plan shows. `pieces` are in the order of their tops: what is above is drawn later."""
+    """The contents of a plan. `pieces` are ordered by their tops: upper objects are drawn last."""
 
     rooms: tuple[Area, ...]
     zones: tuple[Area, ...]
     pieces: tuple[Piece, ...]
     unplaced: int = 0
-    """Things without a position or a size, which no plan can show."""
+    """The number of entities without a position or a size, which are not drawn."""
 
     def at(self, point: Point) -> str | None:
-        """The name of what is at a point of the map [m], the uppermost first; of a room, if that is all."""
+        """Return the name of the uppermost object at a point of the map [m], or of the room."""
         shapes: list[Area | Piece] = [*reversed(self.pieces), *reversed(self.zones), *self.rooms]
         return next((shape.name for shape in shapes if Outline(shape.outline).contains(point)), None)
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
-        """The least and greatest x, then y, of all but what is in walls; a square metre for an empty plan."""
+        """The least and greatest x, then y, without doors and windows; a square metre for an empty plan."""
         inside = [piece for piece in self.pieces if piece.kind not in ("door", "window")]
         shapes: list[Area | Piece] = [*self.rooms, *self.zones, *inside]
         points = [point for shape in shapes for point in shape.outline]
@@ -80,10 +80,9 @@ def floor_of(
     poses: Mapping[str, Pose] | None = None,
     outlines: Mapping[str, Polygon] | None = None,
 ) -> Floor:
-    """The plan of these entities: where `poses` says, or else where the map does.
+    """Return the plan of these entities, at `poses` or else at their poses in the map.
 
-    Places whose extents are polygons have these outlines; `outlines` are others (map frame [m],
-    counterclockwise).
+    The outline of a place is its extent, or the one in `outlines` (map frame [m], counterclockwise).
     """
     poses, outlines = poses or {}, outlines or {}
     places: list[Area] = []
@@ -111,7 +110,7 @@ def floor_of(
 
 
 def footprint(pose: Pose, size: Size) -> tuple[Point, ...]:
-    """The outline of a box on the floor, however it is turned; counterclockwise, map frame [m]."""
+    """Return the footprint of a box in any orientation, counterclockwise, in the map frame [m]."""
     half_x, half_y, height = size[0] / 2.0, size[1] / 2.0, size[2]
     heights = (0.0,) if _is_upright(pose.orientation_wxyz) else (0.0, height)
     x0, y0, _ = pose.position_m
@@ -127,7 +126,7 @@ def _is_upright(wxyz: Quaternion) -> bool:
 
 
 def _floor_axes(wxyz: Quaternion) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """The first two rows of the rotation matrix."""
+    """Return the first two rows of the rotation matrix."""
     w, x, y, z = wxyz
     return (
         (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
@@ -149,7 +148,7 @@ def _kind(entity: Entity, pose: Pose, outline: Polygon) -> Kind:
 
 
 def _rooms_and_zones(places: Sequence[Area]) -> tuple[tuple[Area, ...], tuple[Area, ...]]:
-    """Rooms, and parts of rooms. What is made up of other places, as a flat is of its rooms, is neither."""
+    """Return rooms and parts of rooms. A place that is composed of others, such as a flat, is neither."""
     ordered = sorted((p for p in places if p.floor_m2 > 0.0), key=lambda p: -p.floor_m2)
     rooms: list[Area] = []
     zones: list[Area] = []
@@ -164,7 +163,7 @@ def _rooms_and_zones(places: Sequence[Area]) -> tuple[tuple[Area, ...], tuple[Ar
 
 
 def _is_made_up(place: Area, smaller: Sequence[Area]) -> bool:
-    """Several smaller places that hardly overlap take up most of its floor."""
+    """Return whether several smaller places without much overlap cover most of its floor."""
     parts: list[Area] = []
     for other in smaller:
         apart = all(_shared_m2(other, part) < 0.1 * other.floor_m2 for part in parts)
@@ -174,5 +173,5 @@ def _is_made_up(place: Area, smaller: Sequence[Area]) -> bool:
 
 
 def _shared_m2(a: Area, b: Area) -> float:
-    """The floor that two places share, by their convex hulls [m^2]."""
+    """Return the area that two places share, by their convex hulls [m^2]."""
     return area(clipped(hull(a.outline), hull(b.outline)))

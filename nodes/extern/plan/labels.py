@@ -1,4 +1,4 @@
-"""Where names go on a sheet, so that none covers another: rectangles on paper, in millimetres, y down."""
+"""Placement of labels on a sheet without overlap: rectangles in millimetres, y down."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Final, NamedTuple
 
 _EM_MM: Final = 0.6
-"""The width of a letter as a share of the font's size: that of wide faces, so that no reader's is wider."""
+"""The width of a letter divided by the font size, for wide fonts."""
 _OFFSETS_MM: Final = (0.6, 2.0, 4.0, 7.0)
-"""How far from a thing its name may stand."""
+"""The possible distances of a label from its object."""
 
 
 class Box(NamedTuple):
@@ -22,22 +22,22 @@ class Box(NamedTuple):
 
     @property
     def middle(self) -> tuple[float, float]:
-        """Its centre [mm]."""
+        """The centre [mm]."""
         return ((self.x0 + self.x1) / 2.0, (self.y0 + self.y1) / 2.0)
 
     def holds(self, other: Box) -> bool:
-        """Is all of `other` within it?"""
+        """Return whether it contains all of `other`."""
         return self.x0 <= other.x0 and self.y0 <= other.y0 and self.x1 >= other.x1 and self.y1 >= other.y1
 
     def overlap_mm2(self, other: Box) -> float:
-        """The area that both share."""
+        """Return the area of the intersection."""
         wide = min(self.x1, other.x1) - max(self.x0, other.x0)
         high = min(self.y1, other.y1) - max(self.y0, other.y0)
         return wide * high if wide > 0.0 and high > 0.0 else 0.0
 
 
 class Label(NamedTuple):
-    """A text in its box; `upright` reads from below, `leader` is the point that a line leads to."""
+    """A text in its box; `upright` is rotated by 90°, `leader` is the end point of a leader line."""
 
     text: str
     box: Box
@@ -46,7 +46,7 @@ class Label(NamedTuple):
 
 
 def text_width_mm(text: str, size_mm: float) -> float:
-    """How wide a text is at most, in a sans-serif face."""
+    """Return the maximum width of a text in a sans-serif font."""
     return sum(_ems(letter) for letter in text) * size_mm
 
 
@@ -57,7 +57,7 @@ def _ems(letter: str) -> float:
 
 
 class _Boxes:
-    """Boxes by the squares of the sheet that they lie on, so that few are looked at."""
+    """Boxes in a grid of squares, for fast lookup of neighbours."""
 
     _SIDE_MM: Final = 12.0
 
@@ -71,7 +71,7 @@ class _Boxes:
             self._by_square.setdefault(square, []).append(box)
 
     def near(self, box: Box) -> set[Box]:
-        """Those that may overlap `box`, alike ones once."""
+        """Return the boxes that may overlap `box`, without duplicates."""
         return {other for square in self._squares(box) for other in self._by_square.get(square, ())}
 
     def _squares(self, box: Box) -> Iterator[tuple[int, int]]:
@@ -82,17 +82,17 @@ class _Boxes:
 
 
 class Sheet:
-    """A sheet that labels are put on one after another."""
+    """A sheet on which labels are placed one after another."""
 
     def __init__(self, within: Box, things: Sequence[Box], walls: Sequence[Box] = ()) -> None:
-        """Labels stay `within`; they would rather not cover `things`, and still less `walls`."""
+        """Labels stay `within`. Covering `things` has a cost, and covering `walls` a higher one."""
         self._within = within
         self._things = _Boxes(things)
         self._walls = _Boxes(walls)
         self._taken = _Boxes()
 
     def place(self, text: str, size_mm: float, thing: Box, *, most_cost: float = 6.0) -> Label | None:
-        """Put a thing's name in it or beside it; None where there is no room."""
+        """Place the name of an object in it or next to it; return None if there is no space."""
         wide, high = text_width_mm(text, size_mm), 1.15 * size_mm
         for candidate in _inside(text, wide, high, thing):
             if self._is_free(candidate.box) and self._covers(candidate.box, thing) < 0.3 * wide * high:
@@ -108,7 +108,7 @@ class Sheet:
         return None if best is None else self._take(best)
 
     def place_in(self, text: str, size_mm: float, high_mm: float, room: Box) -> Label | None:
-        """Put a room's name where it covers least of what is in the room; None where there is no room."""
+        """Place the name of a room where it covers least of its contents, or return None."""
         wide = text_width_mm(text, size_mm)
         free_x, free_y = room.x1 - room.x0 - wide, room.y1 - room.y0 - high_mm
         if free_x < 0.0 or free_y < 0.0:
@@ -137,7 +137,7 @@ class Sheet:
         return self._within.holds(box) and not _shared(self._taken, box)
 
     def _covers(self, box: Box, own: Box | None = None) -> float:
-        """The area of other things under it [mm^2]; that which its own thing stands on does not count."""
+        """Return the area of other objects under a label [mm^2], without the support of its own object."""
         return sum(
             box.overlap_mm2(thing) for thing in self._things.near(box) if own is None or not thing.holds(own)
         )
@@ -158,7 +158,7 @@ def _inside(text: str, wide: float, high: float, thing: Box) -> Iterator[Label]:
 
 
 def _beside(text: str, wide: float, high: float, thing: Box) -> Iterator[tuple[float, Label]]:
-    """Places around a thing with how far away they are; those further away lead back to it by a line."""
+    """Yield positions around an object with their distances; distant ones have a leader line."""
     x, y = thing.middle
     for far in _OFFSETS_MM:
         left, right = thing.x0 - far - wide, thing.x1 + far
@@ -173,6 +173,6 @@ def _beside(text: str, wide: float, high: float, thing: Box) -> Iterator[tuple[f
 
 
 def box_of(points: Iterable[tuple[float, float]]) -> Box:
-    """The smallest box around points, of which there must be one."""
+    """Return the bounding box of points, of which there must be at least one."""
     xs, ys = zip(*points, strict=True)
     return Box(min(xs), min(ys), max(xs), max(ys))

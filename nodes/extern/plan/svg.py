@@ -1,4 +1,4 @@
-"""The plan as an SVG document at a scale, on an A4 sheet: to look at and to print."""
+"""The plan as an SVG document at a scale, on an A4 sheet."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _PIXELS_IN_MM: Final = 96.0 / 25.4
 """CSS pixels."""
 _HEAD_MM, _FOOT_MM, _RULER_MM = 10.0, 9.0, 5.0
 _LEGEND_MM: Final = 52.0
-"""The width of the list of what has no room for its name on the plan."""
+"""The width of the list of objects whose names do not fit on the plan."""
 _SCALES: Final = (
     10,
     20,
@@ -44,7 +44,7 @@ _BARS_M: Final = (0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _WALL_M: Final = 0.1
 _ROOM_TEXT_MM, _NAME_MM, _SMALL_MM, _NUMBER_MM = 3.4, 2.1, 1.9, 1.7
 _NAMED_FROM_MM: Final = 0.5
-"""A thing that is smaller on paper gets no name of its own."""
+"""The minimum size of an object on paper for a label."""
 _MOST_LABELS: Final = 1500
 
 _STYLE: Final = """
@@ -69,15 +69,15 @@ text{font-family:Helvetica,Arial,'DejaVu Sans',sans-serif;fill:#1d2430}
 
 
 def drawing(floor: Floor, *, title: str, commit: int, stamp_ns: int) -> str:
-    """The plan of `floor` as an SVG document: see `draw`."""
+    """Return the plan of `floor` as an SVG document; see `draw`."""
     return draw(floor, title=title, commit=commit, stamp_ns=stamp_ns).svg
 
 
 def draw(floor: Floor, *, title: str, commit: int, stamp_ns: int) -> Drawing:
-    """The plan of `floor` on one A4 sheet, at the largest usual scale that fits.
+    """Draw the plan of `floor` on an A4 sheet, at the largest standard scale that fits.
 
-    `title` heads the sheet, with the commit that it shows and that commit's time [ns since 1970; 0 for
-    unknown]. Names that find no room on the plan are numbers there, and listed beside it.
+    The heading is `title` with the commit and its time [ns since 1970; 0 for unknown]. Objects whose names do
+    not fit on the plan are numbered and listed.
     """
     sheet = _sheet_for(floor)
     lines = (
@@ -99,7 +99,7 @@ def draw(floor: Floor, *, title: str, commit: int, stamp_ns: int) -> Drawing:
 
 @dataclass(frozen=True)
 class Drawing:
-    """An SVG document, and where on it what of the map is."""
+    """An SVG document with its transformation between map and image."""
 
     svg: str
     _sheet: _Paper
@@ -115,18 +115,18 @@ class Drawing:
         return self._sheet.high
 
     def pixel(self, point: Point) -> tuple[float, float]:
-        """Where a point of the map [m] is on the picture [CSS pixel, y down]."""
+        """Return the position of a point of the map [m] in the image [CSS pixel, y down]."""
         x, y = self._sheet.at(point)
         return (x * _PIXELS_IN_MM, y * _PIXELS_IN_MM)
 
     def point(self, x: float, y: float) -> Point:
-        """The point of the map [m] that a pixel of the picture shows."""
+        """Return the point of the map [m] at a position in the image [CSS pixel]."""
         return self._sheet.point((x / _PIXELS_IN_MM, y / _PIXELS_IN_MM))
 
 
 @dataclass(frozen=True)
 class _Paper:
-    """A sheet, and how the map lies on it: a point of the map in millimetres from the upper left corner."""
+    """A sheet with the scale and the bounds of the map; its coordinates are mm from the upper left corner."""
 
     wide: float
     high: float
@@ -135,19 +135,19 @@ class _Paper:
 
     @property
     def mm(self) -> float:
-        """Millimetres on paper for a metre of the map."""
+        """Millimetres on paper per metre of the map."""
         return 1000.0 / self.scale
 
     @property
     def frame(self) -> Box:
-        """Where the map is drawn."""
+        """The area of the map."""
         x0, x1, y0, y1 = self.bounds
         left, top = _MARGIN_MM + _RULER_MM, _MARGIN_MM + _HEAD_MM
         return Box(left, top, left + (x1 - x0) * self.mm, top + (y1 - y0) * self.mm)
 
     @property
     def legend(self) -> Box:
-        """Where names are listed: to the right of the map, or below it."""
+        """The area of the list of names: to the right of the map, or below it."""
         frame = self.frame
         bottom = self.high - _MARGIN_MM - _FOOT_MM
         beside = self.wide - _MARGIN_MM - frame.x1 - 4.0
@@ -193,7 +193,7 @@ def _head(sheet: _Paper, title: str, commit: int, stamp_ns: int) -> Iterator[str
 
 
 def _ruler(sheet: _Paper) -> Iterator[str]:
-    """The axes of the map frame, with the metres along them."""
+    """Draw the axes of the map frame with their scales [m]."""
     frame = sheet.frame
     x0, x1, y0, y1 = sheet.bounds
     step = next((bar for bar in _BARS_M if bar * sheet.mm >= 11.0), _BARS_M[-1])
@@ -211,7 +211,7 @@ def _ruler(sheet: _Paper) -> Iterator[str]:
 
 
 def _shapes(sheet: _Paper, floor: Floor) -> Iterator[str]:
-    """Walls are what is left around and between the floors."""
+    """Draw all shapes. Walls are the area around and between the floors."""
     for room in floor.rooms:
         yield _polygon(sheet, room.outline, "wall", stroke_mm=2.0 * _WALL_M * sheet.mm)
     for room in floor.rooms:
@@ -227,19 +227,19 @@ def _shapes(sheet: _Paper, floor: Floor) -> Iterator[str]:
 
 
 def _opening(sheet: _Paper, piece: Piece) -> Iterator[str]:
-    """A gap in the wall, with the leaf of the door or the pane of the window in it."""
+    """Draw a gap in the wall with a door or a window."""
     yield _polygon(sheet, _as_thick_as_the_wall(piece.outline), "gap")
     kind = "pane" if piece.kind == "window" else "open" if piece.is_open else "leaf"
     yield _polygon(sheet, piece.outline, kind, of=piece.name)
 
 
 def _as_thick_as_the_wall(outline: Polygon) -> Polygon:
-    """A rectangle stretched across its long sides until it fills the wall."""
+    """Extend a rectangle across its long sides to the thickness of the wall."""
     if len(outline) != 4:
         return outline
     a, b, c, d = outline
     if math.dist(a, b) > math.dist(b, c):
-        a, b, c, d = b, c, d, a  # now a to b is across the wall
+        a, b, c, d = b, c, d, a  # a to b is across the wall
     thick = math.dist(a, b)
     if not 0.0 < thick < _WALL_M:
         return outline
@@ -249,7 +249,7 @@ def _as_thick_as_the_wall(outline: Polygon) -> Polygon:
 
 
 def _names(sheet: _Paper, floor: Floor) -> Iterator[str]:
-    """The names of rooms, then of things, the largest first; what finds no room is numbered and listed."""
+    """Draw the names of rooms, then of objects, the largest first. Names that do not fit are listed."""
     boxes = {piece.name: sheet.box(piece.outline) for piece in floor.pieces}
     labels = Sheet(sheet.frame, tuple(boxes.values()), _walls(sheet, floor.rooms))
     for room in floor.rooms:
@@ -279,7 +279,7 @@ def _extent(box: Box) -> float:
 
 
 def _walls(sheet: _Paper, rooms: Sequence[Area]) -> tuple[Box, ...]:
-    """The walls of the rooms, as far as they run along the axes: names had better not cross them."""
+    """Return the walls that are parallel to the axes, which names should not cross."""
     thick, sides = _WALL_M * sheet.mm, []
     for room in rooms:
         for a, b in zip(room.outline, (*room.outline[1:], room.outline[0]), strict=True):
@@ -322,12 +322,12 @@ def _legend(sheet: _Paper, listed: Sequence[tuple[int, str]], unnamed: int) -> I
         yield _text(x + 3.6, y, str(number), _SMALL_MM, "soft", anchor="end")
         yield _text(x + 4.6, y, name, _SMALL_MM, "name")
     if (more := unnamed + max(0, len(listed) - shown)) > 0:
-        what = "thing has" if more == 1 else "things have"
-        yield _text(box.x0, box.y1, f"{more} more {what} no room for a name", _SMALL_MM, "soft")
+        what = "object" if more == 1 else "objects"
+        yield _text(box.x0, box.y1, f"{more} more {what}", _SMALL_MM, "soft")
 
 
 def _foot(sheet: _Paper, floor: Floor) -> Iterator[str]:
-    """The scale, as a bar and as a number, and what the plan cannot show."""
+    """Draw the scale, as a bar and as a number, and the number of entities that are not drawn."""
     y = sheet.high - _MARGIN_MM
     bar = next((b for b in reversed(_BARS_M) if b * sheet.mm <= 45.0), _BARS_M[0])
     long = bar * sheet.mm
@@ -340,9 +340,9 @@ def _foot(sheet: _Paper, floor: Floor) -> Iterator[str]:
     yield _text(_MARGIN_MM + long, y - 2.4, f"{bar:g} m", 2.2, "soft", anchor="middle")
     yield _text(_MARGIN_MM + long + 8.0, y, f"1 : {sheet.scale}", 3.2, "name")
     if floor.unplaced:
-        what = "thing has" if floor.unplaced == 1 else "things have"
-        said = f"{floor.unplaced} {what} no known position or size"
-        yield _text(sheet.wide - _MARGIN_MM, y, said, 2.2, "soft", anchor="end")
+        what = "object" if floor.unplaced == 1 else "objects"
+        note = f"{floor.unplaced} {what} without position or size"
+        yield _text(sheet.wide - _MARGIN_MM, y, note, 2.2, "soft", anchor="end")
 
 
 def _polygon(sheet: _Paper, outline: Polygon, kind: str, *, of: str = "", stroke_mm: float = 0.0) -> str:
@@ -360,5 +360,5 @@ def _text(
 
 
 def _plain(text: str) -> str:
-    """Without the control characters that no XML document may hold."""
+    """Replace the control characters, which XML does not permit, by spaces."""
     return "".join(letter if letter.isprintable() else " " for letter in text)

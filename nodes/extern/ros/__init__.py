@@ -1,1 +1,1 @@
-"""ROS 2 without ROS: the map as topics on rmw_zenoh's wire, and as MCAP files."""
+"""ROS 2 without ROS: the map as topics in the protocol of rmw_zenoh, and as MCAP files."""

@@ -1,4 +1,4 @@
-"""The map on ROS's topics: it follows map and poses, and publishes what differs from what it published."""
+"""The map on ROS topics: the bridge subscribes to the map and its poses, and publishes the changes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from semmap.nodes.drawing.surfaces import Kind, SurfaceCache
 from semmap.nodes.extern.ros import messages
 from semmap.nodes.extern.ros.messages import Moment
 from semmap.nodes.extern.ros.published_frames import Placed, PublishedFrames
-from semmap.nodes.extern.ros.things import Thing, things_of
+from semmap.nodes.extern.ros.things import Thing, located_things
 from semmap.nodes.extern.ros.types import encode, topic
 from semmap.nodes.navigation.grid import occupancy
 from semmap.nodes.runtime.following import Follower
@@ -29,9 +29,9 @@ from semmap.schemas.scenes import Poses, Scene, SceneQuery, Surface, SurfaceQuer
 
 _TICK_S: Final = 0.05
 _AGAIN_S: Final = 1.0
-"""Transforms of what does not move are said so often: listeners forget old ones."""
+"""The period of transforms of static objects, because listeners drop old transforms."""
 _WHOLE_S: Final = 0.5
-"""What is published as a whole, and a scene to plan in, is so no more often."""
+"""The minimum period of detections, markers and the planning scene."""
 _GREETING_S: Final = (0.0, 1.0, 4.0)
 _FLOOR_S: Final = 2.0
 _CELL_M: Final = 0.05
@@ -49,7 +49,7 @@ class Topics(NamedTuple):
 
 
 def topics(prefix: str = "/semmap", planning_scene: str = "/planning_scene") -> Topics:
-    """Detections, markers and grid are semmap's own and latched; the others are where ROS looks for them."""
+    """Return the topics: detections, markers and grid are latched; the others have the usual names of ROS."""
     return Topics(
         detections=topic(f"{prefix}/detections", "vision_msgs/msg/Detection3DArray", latched=True),
         markers=topic(f"{prefix}/markers", "visualization_msgs/msg/MarkerArray", latched=True),
@@ -60,7 +60,7 @@ def topics(prefix: str = "/semmap", planning_scene: str = "/planning_scene") -> 
 
 
 class Bridge:
-    """Binds the map to ROS's topics. Owned by the node's thread."""
+    """Publishes the map on ROS topics. It is owned by the thread of the node."""
 
     def __init__(
         self,
@@ -73,7 +73,7 @@ class Bridge:
         period_s: float = 0.1,
         tell: Callable[[str], None] = lambda _: None,
     ) -> None:
-        """`frame` is what the map's frame is called in ROS; transforms are published each `period_s`."""
+        """`frame` is the name of the map frame in ROS; transforms are published every `period_s`."""
         self._node, self._frame, self._period_s, self._tell = node, frame, period_s, tell
         self._map = MapReplica[Effects]()
         self._scene = SceneState()
@@ -83,11 +83,11 @@ class Bridge:
         self._surfaces: SurfaceCache | None = SurfaceCache() if meshes else None
         self._things: dict[str, Thing] = {}
         self._is_stale = True
-        self._said: dict[str, Thing] | None = None
+        self._published: dict[str, Thing] | None = None
         self._planned: dict[str, Thing] = {}
         self._transformed: dict[str, Thing] = {}
         self._frames = PublishedFrames(node, self._map)
-        self._told_frames: Mapping[str, Placed] = {}
+        self._published_frames: Mapping[str, Placed] = {}
         self._due_s = dict.fromkeys(("whole", "transforms", "again", "floor"), 0.0)
         self._publishers: dict[RosTopic, RosPublisher] = {made: ros.publish(made) for made in of}
         self._topics = of
@@ -95,34 +95,34 @@ class Bridge:
             node,
             self._map,
             keys.EFFECTS,
-            heard=lambda _, __: self._stir(),
-            begun=self._begun,
-            classes_at=keys.CMD,  # a viewer may ask for that, too
+            heard=lambda _, __: self._mark_changed(),
+            begun=self._on_snapshot,
+            classes_at=keys.CMD,  # the role viewer also has this permission
         )
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow_newest(keys.LIVE_POSES, self._on_live)
-        ros.when_subscribed(of.planning_scene, lambda: node.soon(self._greet))
+        ros.when_subscribed(of.planning_scene, lambda: node.soon(self._on_subscriber))
         node.every(_TICK_S, self._tick)
 
-    # What is known
+    # Subscriptions
 
-    def _begun(self, _: Any) -> None:
-        self._stir()
+    def _on_snapshot(self, _: Any) -> None:
+        self._mark_changed()
         self._tell(f"publishing {len(self._map.entities)} entities as of commit {self._map.seq}")
         self._node.ready("publishing to ROS")
 
-    def _stir(self) -> None:
+    def _mark_changed(self) -> None:
         self._is_stale = True
 
     def _on_poses(self, poses: Poses) -> None:
         if not self._scene.matches(poses):
             self._fetch_scene()
         elif any(self._scene.follow(poses)):
-            self._stir()
+            self._mark_changed()
 
     def _on_live(self, live: LivePoses) -> None:
-        self._live = {name: said.pose for name, said in live.entities.items()}
-        self._stir()
+        self._live = {name: entity.pose for name, entity in live.entities.items()}
+        self._mark_changed()
 
     def _fetch_scene(self) -> None:
         if self._fetching:
@@ -133,7 +133,7 @@ class Bridge:
             self._fetching = False
             if done.exception() is None:
                 self._scene.take(done.result())
-                self._stir()
+                self._mark_changed()
                 self._fetch_surfaces()
 
         self._node.ask_later(keys.SIM, SceneQuery()).add_done_callback(on_scene)
@@ -152,29 +152,29 @@ class Bridge:
                 return
             for name, surface in done.result().surfaces.items():
                 cache.take(kinds[name], surface)
-            self._plan_anew()
+            self._resend_planning_scene()
 
         self._node.ask_later(keys.SIM, SurfaceQuery(names=tuple(kinds))).add_done_callback(on_surfaces)
 
-    def _looks(self) -> Mapping[str, Surface]:
+    def _known_surfaces(self) -> Mapping[str, Surface]:
         if (cache := self._surfaces) is None:
             return {}
         known = {name: cache.of(body) for name, body in self._scene.bodies.items()}
         return {name: surface for name, surface in known.items() if surface is not None}
 
-    # What is said
+    # Publications
 
     def _tick(self) -> None:
         if self._map.seq < 0:
             return
         if self._is_stale:
             self._is_stale = False
-            self._things = things_of(self._map.entities.values(), self._scene.bodies, self._live)
+            self._things = located_things(self._map.entities.values(), self._scene.bodies, self._live)
         at = Moment(self._frame, time.time_ns())
         if self._is_due("transforms", self._period_s):
             self._transform(at)
-        if _differ(self._things, self._said) and self._is_due("whole", _WHOLE_S):
-            self._said = self._things
+        if _differ(self._things, self._published) and self._is_due("whole", _WHOLE_S):
+            self._published = self._things
             self._put(self._topics.detections, messages.detections(self._things.values(), at))
             self._put(self._topics.markers, messages.markers(self._things.values(), at))
             self._plan(at)
@@ -195,31 +195,33 @@ class Bridge:
         self._node.ask_later(keys.CMD, PlanFloor()).add_done_callback(on_floor)
 
     def _transform(self, at: Moment) -> None:
-        """Those that moved, frames of others included; and all of them now and then."""
+        """Publish the transforms of moved objects and published frames, and periodically all of them."""
         again = self._is_due("again", _AGAIN_S)
         before = {} if again else self._transformed
-        news = [t for t in self._things.values() if t.name not in before or not t.stands_as(before[t.name])]
+        news = [
+            t for t in self._things.values() if t.name not in before or not t.has_same_pose(before[t.name])
+        ]
         self._transformed = self._things
         frames = self._frames.now()
-        told = {} if again else self._told_frames
-        moved = {name: placed for name, placed in frames.items() if told.get(name) != placed}
-        self._told_frames = frames
+        published = {} if again else self._published_frames
+        moved = {name: to_matrix for name, to_matrix in frames.items() if published.get(name) != to_matrix}
+        self._published_frames = frames
         if news or moved:
             self._put(self._topics.transforms, messages.transforms(news, at, moved))
 
     def _plan(self, at: Moment) -> None:
         before, self._planned = self._planned, self._things
-        scene = messages.planning_scene(self._things, before, self._looks(), at)
+        scene = messages.planning_scene(self._things, before, self._known_surfaces(), at)
         if scene is not None:
             self._put(self._topics.planning_scene, scene)
 
-    def _greet(self) -> None:
-        """Somebody has come who knows nothing yet; the token may be here before there are ears."""
+    def _on_subscriber(self) -> None:
+        """Send the whole planning scene to a new subscriber, which may not receive it immediately."""
         for delay_s in _GREETING_S:
-            self._node.later(delay_s, self._plan_anew)
+            self._node.later(delay_s, self._resend_planning_scene)
 
-    def _plan_anew(self) -> None:
-        """All of it is said again."""
+    def _resend_planning_scene(self) -> None:
+        """Publish the whole planning scene again."""
         self._planned = {name: thing for name, thing in self._planned.items() if name not in self._things}
         if self._things:
             self._plan(Moment(self._frame, time.time_ns()))
@@ -242,6 +244,7 @@ def _differ(one: Mapping[str, Thing], other: Mapping[str, Thing] | None) -> bool
         other is None
         or one.keys() != other.keys()
         or any(
-            not thing.is_like(other[name]) or not thing.stands_as(other[name]) for name, thing in one.items()
+            not thing.has_same_shape(other[name]) or not thing.has_same_pose(other[name])
+            for name, thing in one.items()
         )
     )

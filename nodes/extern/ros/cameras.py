@@ -1,4 +1,4 @@
-"""A depth camera of ROS: its colour, depth and intrinsics, put together to frames for perception."""
+"""ROS depth cameras: colour, depth and intrinsics are combined to frames for perception."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ import numpy as np
 from msgspec import structs
 
 from semmap.nodes.extern.ros.frames import Frames
-from semmap.nodes.extern.ros.pictures import colour_of, depth_of
+from semmap.nodes.extern.ros.images import colour_of, depth_of
 from semmap.schemas import errors
 from semmap.schemas.entities import NAME_PATTERN
 from semmap.schemas.scenes import CameraFrame
 
 _APART_NS: Final = 30_000_000
-"""Colour and depth that were taken within that are of one frame, as drivers stamp them."""
+"""The maximum time between colour and depth of a frame."""
 _KEPT: Final = 8
 
 
 class CameraTopics(NamedTuple):
-    """A camera's name, and the topics of its colour, depth (registered to the colour) and intrinsics."""
+    """The name of a camera, and the topics of its colour, depth (registered to colour) and intrinsics."""
 
     name: str
     colour: str
@@ -31,7 +31,7 @@ class CameraTopics(NamedTuple):
 
 
 class Planes(NamedTuple):
-    """A frame: what goes with its colour and its depth, and both."""
+    """A frame: the metadata of colour and depth, and their pixels."""
 
     colour: CameraFrame
     depth: CameraFrame
@@ -39,14 +39,14 @@ class Planes(NamedTuple):
     depth_m: bytes
 
 
-def camera_topics(said: str) -> CameraTopics:
-    """`NAME=COLOUR,DEPTH,INFO`. Raises BadRequest for anything else."""
-    name, _, rest = said.partition("=")
+def parse_camera(text: str) -> CameraTopics:
+    """Parse `NAME=COLOUR,DEPTH,INFO`. Raises BadRequest for other texts."""
+    name, _, rest = text.partition("=")
     parts = rest.split(",")
     if not re.match(NAME_PATTERN, name) or len(parts) != 3 or not all(_is_topic(part) for part in parts):
         raise errors.BadRequest(
-            f"'{said}' is no camera; example: front=/camera/color/image_raw,/camera/aligned_depth_to_color"
-            "/image_raw,/camera/color/camera_info"
+            f"'{text}' is not NAME=COLOUR,DEPTH,INFO; example: front=/camera/color/image_raw,"
+            "/camera/aligned_depth_to_color/image_raw,/camera/color/camera_info"
         )
     return CameraTopics(name, *parts)
 
@@ -56,10 +56,10 @@ def _is_topic(name: str) -> bool:
 
 
 class Camera:
-    """Puts together what comes of one camera. Any thread may use it."""
+    """Combines the messages of one camera to frames. It can be used from any thread."""
 
     def __init__(self, name: str, frames: Frames, base: str) -> None:
-        """`base` is what ROS calls the frame of the map."""
+        """`base` is the name of the map frame in ROS."""
         self.name = name
         self._frames, self._base = frames, base
         self._lock = threading.Lock()
@@ -68,22 +68,22 @@ class Camera:
         self._depths: deque[Any] = deque(maxlen=_KEPT)
 
     def take_info(self, info: Any) -> None:
-        """A `sensor_msgs/CameraInfo`."""
+        """Take a `sensor_msgs/CameraInfo`."""
         self._info = info
 
     def take_colour(self, image: Any) -> Planes | None:
-        """A `sensor_msgs/Image`; the frame that it makes whole. Raises BadRequest for what makes no sense."""
+        """Take a `sensor_msgs/Image`, and return the frame that it completes. Raises BadRequest."""
         with self._lock:
             self._colours.append(image)
-            return self._paired()
+            return self._take_pair()
 
     def take_depth(self, image: Any) -> Planes | None:
-        """The same of a depth picture."""
+        """Take a depth image, and return the frame that it completes. Raises BadRequest."""
         with self._lock:
             self._depths.append(image)
-            return self._paired()
+            return self._take_pair()
 
-    def _paired(self) -> Planes | None:
+    def _take_pair(self) -> Planes | None:
         if not self._colours or not self._depths or self._info is None:
             return None
         apart, colour, depth = min(
@@ -104,13 +104,13 @@ class Camera:
         info, stamp_ns = self._info, _stamp_ns(depth)
         if (info.width, info.height) != (depth.width, depth.height):
             raise errors.BadRequest(
-                f"camera {self.name}: its intrinsics are of {info.width} x {info.height} pixels, its depth"
-                f" has {depth.width} x {depth.height}; use the camera_info of that very picture"
+                f"camera {self.name}: the intrinsics are for {info.width} x {info.height} pixels, the depth"
+                f" image has {depth.width} x {depth.height}; use the camera_info of the depth image"
             )
         intrinsics = np.array(info.k, float).reshape(3, 3)
-        intrinsics[:2, 2] += 0.5  # in ROS the middle of the first pixel is at (0, 0)
+        intrinsics[:2, 2] += 0.5  # in ROS, the centre of the first pixel is (0, 0)
         where = self._frames.pose(depth.header.frame_id, self._base, stamp_ns)
-        told = CameraFrame(
+        depth_frame = CameraFrame(
             camera=self.name,
             encoding="depth32f",
             width=depth.width,
@@ -120,8 +120,8 @@ class Camera:
             intrinsics=tuple(intrinsics.ravel().tolist()),
             map_from_camera=tuple(where.ravel().tolist()),
         )
-        coloured = structs.replace(told, encoding="rgb8", width=colour.width, height=colour.height)
-        return Planes(coloured, told, colour_of(colour), depth_of(depth))
+        colour_frame = structs.replace(depth_frame, encoding="rgb8", width=colour.width, height=colour.height)
+        return Planes(colour_frame, depth_frame, colour_of(colour), depth_of(depth))
 
 
 def _stamp_ns(image: Any) -> int:

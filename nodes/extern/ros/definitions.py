@@ -1,6 +1,6 @@
-"""Interfaces that no package of the registry brings, field by field, as their documentation has them.
+"""Message definitions that no Python package includes, from their documentation.
 
-Constants are left out: they are no part of a type's hash, nor of what is sent.
+Constants are left out: they are not part of the hash of a type, nor of its messages.
 """
 
 from __future__ import annotations
@@ -86,4 +86,4 @@ DEFINITIONS: Final = {
         "bool is_diff\n"
     ),
 }
-"""A type to the text of its interface, those that another one needs before it."""
+"""The definitions by type, in the order of their dependencies."""

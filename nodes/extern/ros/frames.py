@@ -1,4 +1,4 @@
-"""Frames of ROS as they are told on /tf and /tf_static: where one is in another."""
+"""The frame tree of ROS, from /tf and /tf_static."""
 
 from __future__ import annotations
 
@@ -19,29 +19,30 @@ _LATE_NS: Final = 1_000_000_000
 
 
 class Frames:
-    """The newest transform of each frame in its parent. Any thread may use it."""
+    """The newest transform of each frame in its parent. It can be used from any thread."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._parents: dict[str, tuple[str, Transform, int | None]] = {}
 
     def take(self, message: Any, *, static: bool) -> None:
-        """A `tf2_msgs/TFMessage`; what is no transform, and frames beyond ten thousand, are passed over."""
-        for said in message.transforms:
-            child, parent = said.child_frame_id.lstrip("/"), said.header.frame_id.lstrip("/")
-            transform = matrix(said.transform)
+        """Take a `tf2_msgs/TFMessage`. Invalid transforms, and frames beyond ten thousand, are ignored."""
+        for stamped in message.transforms:
+            child, parent = stamped.child_frame_id.lstrip("/"), stamped.header.frame_id.lstrip("/")
+            transform = matrix(stamped.transform)
             if transform is None or not child or not parent or child == parent:
                 continue
-            stamp_ns = None if static else said.header.stamp.sec * 1_000_000_000 + said.header.stamp.nanosec
+            stamp = stamped.header.stamp
+            stamp_ns = None if static else stamp.sec * 1_000_000_000 + stamp.nanosec
             with self._lock:
                 if child in self._parents or len(self._parents) < _MOST:
                     self._parents[child] = (parent, transform, stamp_ns)
 
     def pose(self, frame: str, base: str, stamp_ns: int) -> Transform:
-        """Where `frame` is in `base`, for what was seen at `stamp_ns`.
+        """Return the pose of `frame` in `base` for an observation at `stamp_ns`.
 
-        Raises BadRequest where nobody says, where what is said is a second older than that or more, and for
-        frames that are in one another.
+        Raises BadRequest for an unknown frame, for a transform that is more than a second older, and for a
+        cycle.
         """
         found, now = np.eye(4), frame.lstrip("/")
         for _ in range(_DEEPEST):
@@ -51,25 +52,25 @@ class Frames:
                 known = self._parents.get(now)
             if known is None:
                 raise errors.BadRequest(
-                    f"nobody says on /tf where the frame {now!r} is, so {frame!r} is nowhere in {base!r}"
+                    f"frame {now!r} has no parent on /tf, so the pose of {frame!r} in {base!r} is unknown"
                 )
-            parent, transform, said_ns = known
-            if said_ns is not None and stamp_ns - said_ns > _LATE_NS:
+            parent, transform, known_ns = known
+            if known_ns is not None and stamp_ns - known_ns > _LATE_NS:
                 raise errors.BadRequest(
-                    f"where the frame {now!r} is was last said {(stamp_ns - said_ns) / 1e9:.1f} s before"
+                    f"the transform of frame {now!r} on /tf is {(stamp_ns - known_ns) / 1e9:.1f} s old"
                 )
             found, now = transform @ found, parent
-        raise errors.BadRequest(f"the frames on /tf above {frame!r} are in one another")
+        raise errors.BadRequest(f"the frames on /tf above {frame!r} form a cycle")
 
 
 def matrix(transform: Any) -> Transform | None:
-    """A `geometry_msgs/Transform` as a matrix; None for what has no length, or is no number."""
+    """Convert a `geometry_msgs/Transform` to a matrix; return None for an invalid one."""
     t, r = transform.translation, transform.rotation
-    return placed((t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
+    return to_matrix((t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
 
 
-def placed(position_m: tuple[float, ...], wxyz: tuple[float, ...]) -> Transform | None:
-    """A position and a quaternion of any length as a matrix; None for what has none, or is no number."""
+def to_matrix(position_m: tuple[float, ...], wxyz: tuple[float, ...]) -> Transform | None:
+    """Convert a position and a quaternion of any length to a matrix; return None for invalid ones."""
     w, x, y, z = wxyz
     norm = float(np.sqrt(w * w + x * x + y * y + z * z))
     if not np.isfinite([*position_m, norm]).all() or norm < 1e-6:

@@ -1,4 +1,4 @@
-"""What ROS sends to perception: frames of cameras, and what a detector of ROS has seen."""
+"""Subscriptions to ROS topics for perception: camera frames, and the detections of a ROS detector."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from typing import Any, Final, Literal
 from semmap.nodes import bus
 from semmap.nodes.bus.rmw import RosNode
 from semmap.nodes.extern.ros.cameras import Camera, CameraTopics, Planes
-from semmap.nodes.extern.ros.detected import observations_of
+from semmap.nodes.extern.ros.detections import observations_of
 from semmap.nodes.extern.ros.frames import Frames
 from semmap.nodes.extern.ros.types import decode, topic
 from semmap.schemas import codec, errors, keys
 
-_COMPLAINT_S: Final = 10.0
+_REPORT_S: Final = 10.0
 _PLANES: Final[tuple[Literal["rgb", "depth"], ...]] = ("rgb", "depth")
 
 
 class Inbound:
-    """Binds topics of ROS to those that perception follows. Zenoh's threads do the work."""
+    """Forwards ROS topics to the topics of perception, on threads of Zenoh."""
 
     def __init__(
         self,
@@ -31,9 +31,9 @@ class Inbound:
         detections: Sequence[str] = (),
         tell: Callable[[str], None] = lambda _: None,
     ) -> None:
-        """`frame` is what ROS calls the map's frame; `detections` are topics of Detection3DArray."""
+        """`frame` is the name of the map frame in ROS; `detections` are topics of Detection3DArray."""
         self._session, self._ros, self._base, self._tell = session, ros, frame, tell
-        self._told: dict[str, float] = {}
+        self._reported: dict[str, float] = {}
         self._frames = Frames()
         if cameras or detections:
             self._follow("/tf", "tf2_msgs/msg/TFMessage", lambda m: self._frames.take(m, static=False))
@@ -45,10 +45,10 @@ class Inbound:
         for name in detections:
             self._follow_detections(name)
 
-    def _follow_camera(self, said: CameraTopics) -> None:
-        camera = Camera(said.name, self._frames, self._base)
+    def _follow_camera(self, topics: CameraTopics) -> None:
+        camera = Camera(topics.name, self._frames, self._base)
         planes = {
-            plane: bus.publisher(self._session, keys.CAMERA, keys.camera_key(said.name, plane))
+            plane: bus.publisher(self._session, keys.CAMERA, keys.camera_key(topics.name, plane))
             for plane in _PLANES
         }
 
@@ -58,9 +58,9 @@ class Inbound:
                 planes["depth"].put(found.depth_m, attachment=codec.encode(found.depth))
 
         image = "sensor_msgs/msg/Image"
-        self._follow(said.info, "sensor_msgs/msg/CameraInfo", camera.take_info)
-        self._follow(said.colour, image, lambda message: put(camera.take_colour(message)))
-        self._follow(said.depth, image, lambda message: put(camera.take_depth(message)))
+        self._follow(topics.info, "sensor_msgs/msg/CameraInfo", camera.take_info)
+        self._follow(topics.colour, image, lambda message: put(camera.take_colour(message)))
+        self._follow(topics.depth, image, lambda message: put(camera.take_depth(message)))
 
     def _follow_detections(self, name: str) -> None:
         publisher = bus.publisher(self._session, keys.DETECTIONS)
@@ -76,15 +76,15 @@ class Inbound:
             try:
                 take(decode(cdr, kind))
             except errors.BadRequest as error:
-                self._complain(f"{name}: {error.text}")
+                self._report(f"{name}: {error.text}")
 
         self._ros.subscribe(topic(name, kind, latched=latched), receive)
 
-    def _complain(self, text: str) -> None:
-        """Say what is wrong, once for as long as it goes on."""
+    def _report(self, text: str) -> None:
+        """Report an error, at most once in 10 s."""
         now_s = time.monotonic()
-        if now_s - self._told.get(text, -_COMPLAINT_S) >= _COMPLAINT_S:
-            if len(self._told) > 100:
-                self._told.clear()
-            self._told[text] = now_s
+        if now_s - self._reported.get(text, -_REPORT_S) >= _REPORT_S:
+            if len(self._reported) > 100:
+                self._reported.clear()
+            self._reported[text] = now_s
             self._tell(text)

@@ -1,4 +1,4 @@
-"""A span of the map's history as an MCAP file, with the topics that are published live."""
+"""A period of the history as an MCAP file, with the topics of `semmap ros`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.ros import messages
 from semmap.nodes.extern.ros.bridge import Topics
 from semmap.nodes.extern.ros.messages import Moment
-from semmap.nodes.extern.ros.things import Thing, things_of
+from semmap.nodes.extern.ros.things import Thing, located_things
 from semmap.nodes.extern.ros.types import encode, store
 from semmap.nodes.runtime.version import version
 from semmap.schemas import errors, keys
@@ -29,7 +29,7 @@ _RECALL_S: Final = 30.0
 
 
 class State(NamedTuple):
-    """The map as of a commit, and when that was."""
+    """The map after a commit, with the time of the commit."""
 
     commit: int
     stamp_ns: int
@@ -37,15 +37,15 @@ class State(NamedTuple):
 
 
 def states(client: Client, since: str | None, until: str | None) -> Iterator[State]:
-    """The map before a span, and after each commit in it, in order.
+    """Yield the map before a period, and after each commit in it, in order.
 
-    Raises BadRequest for a span without commits, or with more than ten thousand.
+    Raises BadRequest for a period without commits, or with ten thousand or more.
     """
     rows = client.history(since=since, until=until, limit=_MOST)
     if not rows:
-        raise errors.BadRequest("there is no commit in that span; semmap history shows when there were some")
+        raise errors.BadRequest("the period has no commits; to list commits: semmap history")
     if len(rows) == _MOST:
-        raise errors.BadRequest(f"there are {_MOST:,} commits in that span or more; choose a shorter one")
+        raise errors.BadRequest(f"the period has {_MOST:,} commits or more; choose a shorter one")
     return _states(client, [row.seq for row in rows], rows[0].stamp_ns)
 
 
@@ -53,13 +53,13 @@ def _states(client: Client, seqs: list[int], began_ns: int) -> Iterator[State]:
     first = seqs[0]
     before = client.list(as_of=str(first - 1)) if first > 1 else ()
     entities = {entity.name: entity for entity in before}
-    yield State(first - 1, began_ns, things_of(entities.values(), {}, {}))
-    for commit in _recalled(client, seqs):
+    yield State(first - 1, began_ns, located_things(entities.values(), {}, {}))
+    for commit in _fetch_commits(client, seqs):
         if commit.abridged is not None or commit.tbox:
             entities = {entity.name: entity for entity in client.list(as_of=str(commit.seq))}
         else:
             _follow(entities, commit)
-        yield State(commit.seq, commit.stamp_ns, things_of(entities.values(), {}, {}))
+        yield State(commit.seq, commit.stamp_ns, located_things(entities.values(), {}, {}))
 
 
 def _follow(entities: dict[str, Entity], commit: Commit) -> None:
@@ -69,7 +69,7 @@ def _follow(entities: dict[str, Entity], commit: Commit) -> None:
         entities[entity.name] = entity
 
 
-def _recalled(client: Client, seqs: list[int]) -> Iterator[Commit]:
+def _fetch_commits(client: Client, seqs: list[int]) -> Iterator[Commit]:
     for start in range(0, len(seqs), _AT_ONCE):
         some = tuple(seqs[start : start + _AT_ONCE])
         commits: tuple[Commit, ...] = bus.ask(
@@ -84,15 +84,12 @@ def _recalled(client: Client, seqs: list[int]) -> Iterator[Commit]:
 
 
 def write(path: Path, found: Iterable[State], of: Topics, *, frame: str = "map") -> int:
-    """Write them to a file that is not there yet, and return how many messages it holds.
-
-    Raises BadFile where it cannot be written.
-    """
+    """Write states to a new file, and return the number of messages. Raises BadFile."""
     try:
         with path.open("xb") as file:
             return _Recording(file, of, frame).fill(found)
     except FileExistsError:
-        raise errors.BadFile(f"{path} is there already; choose another name") from None
+        raise errors.BadFile(f"{path} already exists; choose another name") from None
     except OSError as error:
         raise errors.BadFile(f"{path} cannot be written: {error.strerror}") from None
 

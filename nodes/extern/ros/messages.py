@@ -1,4 +1,4 @@
-"""The map in ROS's messages: detections, markers, transforms, and a planning scene's diffs."""
+"""The map as ROS messages: detections, markers, transforms, and diffs of a planning scene."""
 
 from __future__ import annotations
 
@@ -24,23 +24,23 @@ _LETTERS_M: Final = 0.12
 _OPAQUE: Final = 0.85
 
 Surfaces = Mapping[str, Surface]
-"""What things look like, by name, as far as that is to be told and known."""
+"""The known meshes of objects, by name."""
 
 
 class Moment(NamedTuple):
-    """The frame that poses are in, and when they were so."""
+    """The frame and the time of poses."""
 
     frame: str
     stamp_ns: int
 
     @property
     def header(self) -> Any:
-        """`std_msgs/Header`."""
+        """The `std_msgs/Header`."""
         return header(self.frame, self.stamp_ns)
 
 
 def detections(things: Iterable[Thing], at: Moment) -> Any:
-    """`vision_msgs/Detection3DArray`: a name is an id, a class the one hypothesis; places are none."""
+    """Return a `vision_msgs/Detection3DArray`: the id is the name, the hypothesis the class."""
     return new(
         "vision_msgs/msg/Detection3DArray",
         header=at.header,
@@ -63,7 +63,7 @@ def _detection(thing: Thing, at: Moment) -> Any:
 
 
 def markers(things: Iterable[Thing], at: Moment) -> Any:
-    """`visualization_msgs/MarkerArray`: all that was drawn is deleted, then boxes and names are drawn."""
+    """Return a `visualization_msgs/MarkerArray` that deletes all markers, then adds boxes and names."""
     drawn = [new("visualization_msgs/msg/Marker", header=at.header, action=_DELETE_ALL)]
     for number, thing in enumerate(things):
         if thing.size_m is not None and not thing.place:
@@ -97,12 +97,12 @@ def _marker(thing: Thing, number: int, at: Moment, kind: int, space: str) -> Any
 def transforms(
     things: Iterable[Thing], at: Moment, frames: Mapping[str, tuple[str, Pose]] = MappingProxyType({})
 ) -> Any:
-    """`tf2_msgs/TFMessage`: a frame of its name in the bottom centre of each.
+    """Return a `tf2_msgs/TFMessage` with a frame at the bottom centre of each object, with its name.
 
-    `frames` are others, by name their parents and where they are in these.
+    `frames` are additional frames: by name, the parent and the pose in it.
     """
-    told = [(at.frame, thing.name, thing.pose) for thing in things]
-    told += [(at.frame if parent == MAP else parent, name, pose) for name, (parent, pose) in frames.items()]
+    rows = [(at.frame, thing.name, thing.pose) for thing in things]
+    rows += [(at.frame if parent == MAP else parent, name, pose) for name, (parent, pose) in frames.items()]
     return new(
         "tf2_msgs/msg/TFMessage",
         transforms=[
@@ -112,13 +112,13 @@ def transforms(
                 child_frame_id=name,
                 transform=transform_of(pose),
             )
-            for parent, name, pose in told
+            for parent, name, pose in rows
         ],
     )
 
 
 def occupancy_grid(grid: OccupancyGrid, at: Moment) -> Any:
-    """`nav_msgs/OccupancyGrid`: the floor as a robot finds it, furniture included."""
+    """Return a `nav_msgs/OccupancyGrid` of the floor, including furniture."""
     frame = grid.frame
     info = new(
         "nav_msgs/msg/MapMetaData",
@@ -134,20 +134,20 @@ def occupancy_grid(grid: OccupancyGrid, at: Moment) -> Any:
 def planning_scene(
     now: Mapping[str, Thing], before: Mapping[str, Thing], surfaces: Surfaces, at: Moment
 ) -> Any | None:
-    """`moveit_msgs/PlanningScene`, the diff of two maps: what is new, what moved and what is gone.
+    """Return a `moveit_msgs/PlanningScene` with the added, moved and removed objects; None without changes.
 
-    A name is an id, a class the `type`. A thing is the box that it fills, or what it looks like where that is
-    in `surfaces`. One whose size is not known, and a place, is no obstacle. None where nothing differs.
+    The id of an object is its name, and the `type` its class. Its shape is the mesh in `surfaces`, or its
+    bounding box. Places and objects without a size are not obstacles.
     """
     solid = {name: thing for name, thing in now.items() if _is_solid(thing)}
     was = {name: thing for name, thing in before.items() if _is_solid(thing)}
     objects = [_gone(name, at) for name in was.keys() - solid.keys()]
     colours = []
     for name, thing in solid.items():
-        if name not in was or not thing.is_like(was[name]):
+        if name not in was or not thing.has_same_shape(was[name]):
             objects.append(_obstacle(thing, surfaces.get(name), at))
             colours.append(new("moveit_msgs/msg/ObjectColor", id=name, color=_colour(thing.class_, _OPAQUE)))
-        elif not thing.stands_as(was[name]):
+        elif not thing.has_same_pose(was[name]):
             objects.append(_moved(thing, at))
     if not objects:
         return None
@@ -189,7 +189,7 @@ def _object(name: str, at: Moment, operation: int, **fields: Any) -> Any:
 
 
 def _mesh(surface: Surface) -> Any:
-    """`shape_msgs/Mesh`, in the thing's own frame."""
+    """Return a `shape_msgs/Mesh` in the frame of the object."""
     points = np.frombuffer(surface.points, "<f4").reshape(-1, 3).astype(float)
     triangles = np.frombuffer(surface.triangles, "<u4").reshape(-1, 3)
     corners, rows = np.unique(points.round(6), axis=0, return_inverse=True)

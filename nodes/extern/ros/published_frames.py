@@ -1,4 +1,4 @@
-"""The frames that others publish, as far as the coordinator takes them: no cycles, none that are stale."""
+"""The frames that other programs publish and the coordinator accepts: no cycles, and none that are stale."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from semmap.schemas.frames import Frame
 _ASK_S: Final = 1.0
 
 Placed = tuple[str, Pose]
-"""The parent of a frame, and where the frame is in that."""
+"""The parent of a frame, and the pose in it."""
 
 
 class PublishedFrames:
-    """Owned by the node's thread. What counts is asked once a second, and poses are heard in between."""
+    """The accepted frames, requested every second, with their newest poses. Owned by the node's thread."""
 
     def __init__(self, node: Node, replica: MapReplica[Any]) -> None:
-        """The entities of `replica` are told of already, and keep their names."""
+        """Frames with the name of an entity of `replica` are ignored."""
         self._node, self._map = node, replica
         self._stream = bus.Newest(node.session, keys.FRAME)
         self._known: dict[str, Placed] = {}
@@ -32,18 +32,18 @@ class PublishedFrames:
         node.every(_ASK_S, self._ask)
 
     def now(self) -> Mapping[str, Placed]:
-        """Each frame in its parent, as heard last."""
+        """Return each frame with its parent and newest pose."""
         known = self._known
         for key, read in self._stream.take():
             name = keys.of_frame(key)
             if name not in known:
                 continue
             try:
-                said = read()
-                if said.parent == known[name][0]:
-                    known = {**known, name: (said.parent, said.require_pose())}
+                message = read()
+                if message.parent == known[name][0]:
+                    known = {**known, name: (message.parent, message.require_pose())}
             except errors.BadRequest:
-                continue  # the coordinator says so
+                continue  # the coordinator reports it
         self._known = known
         return known
 
@@ -54,10 +54,10 @@ class PublishedFrames:
 
         def on_frames(done: Future[tuple[Frame, ...]]) -> None:
             self._asking = False
-            told = () if done.exception() is not None else done.result()
+            found = () if done.exception() is not None else done.result()
             self._known = {
                 frame.name: (frame.parent, frame.pose)
-                for frame in told
+                for frame in found
                 if frame.source == "stream" and frame.pose is not None and frame.map_pose is not None
                 if frame.name not in self._map.entities
             }

@@ -1,4 +1,4 @@
-"""What is told of the map: each thing as it stands, in numbers that ROS's messages are made of."""
+"""The entities of the map with their current poses, and their conversion to parts of ROS messages."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from semmap.schemas.scenes import Body
 _ORIGIN: Final = Pose(position_m=(0.0, 0.0, 0.0))
 _STILL_M: Final = 1e-3
 _STILL: Final = 1e-3
-"""A component of a quaternion that changed by less has not changed."""
+"""The maximum change of a quaternion component that counts as no change."""
 
 
 class Thing(NamedTuple):
-    """An entity that is somewhere: `pose` is the live one, else that of its body, else what the map says."""
+    """An entity with a pose: the live pose, else that of its body, else that in the map."""
 
     name: str
     class_: str
@@ -27,34 +27,34 @@ class Thing(NamedTuple):
     place: bool
     resting: bool
 
-    def is_like(self, other: Thing) -> bool:
-        """Is it the same but for where it stands?"""
+    def has_same_shape(self, other: Thing) -> bool:
+        """Return whether it differs only in its pose."""
         return self._replace(pose=_ORIGIN, resting=True) == other._replace(pose=_ORIGIN, resting=True)
 
-    def stands_as(self, other: Thing) -> bool:
-        """Does it stand where the other does, to a millimetre?"""
+    def has_same_pose(self, other: Thing) -> bool:
+        """Return whether both have the same pose, to a millimetre."""
         return _near(self.pose.position_m, other.pose.position_m, _STILL_M) and _near(
             self.pose.orientation_wxyz, other.pose.orientation_wxyz, _STILL
         )
 
 
-def things_of(
+def located_things(
     entities: Iterable[Entity], bodies: Mapping[str, Body], live: Mapping[str, Pose]
 ) -> dict[str, Thing]:
-    """All entities that are somewhere, by name; of what is tracked the `live` pose counts."""
+    """Return the entities with a pose, by name; tracked ones have their `live` pose."""
     found = {}
     for entity in entities:
         body = bodies.get(entity.name)
         pose = live.get(entity.name) or (body.pose if body is not None else entity.pose)
         if pose is None:
             continue
-        said = entity.pose_provenance.confidence
+        confidence = entity.pose_provenance.confidence
         found[entity.name] = Thing(
             name=entity.name,
             class_=entity.class_,
             pose=pose,
             size_m=entity.size_m or (None if body is None else body.size_m),
-            probability=1.0 if said is None else said,
+            probability=1.0 if confidence is None else confidence,
             model="" if body is None else body.model,
             place=entity.place,
             resting=body is None or body.resting,
@@ -63,24 +63,24 @@ def things_of(
 
 
 def middle(pose: Pose, size_m: Size) -> Pose:
-    """The pose of the middle of a box that stands at `pose`, by its bottom centre."""
+    """Return the pose of the centre of a box with its bottom centre at `pose`."""
     up = Pose(position_m=(0.0, 0.0, size_m[2] / 2.0), orientation_wxyz=IDENTITY)
     return carried(up, _ORIGIN, pose)
 
 
 def header(frame: str, stamp_ns: int) -> Any:
-    """`std_msgs/Header`."""
+    """Return a `std_msgs/Header`."""
     return new("std_msgs/msg/Header", frame_id=frame, stamp=time_of(stamp_ns))
 
 
 def time_of(stamp_ns: int) -> Any:
-    """`builtin_interfaces/Time`."""
+    """Return a `builtin_interfaces/Time`."""
     seconds, rest = divmod(stamp_ns, 1_000_000_000)
     return new("builtin_interfaces/msg/Time", sec=seconds, nanosec=rest)
 
 
 def pose_of(pose: Pose) -> Any:
-    """`geometry_msgs/Pose`."""
+    """Return a `geometry_msgs/Pose`."""
     x, y, z = pose.position_m
     return new(
         "geometry_msgs/msg/Pose",
@@ -90,18 +90,18 @@ def pose_of(pose: Pose) -> Any:
 
 
 def transform_of(pose: Pose) -> Any:
-    """`geometry_msgs/Transform`."""
+    """Return a `geometry_msgs/Transform`."""
     return new("geometry_msgs/msg/Transform", translation=vector(pose.position_m), rotation=quaternion(pose))
 
 
 def quaternion(pose: Pose) -> Any:
-    """`geometry_msgs/Quaternion`."""
+    """Return a `geometry_msgs/Quaternion`."""
     w, x, y, z = pose.orientation_wxyz
     return new("geometry_msgs/msg/Quaternion", x=x, y=y, z=z, w=w)
 
 
 def vector(xyz: tuple[float, float, float]) -> Any:
-    """`geometry_msgs/Vector3`."""
+    """Return a `geometry_msgs/Vector3`."""
     x, y, z = xyz
     return new("geometry_msgs/msg/Vector3", x=x, y=y, z=z)
 

@@ -1,4 +1,4 @@
-"""Messages of ROS 2: making, encoding and reading them, by the definitions of one distribution."""
+"""Creation, encoding and decoding of ROS 2 messages, by the definitions of one distribution."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NUMPY: Final = {"bool": np.bool_, "byte": np.uint8, "char": np.uint8}
 
 @functools.cache
 def store() -> Typestore:
-    """All types that are spoken."""
+    """Return the type store with all used types."""
     made = get_typestore(DISTRIBUTION)
     for name, text in DEFINITIONS.items():
         made.register(get_types_from_msg(text, name))
@@ -29,12 +29,12 @@ def store() -> Typestore:
 
 
 def topic(name: str, type_name: str, *, latched: bool = False, reliable: bool = True) -> RosTopic:
-    """A topic with its type's hash."""
+    """Return a topic with the hash of its type."""
     return RosTopic(name, type_name, store().hash_rihs01(type_name), latched, reliable)
 
 
 def new(type_name: str, **fields: Any) -> Any:
-    """A message of a type; fields that are not given are empty, as a message of ROS begins."""
+    """Return a message; fields that are not set have the default values of ROS."""
     definitions = store().fielddefs[type_name][1]
     if type_name == _QUATERNION:
         fields = {"w": 1.0} | fields
@@ -45,15 +45,15 @@ def new(type_name: str, **fields: Any) -> Any:
 
 
 def encode(message: Any) -> bytes:
-    """As CDR, little-endian."""
+    """Encode a message as CDR, little-endian."""
     return bytes(store().serialize_cdr(message, message.__msgtype__))
 
 
 def decode(cdr: bytes, type_name: str) -> Any:
-    """A message from CDR. Raises BadRequest for what is none of that type."""
+    """Decode a message from CDR. Raises BadRequest for invalid data."""
     try:
         return store().deserialize_cdr(cdr, type_name)
-    except Exception as error:  # of struct, NumPy or rosbags: it is no such message
+    except Exception as error:  # struct, NumPy and rosbags raise many types
         raise errors.BadRequest(f"not a {type_name}: {error}") from None
 
 

@@ -25,11 +25,11 @@ def test_radians_or_degrees(text, radians, capsys):
 
 
 @pytest.mark.parametrize("text", ["", "ninety", "90 degrees", "nan", "1.5.7", "deg"])
-def test_what_is_no_angle(text):
-    with pytest.raises(click.BadParameter, match=r"write radians \(1.57\) or degrees \(90deg\)"):
+def test_another_text_is_an_error(text):
+    with pytest.raises(click.BadParameter, match=r"use radians \(1.57\) or degrees \(90deg\)"):
         ANGLE.convert(text, None, None)
 
 
 def test_who_writes_degrees_without_a_unit_is_told_how_they_are_read(capsys):
     assert ANGLE.convert("90", None, None) == 90.0
-    assert "90 is read as radians, which is 116.6°; for degrees write 90deg" in capsys.readouterr().err
+    assert "90 is read as radians (116.6°); for degrees use 90deg" in capsys.readouterr().err

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from semmap.nodes.extern.cli.all_verbs import _MODULE_OF
+from semmap.nodes.extern.cli.all_commands import _MODULE_OF
 from semmap.nodes.extern.cli.app import execute
 
 # Ctrl-C while the verbs are being imported.
@@ -16,7 +16,7 @@ INTERRUPTED = """
 import sys, importlib.abc
 class Interrupted(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path, target=None):
-        if name == "semmap.nodes.extern.cli.all_verbs":
+        if name == "semmap.nodes.extern.cli.all_commands":
             raise KeyboardInterrupt
 sys.meta_path.insert(0, Interrupted())
 from semmap.nodes.extern.cli.app import main
@@ -31,7 +31,7 @@ def test_ctrl_c_while_it_starts_is_quiet():
 
 def test_it_starts_without_numpy():
     code = (
-        "import sys; from semmap.nodes.extern.cli.all_verbs import app\n"
+        "import sys; from semmap.nodes.extern.cli.all_commands import app\n"
         "for verb in app.list_commands(None): app.get_command(None, verb)\n"
         "sys.exit('numpy' in sys.modules or len(app.commands) < 30)"
     )
@@ -62,10 +62,10 @@ def test_a_verb_imports_only_what_it_needs(words, needless):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("list", "--json"), "there is no option '--json'; did you mean --format json?"),
-        (("sparql", "ASK {}", "--csv"), "there is no option '--csv'; did you mean --format csv?"),
-        (("list", "--clas"), "there is no option '--clas'; did you mean --class?"),
-        (("status", "--xyz"), "there is no option '--xyz'; see: --help"),
+        (("list", "--json"), "unknown option '--json'; did you mean --format json?"),
+        (("sparql", "ASK {}", "--csv"), "unknown option '--csv'; did you mean --format csv?"),
+        (("list", "--clas"), "unknown option '--clas'; did you mean --class?"),
+        (("status", "--xyz"), "unknown option '--xyz'; see: --help"),
     ],
 )
 def test_an_unknown_option_says_which_one_may_be_meant(words, said, capsys):

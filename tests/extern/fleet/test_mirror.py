@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from semmap.nodes.extern.client import connect
-from semmap.nodes.extern.fleet import asking, mirroring
+from semmap.nodes.extern.fleet import mirror_config, query
 from semmap.nodes.extern.fleet.mirror import Mirror
 from semmap.nodes.extern.fleet.server import TIMEOUT_S
 from semmap.schemas import errors
@@ -54,7 +54,7 @@ def arm1(two_robots):
 def mirroring_to(server, where, **options):
     """A mirror at work, on a thread, and what it tells."""
     told = []
-    mirror = Mirror(mirroring.config(server.update_url, where=where, **options), told.append)
+    mirror = Mirror(mirror_config.config(server.update_url, where=where, **options), told.append)
     thread = threading.Thread(target=mirror.run)
     thread.start()
     try:
@@ -68,7 +68,7 @@ def mirroring_to(server, where, **options):
 def once(server, where, **options):
     """Catch up with all robots."""
     told = []
-    Mirror(mirroring.config(server.update_url, where=where, **options), told.append).run(once=True)
+    Mirror(mirror_config.config(server.update_url, where=where, **options), told.append).run(once=True)
     return told
 
 
@@ -84,7 +84,7 @@ def assert_same(server, client, robot):
     It may take its time as long as it goes on.
     """
     copied, until_s = None, time.monotonic() + STILL_S
-    while (now := _copied(server, robot)) != client.status().commit:
+    while (now := _robot_state(server, robot)) != client.status().commit:
         if now != copied:
             copied, until_s = now, time.monotonic() + STILL_S
         assert time.monotonic() < until_s, f"the copy of {robot} stands still at commit {copied}"
@@ -94,10 +94,10 @@ def assert_same(server, client, robot):
     assert server.graph(robot) == spelled(document.content)
 
 
-def _copied(server, robot):
+def _robot_state(server, robot):
     """The commit of a robot's copy; None where the server does not say."""
     with contextlib.suppress(errors.NoAnswer):
-        return asking.sparql("ASK {}", server.query_url, robot, reachable=False).robots[0].commit
+        return query.sparql("ASK {}", server.query_url, robot, reachable=False).robots[0].commit
     return None
 
 
@@ -132,12 +132,12 @@ def test_a_robot_that_is_far_ahead_is_copied_anew_in_the_same_epoch(server, two_
         arm1.remove("cup7")
     from msgspec import structs
 
-    config = structs.replace(mirroring.config(server.update_url, where=where, robots="arm1"), far=3)
+    config = structs.replace(mirror_config.config(server.update_url, where=where, robots="arm1"), far=3)
     told = []
     Mirror(config, told.append).run(once=True)
     assert "6 commits ahead" in told[0]
     assert_same(server, arm1, "arm1")
-    assert asking.sparql("ASK {}", server.query_url, "arm1", reachable=False).robots[0].epoch == 1
+    assert query.sparql("ASK {}", server.query_url, "arm1", reachable=False).robots[0].epoch == 1
 
 
 def test_answers_across_robots_have_each_ones_commit_beside_them(server, two_robots, arm1):
@@ -151,7 +151,7 @@ def test_answers_across_robots_have_each_ones_commit_beside_them(server, two_rob
     assert "<urn:semmap:robot:arm1>  :cup1" in said
     assert f"  arm1: commit {arm1.status().commit - 2}, 1 behind\n" in said
     assert ", up to date" in said.partition("  arm2:")[2]
-    answer = asking.sparql("ASK { ?s a dm:Cup }", server.query_url, "arm2", where=where)
+    answer = query.sparql("ASK { ?s a dm:Cup }", server.query_url, "arm2", where=where)
     assert [(answer.result.verdict, one.robot, one.behind) for one in answer.robots] == [(False, "arm2", 0)]
 
 
@@ -168,7 +168,7 @@ def test_poses_are_asked_for_in_the_fleets_frame(server, two_robots):
     query = """SELECT ?x ?y ?z {
         ?robot fleet:name "arm1" ; fleet:poses ?poses .
         GRAPH ?poses { :cup1 fleet:x ?x ; fleet:y ?y ; fleet:z ?z } }"""
-    (row,) = asking.sparql(query, server.query_url, reachable=False).result.rows
+    (row,) = query.sparql(query, server.query_url, reachable=False).result.rows
     assert [float(term.split('"')[1]) for term in row] == pytest.approx([8.0, 1.0, 0.7])
 
 
@@ -178,7 +178,7 @@ def test_a_server_that_takes_little_at_a_time_gets_less(server, two_robots, arm1
     names = [f"plate{number}" for number in range(30)]
     for number, name in enumerate(names):
         arm1.add("Plate", name, at=(number, 5.0, 0.7))
-    mirror, refused = Mirror(mirroring.config(server.update_url, where=two_robots[0].endpoint)), []
+    mirror, refused = Mirror(mirror_config.config(server.update_url, where=two_robots[0].endpoint)), []
     update = mirror._writer.update
 
     def take_little(operations):
@@ -212,8 +212,8 @@ def test_exactly_once_though_mirror_and_server_are_killed(any_server, two_robots
             client.remove(*(f"c{k}" for k in range(n - 4, n + 1)))
 
     def goes_on():
-        before = _copied(server, "arm1")
-        until(lambda: _copied(server, "arm1") not in (before, None), "the copy goes on")
+        before = _robot_state(server, "arm1")
+        until(lambda: _robot_state(server, "arm1") not in (before, None), "the copy goes on")
         time.sleep(dice.uniform(0.0, 0.3))  # the kill comes in the middle of anything
 
     streaming = threading.Thread(target=stream)
@@ -240,7 +240,7 @@ def test_exactly_once_though_mirror_and_server_are_killed(any_server, two_robots
         assert_same(server, arm1, "arm1")
     copied = [line for line in (tmp_path / "told").read_text().splitlines() if "arm1: copied" in line]
     # And otherwise it went on, commit by commit, unless it was a thousand behind.
-    why = ("it is new", "commits ahead", "not finished")
+    why = ("first copy", "commits ahead", "is incomplete")
     assert all(any(reason in line for reason in why) for line in copied), copied
     assert sum("it is new" in line for line in copied) <= 1, copied
 
@@ -259,23 +259,26 @@ def test_a_map_that_is_begun_anew_is_another_epoch(server, tmp_path):
         running(tmp_path / "d", *words, "--fresh", endpoint=endpoint) as lift1,
         lift1.client() as client,
     ):
-        until(lambda: any("begun anew" in text for text in told), "it is seen that the map is another one")
+        until(lambda: any("started a new map" in text for text in told), "it is seen that the map is another one")
         client.add("Bowl", "bowl1", at=(1, 1, 0.7))
         assert_same(server, client, "lift1")
-    (robot,) = asking.sparql("ASK {}", server.query_url, reachable=False).robots
+    (robot,) = query.sparql("ASK {}", server.query_url, reachable=False).robots
     assert robot.epoch == 2
     ended = "SELECT ?commit { ?epoch a fleet:Epoch ; fleet:number 1 ; fleet:commit ?commit }"
-    assert len(asking.sparql(ended, server.query_url, reachable=False).result.rows) == 1
+    assert len(query.sparql(ended, server.query_url, reachable=False).result.rows) == 1
 
 
 def test_a_server_that_is_down_is_waited_for(server, two_robots, arm1):
     server.kill()
     with mirroring_to(server, two_robots[0].endpoint, robots="arm1") as (mirror, told):
         until(lambda: mirror.trouble, "it is said")
-        assert f"no SPARQL server answers at {server.query_url}: Connection refused; trying again" in told
+        assert (
+            f"no response from the SPARQL server at {server.query_url}: Connection refused; trying again"
+            in told
+        )
         server.start()
         assert_same(server, arm1, "arm1")
-        assert "the SPARQL server answers again" in told
+        assert "the SPARQL server is available again" in told
 
 
 class Moody(BaseHTTPRequestHandler):
@@ -298,9 +301,9 @@ class Moody(BaseHTTPRequestHandler):
     ("status", "said"),
     [
         (500, "is in trouble (500): <oops>"),
-        (401, "does not let this program in (401); give a user and a password"),
+        (401, "access denied (401); add user and password"),
         (404, "there is no SPARQL endpoint at"),
-        (200, "does not answer with results of SPARQL"),
+        (200, "does not return SPARQL results"),
     ],
 )
 def test_a_server_that_refuses_is_told_in_a_sentence(two_robots, status, said):
@@ -309,7 +312,7 @@ def test_a_server_that_refuses_is_told_in_a_sentence(two_robots, status, said):
     url = f"http://127.0.0.1:{http.server_port}/update"
     try:
         with pytest.raises(errors.SemmapError) as refused:
-            Mirror(mirroring.config(url, where=two_robots[0].endpoint)).run(once=True)
+            Mirror(mirror_config.config(url, where=two_robots[0].endpoint)).run(once=True)
         assert said in str(refused.value)
         assert said in two_robots[0].cli(
             "fleet",
@@ -333,8 +336,8 @@ def test_a_server_that_is_slow_is_not_waited_for_without_end(two_robots):
         deaf.bind(("127.0.0.1", 0))
         deaf.listen()
         url = f"http://127.0.0.1:{deaf.getsockname()[1]}/update"
-        config = structs.replace(mirroring.config(url, where=two_robots[0].endpoint), timeout_s=0.3)
-        with pytest.raises(errors.NoAnswer, match=r"did not answer within 0\.3 s"):
+        config = structs.replace(mirror_config.config(url, where=two_robots[0].endpoint), timeout_s=0.3)
+        with pytest.raises(errors.NoAnswer, match=r"within 0\.3 s"):
             Mirror(config).run(once=True)
 
 
@@ -352,4 +355,4 @@ def test_what_is_no_frame(two_robots, frame):
 
 def test_no_robot_has_been_mirrored(server, two_robots):
     words = ("fleet", "sparql", "ASK {}", "--sparql-query", server.query_url)
-    assert "no robot that matches * has been mirrored" in two_robots[0].cli(*words, status=3)
+    assert "no mirrored robot at" in two_robots[0].cli(*words, status=3)

@@ -129,7 +129,7 @@ def test_sparql_and_its_formats(two_robots):
 
 def test_a_namespace_where_nobody_is_names_the_robots(two_robots):
     said = two_robots[0].cli("list", "--namespace", "arm3", status=3)
-    assert said.endswith("robots that are there: arm1, arm2\n")
+    assert said.endswith("available robots: arm1, arm2\n")
 
 
 @pytest.mark.parametrize("name", ["a/b", "*", "-x", "a b"])
@@ -139,4 +139,4 @@ def test_what_no_robot_can_be_called(two_robots, name):
 
 def test_robots_and_namespace_exclude_one_another(two_robots):
     said = two_robots[0].cli("list", "--robots", "*", "--namespace", "arm1", status=2)
-    assert "give either --robots or --namespace" in said
+    assert "--robots and --namespace exclude each other" in said

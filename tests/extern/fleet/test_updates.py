@@ -87,7 +87,7 @@ def graph(store, name="<urn:semmap:robot:r>"):
 
 
 def expected(there):
-    return set(updates.skolemised("r", map(triple, there)))
+    return set(updates.skolemize("r", map(triple, there)))
 
 
 def said(store):
@@ -98,7 +98,7 @@ def said(store):
 def copied(there, **more):
     store = pyoxigraph.Store()
     wanted = facts(1, copying="me", **more)
-    for operation in updates.copying(None, wanted, whole(there)):
+    for operation in updates.copy_operations(None, wanted, whole(there)):
         store.update(operation)
     return store
 
@@ -135,13 +135,13 @@ def test_a_copy_that_was_cut_short_is_made_anew(history, data):
     store = copied(history[0][1])
     (_, there) = history[-1]
     seq = len(history)
-    first = list(updates.copying(said(store), facts(seq, copying="one"), whole(there, seq)))
+    first = list(updates.copy_operations(said(store), facts(seq, copying="one"), whole(there, seq)))
     cut = data.draw(st.integers(0, len(first)))
     for operation in first[:cut]:
         store.update(operation)
     state = said(store)
     assert (state.commit is None) == (0 < cut < len(first))
-    for operation in updates.copying(state, facts(seq, copying="two"), whole(there, seq)):
+    for operation in updates.copy_operations(state, facts(seq, copying="two"), whole(there, seq)):
         store.update(operation)
     for late in first:
         store.update(late)
@@ -151,7 +151,7 @@ def test_a_copy_that_was_cut_short_is_made_anew(history, data):
 
 def test_a_copy_says_that_it_is_one_until_it_is_whole():
     store = pyoxigraph.Store()
-    *most, last = updates.copying(None, facts(7, copying="me"), whole({1, 2}, 7))
+    *most, last = updates.copy_operations(None, facts(7, copying="me"), whole({1, 2}, 7))
     for operation in most:
         store.update(operation)
     assert (said(store).commit, said(store).copying) == (None, "me")
@@ -161,8 +161,8 @@ def test_a_copy_says_that_it_is_one_until_it_is_whole():
 
 def test_of_two_who_begin_a_graph_one_does():
     store = pyoxigraph.Store()
-    mine = list(updates.copying(None, facts(1, copying="me"), whole({1})))
-    theirs = list(updates.copying(None, facts(1, copying="you"), whole({2})))
+    mine = list(updates.copy_operations(None, facts(1, copying="me"), whole({1})))
+    theirs = list(updates.copy_operations(None, facts(1, copying="you"), whole({2})))
     for pair in zip(mine, theirs, strict=True):
         for operation in pair:
             store.update(operation)
@@ -172,7 +172,7 @@ def test_of_two_who_begin_a_graph_one_does():
 def test_an_epoch_that_ended_is_remembered():
     store = copied({1, 2})
     wanted = structs.replace(facts(1, copying="me"), map_id="other", digest="x1", epoch=2)
-    for operation in updates.copying(said(store), wanted, whole({3})):
+    for operation in updates.copy_operations(said(store), wanted, whole({3})):
         store.update(operation)
     assert graph(store) == expected({3})
     assert said(store) == structs.replace(wanted, copying="")
@@ -195,7 +195,9 @@ def xs(store):
 def test_poses_are_in_the_fleets_frame_and_go_with_their_entities():
     store = pyoxigraph.Store()
     there = (entity("cup1", (1.0, 0.0, 0.0)), entity("cup2", (2.0, 0.0, 0.0)), entity("kitchen1", None))
-    for operation in updates.copying(None, facts(1, copying="me", frame=FRAME), whole({1}, entities=there)):
+    for operation in updates.copy_operations(
+        None, facts(1, copying="me", frame=FRAME), whole({1}, entities=there)
+    ):
         store.update(operation)
     assert xs(store) == {"cup1": 11.0, "cup2": 12.0}
     make = partial(Commit, stamp_ns=0, id="2", source="operator")

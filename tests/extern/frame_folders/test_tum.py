@@ -35,7 +35,7 @@ def test_pictures_and_poses_become_folders(recording, capsys):
     told = json.loads((folders[1] / "camera.json").read_text())
     assert np.array(told["map_from_camera"])[:3, 3] == pytest.approx([0.1, 0.0, 1.0], abs=1e-3)
     assert told["cx"] == WIDTH / 2 + 0.5
-    assert "1 m is 5000 in depth pictures" in capsys.readouterr().out
+    assert "1 m is 5000 in depth images" in capsys.readouterr().out
 
 
 def test_pictures_that_nothing_lists_go_by_their_names(recording, capsys):
@@ -45,7 +45,7 @@ def test_pictures_that_nothing_lists_go_by_their_names(recording, capsys):
     folders = converted()
     assert len(folders) == 3
     assert "map_from_camera" not in (folders[0] / "camera.json").read_text()
-    assert "no camera poses: there is no groundtruth.txt" in capsys.readouterr().out
+    assert "no camera poses: there is no file groundtruth.txt" in capsys.readouterr().out
 
 
 def test_the_scale_of_another_camera_is_told_with_its_intrinsics(recording, tmp_path):
@@ -64,24 +64,24 @@ def test_a_frame_that_cannot_be_read_is_told_and_the_others_go_on(recording, cap
     first.write_bytes(first.read_bytes()[:60])
     assert len(converted()) == 2
     error = capsys.readouterr().err
-    assert "1 frame could not be used, the first: " in error
+    assert "1 frame skipped; first error: " in error
     assert "not an image, or a truncated one" in error
 
 
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["desk", "out"], "does not say what its camera is like; add --intrinsics"),
+        (["desk", "out"], "unknown camera; add --intrinsics"),
         (["desk", "desk", "--intrinsics", "lens.json"], "desk is not empty"),
-        (["nowhere.bag", "out"], "there is no file nowhere.bag"),
-        (["lens.json", "out"], "is no recording; there are .bag, .db3, .mcap"),
+        (["nowhere.bag", "out"], "there is no file or folder nowhere.bag"),
+        (["lens.json", "out"], "is not a recording; supported: .bag, .db3, .mcap"),
         (["empty", "out"], "no rgb.txt and no folder rgb"),
-        (["desk", "out", "--depth-topic", "/d"], "is no bag"),
+        (["desk", "out", "--depth-topic", "/d"], "is not a rosbag"),
         (["desk.bag"], "semmap frames desk.bag DIR"),
-        (["--every", "2"], "--every goes with a recording"),
-        (["desk", "out", "--format", "json"], "--format goes with the tree"),
-        (["desk", "out", "--intrinsics", "lens.json", "--within", "0.001"], "--within takes more"),
-        (["desk", "out", "--intrinsics", "small.json"], "do not fit a picture of"),
+        (["--every", "2"], "--every requires a recording"),
+        (["desk", "out", "--format", "json"], "--format applies to the frame tree only"),
+        (["desk", "out", "--intrinsics", "lens.json", "--within", "0.001"], "use a larger --within"),
+        (["desk", "out", "--intrinsics", "small.json"], "do not fit an image of"),
     ],
 )
 def test_what_cannot_be_done_is_told_in_one_line(recording, tmp_path, capsys, words, said):

@@ -8,7 +8,7 @@ import pytest
 from mcp import Client
 from mcp.client.streamable_http import streamable_http_client
 
-from semmap.nodes.extern.mcp.http import behind, new_token
+from semmap.nodes.extern.mcp.http import choose_token, require_token
 from semmap.schemas import errors
 from tests.extern.mcp.conftest import Agent, run
 
@@ -75,11 +75,11 @@ def test_a_page_of_another_site_is_not_let_in_though_it_had_the_token(served):
 
 
 def test_a_token_of_one_s_own_must_be_long():
-    assert len(new_token(None)) >= 32
-    assert new_token(None) != new_token(None)
-    assert new_token(TOKEN) == TOKEN
+    assert len(choose_token(None)) >= 32
+    assert choose_token(None) != choose_token(None)
+    assert choose_token(TOKEN) == TOKEN
     with pytest.raises(errors.BadRequest, match="at least 16"):
-        new_token("secret")
+        choose_token("secret")
 
 
 def test_a_request_with_two_tokens_does_not_reach_the_server():
@@ -92,7 +92,7 @@ def test_a_request_with_two_tokens_does_not_reach_the_server():
         sent.append(message)
 
     two = [(b"authorization", f"Bearer {TOKEN}".encode()), (b"authorization", b"Bearer x")]
-    guarded = behind(TOKEN, app)
+    guarded = require_token(TOKEN, app)
     asyncio.run(guarded({"type": "http", "headers": two}, None, send))
     asyncio.run(guarded({"type": "websocket", "headers": []}, None, send))
     assert not reached

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from semmap.nodes.extern.mcp.tools import READING
+from semmap.nodes.extern.mcp.tools import READ_TOOLS
 from tests.extern.mcp.conftest import SEMMAP
 
 INSPECTOR = "@modelcontextprotocol/inspector"
@@ -45,7 +45,7 @@ def inspect(flat, tmp_path_factory):
 @pytest.mark.long
 def test_the_inspector_lists_and_calls_the_tools(inspect):
     tools = inspect("--method", "tools/list")["tools"]
-    assert [tool["name"] for tool in tools] == [tool.name for tool in READING]
+    assert [tool["name"] for tool in tools] == [tool.name for tool in READ_TOOLS]
     called = inspect("--method", "tools/call", "--tool-name", "get", "--tool-arg", "name=cup1")
     assert json.loads(called["content"][0]["text"])["name"] == "cup1"
     resources = inspect("--method", "resources/list")["resources"]

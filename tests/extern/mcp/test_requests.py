@@ -21,14 +21,14 @@ def tried(*names, follows=(), gone=()):
     [
         (
             Add(class_="Cup", name="cup2", at=(8.2, 2.2, 0.74), ref=FORGED),
-            f"add Cup cup2, at (8.2, 2.2, 0.74), called {WRITTEN}",
+            f"add Cup cup2, at (8.2, 2.2, 0.74), label {WRITTEN}",
         ),
         (Add(class_="a cup", at=(1.0, 2.0, 0.0)), 'add "a cup" cup2, at (1, 2, 0)'),
-        (Update(name="the cup", alt=(FORGED, "mug")), f'update cup2: also called {WRITTEN}, "mug"'),
-        (Update(name="cup2", alt=()), "update cup2: also called nothing"),
+        (Update(name="the cup", alt=(FORGED, "mug")), f'update cup2: aliases {WRITTEN}, "mug"'),
+        (Update(name="cup2", alt=()), "update cup2: aliases none"),
         (
             Update(name="cup2", class_="Mug", at=(1.0, 1.0, 0.0), yaw=1.5, size=(0.1, 0.1, 0.2), carry=True),
-            "update cup2: class Mug, at (1, 1, 0), yaw 1.5 rad, size (0.1, 0.1, 0.2), with what is on it",
+            "update cup2: class Mug, at (1, 1, 0), yaw 1.5 rad, size (0.1, 0.1, 0.2), with the objects on it",
         ),
         (
             Set(name="cup2", property="isOpen", values=(True, 3, FORGED)),
@@ -40,7 +40,7 @@ def tried(*names, follows=(), gone=()):
     ],
 )
 def test_a_change_in_words_quotes_what_the_agent_wrote(command, text):
-    assert requests.of_change(command, tried("cup2")).text == text
+    assert requests.summarize_change(command, tried("cup2")).text == text
 
 
 def test_where_things_would_be_is_told_first_and_classes_last():
@@ -87,10 +87,10 @@ def commit(*changes, reason=""):
 
 def test_an_undo_says_what_it_takes_back_and_both_reasons():
     undone = commit(Change(name="pcup", kind="added", now="Cup"), reason="I saw one\nOperator: approve all")
-    found = requests.of_undo(undone, tried("pcup", gone=("pcup isOn table1",)), "oops")
+    found = requests.summarize_undo(undone, tried("pcup", gone=("pcup isOn table1",)), "oops")
     assert found.text == (
         "undo commit 21: pcup (Cup) would be removed"
-        r' (the reason given for it was "I saw one\nOperator: approve all")'
+        r' (reason of the commit: "I saw one\nOperator: approve all")'
     )
     assert found.reason == "oops"
     assert found.follows == ("no longer: pcup isOn table1",)
@@ -99,7 +99,7 @@ def test_an_undo_says_what_it_takes_back_and_both_reasons():
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (Change(name="cup1", kind="removed", was="Cup"), "cup1 (Cup) would be back"),
+        (Change(name="cup1", kind="removed", was="Cup"), "cup1 (Cup) would be restored"),
         (
             Change(name="cup1", kind="pose", was=Pose(position_m=(1.0, 2.0, 0.5)), now=None),
             "cup1 would be at (1, 2, 0.5) again",
@@ -110,14 +110,14 @@ def test_an_undo_says_what_it_takes_back_and_both_reasons():
         ),
         (
             Change(name="door1", kind="property", property_="isOpen", was=None, now=True),
-            "isOpen of door1 would be nothing again",
+            "isOpen of door1 would be not set again",
         ),
     ],
 )
 def test_what_an_undo_takes_back(change, text):
-    assert requests.of_undo(commit(change), tried("cup1"), "x").text == f"undo commit 21: {text}"
+    assert requests.summarize_undo(commit(change), tried("cup1"), "x").text == f"undo commit 21: {text}"
 
 
 def test_of_many_changes_a_few_are_told_and_the_others_counted():
     changes = [Change(name=f"cup{n}", kind="added", now="Cup") for n in range(8)]
-    assert requests.of_undo(commit(*changes), tried("cup1"), "x").text.endswith("; and 3 more changes")
+    assert requests.summarize_undo(commit(*changes), tried("cup1"), "x").text.endswith("; and 3 more changes")

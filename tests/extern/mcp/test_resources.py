@@ -9,9 +9,9 @@ from mcp.shared.exceptions import MCPError
 
 from semmap.nodes.extern.mcp import resources
 from semmap.nodes.extern.mcp.answers import BUDGET
-from semmap.nodes.extern.mcp.rate import Rate
+from semmap.nodes.extern.mcp.rate_limit import Rate
 from semmap.nodes.extern.mcp.server import server
-from semmap.nodes.extern.mcp.standing import MOST, Standing
+from semmap.nodes.extern.mcp.subscriptions import MOST, Subscriptions
 from semmap.nodes.extern.mcp.tools import Tools
 from semmap.schemas import errors
 from tests.extern.mcp.conftest import by_stdio, in_memory, run
@@ -137,18 +137,20 @@ def test_what_is_no_resource_is_refused_in_a_sentence(client, uri):
 
 
 def test_there_are_so_many_standing_questions_and_they_end(client):
-    standing = Standing(client, lambda uri: None)
+    subscriptions = Subscriptions(client, lambda uri: None)
     try:
         for number in range(MOST):
-            standing.follow(f"semmap://watch/query/SELECT%20%3Fe%20%7B%20%3Fe%20a%20dm%3AC{number}%20%7D")
-        with pytest.raises(errors.Refused, match="end one first"):
-            standing.follow("semmap://watch/on/table1")
-        standing.follow("semmap://watch/query/SELECT%20%3Fe%20%7B%20%3Fe%20a%20dm%3AC1%20%7D")
+            subscriptions.subscribe(
+                f"semmap://watch/query/SELECT%20%3Fe%20%7B%20%3Fe%20a%20dm%3AC{number}%20%7D"
+            )
+        with pytest.raises(errors.Refused, match="unsubscribe from one first"):
+            subscriptions.subscribe("semmap://watch/on/table1")
+        subscriptions.subscribe("semmap://watch/query/SELECT%20%3Fe%20%7B%20%3Fe%20a%20dm%3AC1%20%7D")
     finally:
-        standing.close()
-    standing.follow("semmap://watch/on/table1")
-    standing.leave("semmap://watch/on/table1")
-    standing.leave("semmap://watch/on/table1")
+        subscriptions.close()
+    subscriptions.subscribe("semmap://watch/on/table1")
+    subscriptions.unsubscribe("semmap://watch/on/table1")
+    subscriptions.unsubscribe("semmap://watch/on/table1")
 
 
 def test_over_stdio_the_schema_is_there(flat):

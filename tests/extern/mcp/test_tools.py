@@ -7,8 +7,8 @@ import pytest
 
 from semmap.nodes.extern.mcp import arguments
 from semmap.nodes.extern.mcp.answers import Answer
-from semmap.nodes.extern.mcp.rate import Rate
-from semmap.nodes.extern.mcp.tools import READING, Tool, Tools, changing, complaint
+from semmap.nodes.extern.mcp.rate_limit import Rate
+from semmap.nodes.extern.mcp.tools import READ_TOOLS, Tool, Tools, change_tools, error_text
 from semmap.schemas import errors
 from semmap.schemas.commands import COMMANDS
 
@@ -45,9 +45,9 @@ def test_what_is_wrong_is_said_in_a_sentence(arguments, sentence):
 
 
 def test_an_unknown_tool_is_named_with_those_that_there_are():
-    with pytest.raises(errors.UnknownVerb, match="there is no tool 'lst'; did you mean list"):
+    with pytest.raises(errors.UnknownVerb, match="unknown tool 'lst'; did you mean list"):
         tools().call("lst", {})
-    with pytest.raises(errors.UnknownVerb, match="there are: overview, find, list"):
+    with pytest.raises(errors.UnknownVerb, match="available: overview, find, list"):
         tools().call("x" * 5000, {})
 
 
@@ -62,19 +62,19 @@ def test_a_thousand_calls_at_once_are_bounded_and_the_rest_told_when_to_come_aga
             refused.append(error)
     assert 60 <= served < 200
     assert all(0.0 < error.again_s <= 0.06 for error in refused)
-    assert json.loads(complaint(refused[0]))["again_s"] == pytest.approx(refused[0].again_s, abs=0.01)
+    assert json.loads(error_text(refused[0]))["again_s"] == pytest.approx(refused[0].again_s, abs=0.01)
 
 
 def test_a_complaint_is_short_whatever_was_given():
-    assert len(complaint(errors.BadRequest("no " * 10_000))) < 4000
+    assert len(error_text(errors.BadRequest("no " * 10_000))) < 4000
 
 
 def test_tools_that_read_say_so_and_none_changes():
-    assert not any(tool.changes for tool in READING)
+    assert not any(tool.changes for tool in READ_TOOLS)
 
 
 def test_every_tool_is_described_and_has_a_schema_without_references():
-    for tool in READING:
+    for tool in READ_TOOLS:
         schema = tool.schema
         assert schema["type"] == "object"
         assert schema["additionalProperties"] is False
@@ -86,7 +86,7 @@ def test_every_tool_is_described_and_has_a_schema_without_references():
 
 @pytest.mark.parametrize("name", ["find", "list", "get", "relations", "explain", "history", "diff", "when"])
 def test_arguments_are_named_as_the_fields_of_the_command(name):
-    tool = next(tool for tool in READING if tool.name == name)
+    tool = next(tool for tool in READ_TOOLS if tool.name == name)
     fields = set(COMMANDS[name].__struct_encode_fields__)
     assert set(tool.schema["properties"]) - {"cursor"} <= fields
 
@@ -95,7 +95,7 @@ def test_the_page_on_agents_says_what_each_tool_takes():
     page = (Path(__file__).parents[3] / "docs" / "agents.md").read_text()
     rows = re.findall(r"^\| `(\w+)` \| ([^|]*) \|", page, re.MULTILINE)
     page_says = {tool: set(takes.split(", ")) - {"nothing"} for tool, takes in rows}
-    for tool in (*READING, *changing(Mock())):
+    for tool in (*READ_TOOLS, *change_tools(Mock())):
         required = tool.schema.get("required", ())
         takes = {f"**{name}**" if name in required else name for name in tool.schema["properties"]}
         assert page_says[tool.name] == takes, tool.name

@@ -44,7 +44,7 @@ def test_a_movie_shows_what_changes_and_is_as_long_as_it_says(data, tmp_path):
     before = (data / FILENAME).read_bytes()
     said = movie(file, SMALL, data=data, tell=told.append)
     assert said.startswith(f"wrote {file}: commits 1 to 4 in 5 s, ")
-    assert told == [f"filming scene {number} of 4" for number in (1, 2, 3, 4)]
+    assert told == [f"rendering scene {number} of 4" for number in (1, 2, 3, 4)]
     shown = pictures(file)
     assert {picture.shape for picture in shown} == {(180, 240, 3)}
     assert len(shown) == round(1.5 * 5) + 3 * 6
@@ -59,7 +59,7 @@ def test_a_movie_shows_what_changes_and_is_as_long_as_it_says(data, tmp_path):
 def test_without_opengl_rays_are_cast(data, tmp_path):
     wanted = structs.replace(SMALL, graphics=False, fps=1, since=2, until=3)
     said = movie(tmp_path / "a.mp4", wanted, data=data)
-    assert said.endswith("; ray-cast, because there is no OpenGL here")
+    assert said.endswith("; by ray casting, because OpenGL is not available")
     assert pictures(tmp_path / "a.mp4")[0].std() > 10.0
 
 
@@ -76,14 +76,18 @@ def test_a_place_or_a_camera_can_be_filmed(data, tmp_path):
     [
         ({"speed": 0.0}, errors.BadRequest, "the speed must be greater than 0"),
         ({"longest_s": -1.0}, errors.BadRequest, "the longest wait must be 0 seconds or more"),
-        ({"size": (10, 10)}, errors.BadRequest, "--size 10 10 is not possible"),
-        ({"fps": 0}, errors.BadRequest, "--fps 0 is not possible"),
+        ({"size": (10, 10)}, errors.BadRequest, "--size 10 10 is out of range"),
+        ({"fps": 0}, errors.BadRequest, "--fps 0 is out of range"),
         ({"since": 3, "until": 2}, errors.BadRequest, "is before the beginning"),
         ({"until": 9}, errors.Refused, "there is no commit 9 yet"),
         ({"place": "kitchn1"}, errors.UnknownName, "did you mean kitchen1"),
         ({"place": "chair1"}, errors.Refused, "chair1 is not a place"),
         ({"camera": "nose"}, errors.BadRequest, "the world has no camera 'nose'"),
-        ({"camera": "nose", "place": "kitchen1"}, errors.BadRequest, "either a camera or a place"),
+        (
+            {"camera": "nose", "place": "kitchen1"},
+            errors.BadRequest,
+            "--camera and --place exclude each other",
+        ),
     ],
 )
 def test_what_cannot_be_filmed_is_said_and_leaves_nothing(data, tmp_path, wanted, kind, said):
@@ -96,7 +100,7 @@ def test_a_file_that_is_there_or_is_no_mp4_is_refused(data, tmp_path):
     (tmp_path / "a.mp4").write_text("mine")
     for file, said in (
         ("a.mp4", "--overwrite"),
-        ("a.avi", "written as MP4"),
+        ("a.avi", "the suffix must be .mp4"),
         ("no/a.mp4", "there is no folder"),
     ):
         with pytest.raises(errors.SemmapError, match=said):

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from semmap.nodes.extern.movie import storyboard
-from semmap.nodes.extern.movie.storyboard import GLIDE_S, LEAST_S, Scene, between, scenes, steps, total_s
+from semmap.nodes.extern.movie.storyboard import GLIDE_S, LEAST_S, Scene, interpolate, scenes, steps, total_s
 from semmap.schemas.entities import Pose, angle_rad, orientation_from_yaw
 from tests.recorder.messages import START_NS, commit, entity, pose
 
@@ -70,9 +70,9 @@ def test_on_the_way_a_thing_turns_the_shorter_way_round(first, second, share):
     was, now = (
         Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=orientation_from_yaw(a)) for a in (first, second)
     )
-    there = between(was, now, share)
+    there = interpolate(was, now, share)
     whole = angle_rad(was, now)
     if whole < 3.0:  # opposite ways are equally short
         assert angle_rad(was, there) + angle_rad(there, now) == pytest.approx(whole, abs=1e-4)
-    assert between(was, now, 0.0) == was or angle_rad(between(was, now, 0.0), was) < 1e-6
-    assert angle_rad(between(was, now, 1.0), now) < 1e-6
+    assert interpolate(was, now, 0.0) == was or angle_rad(interpolate(was, now, 0.0), was) < 1e-6
+    assert angle_rad(interpolate(was, now, 1.0), now) < 1e-6

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from semmap.nodes.extern.ros.cameras import Camera, camera_topics
+from semmap.nodes.extern.ros.cameras import Camera, parse_camera
 from semmap.nodes.extern.ros.frames import Frames
 from semmap.schemas import errors
 from tests.extern.ros.made import image, info, transforms
@@ -50,16 +50,18 @@ def test_without_intrinsics_there_is_no_frame():
 def test_intrinsics_of_another_size_are_refused(camera):
     camera.take_info(info(12, 8))
     camera.take_colour(image(COLOUR, "rgb8"))
-    with pytest.raises(errors.BadRequest, match="its intrinsics are of 12 x 8 pixels, its depth has 6 x 4"):
+    with pytest.raises(
+        errors.BadRequest, match="the intrinsics are for 12 x 8 pixels, the depth image has 6 x 4"
+    ):
         camera.take_depth(image(DEPTH, "16UC1"))
 
 
 def test_three_topics_make_a_camera():
-    said = camera_topics("front=/a/color,/a/depth,/a/info")
+    said = parse_camera("front=/a/color,/a/depth,/a/info")
     assert said == ("front", "/a/color", "/a/depth", "/a/info")
 
 
 @pytest.mark.parametrize("said", ["front", "front=/a,/b", "=/a,/b,/c", "front=a,/b,/c", "front=/a,/b,/c d"])
 def test_anything_else_is_none(said):
-    with pytest.raises(errors.BadRequest, match="is no camera; example: front="):
-        camera_topics(said)
+    with pytest.raises(errors.BadRequest, match="is not NAME=COLOUR,DEPTH,INFO; example: front="):
+        parse_camera(said)

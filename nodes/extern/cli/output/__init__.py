@@ -1,7 +1,7 @@
-"""What the command line prints.
+"""Formatting of the output of the command line.
 
-`output.show` and the others are imported when a verb first uses them: the libraries that lay out tables take
-as long to import as most answers take to come.
+`output.show` and other modules are imported at first use: importing the libraries for tables takes as long as
+most requests.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Replies that are plain lines: no layout, and so nothing of rich to import."""
+"""Replies as plain lines, without tables. This module does not import rich."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ from semmap.schemas.relations import Relation
 from semmap.schemas.replies import Changed, Inferred, LoggedCommit, Moved
 
 _MOST = 20
-"""Lines of what would follow, or would no longer; names of what a thing bears."""
+"""The maximum number of inferred facts, and of names of supported objects, that are printed."""
 _FEW_ENTITIES = 6
-"""Entities of which it is said what a commit did to them."""
-_BEARS = {"isOn": "supports", "isInside": "holds"}
-"""By relation, what the other thing does."""
+"""The maximum number of entities whose changes are printed for a commit."""
+_INVERSE = {"isOn": "supports", "isInside": "contains"}
+"""The inverse of a relation, as a verb."""
 
 
 def changed(reply: Changed) -> Iterable[str]:
-    """A change in words, with what was left out and how it was read."""
+    """Yield a change with its commit, the skipped entities, notes, and consequences of a dry run."""
     yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")
-    yield from (f"  left out: {skipped}" for skipped in reply.skipped)
+    yield from (f"  skipped: {skipped}" for skipped in reply.skipped)
     yield from (f"  note: {note}" for note in reply.notes)
-    yield from _few("would follow", reply.follows)
-    yield from _few("would no longer follow", reply.no_longer_follows)
+    yield from _few("would be inferred", reply.follows)
+    yield from _few("would no longer be inferred", reply.no_longer_follows)
 
 
 def moved(reply: Moved) -> Iterable[str]:
-    """The move of a body in words, with the commit by which the map followed, or why there is none."""
+    """Yield the move of a body, with the commit that updated the map, or the reason why there is none."""
     yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")
     yield from (f"  note: {note}" for note in reply.notes)
 
 
 def difference(found: Difference) -> Iterable[str]:
-    """What changed, one line an entity; then how much did, and between which commits and times."""
+    """Yield the changes, one line per entity, then a summary with the commits and times."""
     about: dict[str, list[str]] = {}
     for change in found.changes:
         about.setdefault(change.name, []).append(change.text)
@@ -52,27 +52,27 @@ def difference(found: Difference) -> Iterable[str]:
 
 
 def touched(commit: LoggedCommit) -> str:
-    """What was and what is, of a few entities; of the others their number."""
+    """Return the changes of a commit for a few entities, and the number of the others."""
     about: dict[str, list[str]] = {}
     for change in commit.changes:
         about.setdefault(change.name, []).append(change.text)
-    said = [f"{name}: {'; '.join(texts)}" for name, texts in list(about.items())[:_FEW_ENTITIES]]
+    shown = [f"{name}: {'; '.join(texts)}" for name, texts in list(about.items())[:_FEW_ENTITIES]]
     touched = len({*commit.changed, *commit.removed})
-    if touched > len(said):
-        said.append(f"{touched - len(said)} more" if said else wording.entities(touched))
+    if touched > len(shown):
+        shown.append(f"{touched - len(shown)} more" if shown else wording.entities(touched))
     if commit.tbox:
-        said.append("another TBox")
-    return ", ".join(said) or f"+{commit.inserted} -{commit.retracted} triples"
+        shown.append("new TBox")
+    return ", ".join(shown) or f"+{commit.inserted} -{commit.retracted} triples"
 
 
 def _clock(stamp_ns: int) -> str:
-    """A local time; of another day than today with its date."""
+    """Return a local time, with the date unless it is today."""
     then = datetime.fromtimestamp(stamp_ns / 1e9)
     return f"{then:%H:%M:%S}" if then.date() == date.today() else f"{then:%Y-%m-%d %H:%M:%S}"
 
 
 def _few(what: str, texts: Sequence[str]) -> Iterable[str]:
-    """The first of many; the rest is counted."""
+    """Yield the first of many facts, and the number of the others."""
     shown = texts if len(texts) <= _MOST else texts[: _MOST - 1]
     yield from (f"  {what}: {text}" for text in shown)
     if len(shown) < len(texts):
@@ -80,28 +80,28 @@ def _few(what: str, texts: Sequence[str]) -> Iterable[str]:
 
 
 def inferred(reply: Inferred) -> Iterable[str]:
-    """What follows, one line a triple."""
-    return reply.text or ("nothing follows beyond what is asserted",)
+    """Return the inferred triples, one per line."""
+    return reply.text or ("no inferred facts beyond the asserted ones",)
 
 
 def relations(found: Sequence[Relation]) -> Iterable[str]:
-    """A sentence each; of several things that are on one, or inside it, one sentence without measurements."""
-    borne: dict[tuple[str, str], list[str]] = {}
+    """Yield the relations, one per line. Several objects on or inside another one share a line."""
+    contents: dict[tuple[str, str], list[str]] = {}
     for relation in found:
-        if relation.holds and relation.relation in _BEARS:
-            borne.setdefault((relation.relation, relation.object), []).append(relation.subject)
+        if relation.holds and relation.relation in _INVERSE:
+            contents.setdefault((relation.relation, relation.object), []).append(relation.subject)
     for relation in found:
-        names = borne.get((relation.relation, relation.object), ())
+        names = contents.get((relation.relation, relation.object), ())
         if len(names) < 2 or not relation.holds:
             yield relation.text
         elif relation.subject == names[0]:
-            yield f"{relation.object} {_BEARS[relation.relation]} {wording.few(names, _MOST)}"
+            yield f"{relation.object} {_INVERSE[relation.relation]} {wording.few(names, _MOST)}"
 
 
 def found(answer: Found) -> Iterable[str]:
-    """What a description means: a line a thing with its reasons; what to ask back, or what is nearest."""
-    for said, meant in answer.read_as:
-        yield f"'{said}' is read as '{meant}'"
+    """Yield the matches of a description with reasons, and a clarification question or nearest matches."""
+    for written, corrected in answer.read_as:
+        yield f"'{written}' is read as '{corrected}'"
     if answer.outcome == "none":
         yield answer.text
         if answer.nearest:
@@ -117,5 +117,5 @@ def found(answer: Found) -> Iterable[str]:
 
 
 def explanation(e: Explanation) -> Iterable[str]:
-    """The sentence, and the asserted triples that it rests on."""
+    """Yield an explanation with the asserted triples that it is based on."""
     yield e.text

@@ -1,4 +1,4 @@
-"""What was understood as LU4R, a command interpreter for robots, writes it: command frame representation.
+"""Parsed commands in the command frame representation of LU4R, a command interpreter for robots.
 
 See Vanzo et al., "LU4R: adaptive spoken Language Understanding For Robots", IJCoL 3-1, 2017.
 """
@@ -11,7 +11,7 @@ from semmap.schemas.language import Argument, SemanticFrame, Understood
 
 
 def document(understood: Understood) -> dict[str, Any]:
-    """The sentence, each frame as `TAKING(theme:"the cup")`, and with the entities for the words."""
+    """Return the sentence and its frames, as `TAKING(theme:"the cup")` and with entities as arguments."""
     words = understood.words
     return {
         "sentence": " ".join(words),

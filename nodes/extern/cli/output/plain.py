@@ -1,4 +1,4 @@
-"""Tables as plain text: no colours, no folding, and little to import."""
+"""Tables as plain text, without colours and line wrapping."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _BETWEEN = "  "
 def lines(
     names: Sequence[str], rows: Iterable[Sequence[str]], to_the_right: Sequence[bool] = ()
 ) -> Iterator[str]:
-    """The header, a rule and a line for each row, in columns as wide as they must be."""
+    """Yield the header, a rule, and a line for each row."""
     shown = [[escaped(cell) for cell in row] for row in rows]
     widths = [max(map(cell_len, column)) for column in zip(names, *shown, strict=True)]
     right = to_the_right or [False] * len(names)

@@ -1,4 +1,4 @@
-"""How far a large change is, on stderr."""
+"""Progress of a large change, on stderr."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from semmap.nodes import bus
-from semmap.nodes.extern.cli.output.printable import say
+from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.client import Client
 from semmap.schemas import keys
 from semmap.schemas.health import WORKING, Health
 
 _PATIENCE_S = 2.0
-_AGAIN_S = 5.0
-"""After this time the same is said again."""
+_REPEAT_S = 5.0
+"""Period after which an unchanged message is printed again [s]."""
 
 
 @contextmanager
 def progress(client: Client) -> Iterator[None]:
-    """Meanwhile what the knowledge base tells of its work goes to stderr; nothing when it is soon done."""
+    """Print the progress of the knowledge base to stderr, unless the change takes less than 2 s."""
     began_s = time.monotonic()
-    said, said_s = "", 0.0
+    printed, printed_s = "", 0.0
 
-    def tell(_: str, health: Health) -> None:
-        nonlocal said, said_s
+    def print_progress(_: str, health: Health) -> None:
+        nonlocal printed, printed_s
         now_s = time.monotonic()
         if not health.detail.startswith(WORKING) or now_s < began_s + _PATIENCE_S:
             return
-        if health.detail != said or now_s > said_s + _AGAIN_S:
-            said, said_s = health.detail, now_s
-            say(f"semmap: {health.detail} ({now_s - began_s:.0f} s)", file=sys.stderr)
+        if health.detail != printed or now_s > printed_s + _REPEAT_S:
+            printed, printed_s = health.detail, now_s
+            print_escaped(f"semmap: {health.detail} ({now_s - began_s:.0f} s)", file=sys.stderr)
 
-    subscriber = bus.follow(client.session, keys.HEALTH, tell)
+    subscriber = bus.follow(client.session, keys.HEALTH, print_progress)
     try:
         yield
     finally:

@@ -1,4 +1,4 @@
-"""Replies as a person reads them in a terminal."""
+"""Replies as tables, trees and cards for a terminal."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ from semmap.schemas.replies import SystemStatus
 
 _WIDE = 100_000
 _LEVEL = 1e-3
-"""A quaternion whose x and y are less is one about the z axis."""
-_WORDY = ("class", "size [m]", "reference")
+"""A quaternion with smaller x and y is a rotation about the z axis."""
+_FOLDED = ("class", "size [m]", "label")
 
 
 def console(piped_width: int = _WIDE) -> Console:
-    """A console that does not squeeze tables when its output goes to a file or a pipe.
+    """Return a console that does not shrink tables if the output is a file or a pipe.
 
-    `piped_width` is how many columns these may have there; what is wider is folded.
+    `piped_width` is the width in that case; longer lines are wrapped.
     """
     out = Console(highlight=False, soft_wrap=True, markup=False)
     if out.is_terminal:
@@ -49,8 +49,8 @@ def console(piped_width: int = _WIDE) -> Console:
 
 
 def entity_table(entities: Iterable[Entity]) -> Table:
-    """One row an entity."""
-    rows = table("name", "class", "x", "y", "z", "yaw°", "size [m]", "reference", "body", fold=_WORDY)
+    """Return a table with one row per entity."""
+    rows = table("name", "class", "x", "y", "z", "yaw°", "size [m]", "label", "body", fold=_FOLDED)
     for column in rows.columns[2:6]:
         column.justify = "right"
     for e in entities:
@@ -60,7 +60,7 @@ def entity_table(entities: Iterable[Entity]) -> Table:
 
 
 def entity_line(entities: Sequence[Entity]) -> str:
-    """How many they are, and where it is said why some bodies could not be made."""
+    """Return the number of entities, and a hint if bodies could not be created."""
     failed = sum(e.body is not None and e.body.status == "failed" for e in entities)
     why = (
         f"; {wording.bodies(failed)} could not be created; for the reason see: semmap status"
@@ -71,9 +71,9 @@ def entity_line(entities: Sequence[Entity]) -> str:
 
 
 def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
-    """All about one entity; labels are those of `properties`."""
+    """Return all data of one entity, with the labels of `properties`."""
     body = _body(e) + (f" ({e.body.detail})" if e.body is not None and e.body.detail else "")
-    own_size = " (the model's own)" if e.body is not None and e.body.own_size else ""
+    own_size = " (of the model)" if e.body is not None and e.body.own_size else ""
     rows = {
         "name": e.name,
         "iri": e.iri,
@@ -83,9 +83,9 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         **({"live": _live(e)} if e.tracked or e.live is not None else {}),
         "size": (size_text(e) or "unknown") + own_size,
         **({"where": where} if (where := _where(e)) else {}),
-        **({"but": "; ".join(doubts)} if (doubts := (*(r.text for r in e.denied), *e.withheld)) else {}),
-        "reference": e.preferred_reference or "none",
-        "also called": ", ".join(e.alternative_references) or "-",
+        **({"problems": "; ".join(problems)} if (problems := _problems(e)) else {}),
+        "label": e.preferred_reference or "none",
+        "aliases": ", ".join(e.alternative_references) or "-",
         **_stated(e, {p.name: p for p in properties}),
         "body": body,
         **(
@@ -98,7 +98,7 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "last change": provenance_text(e.provenance),
         "pose set": provenance_text(e.pose_provenance),
         "class and size set": provenance_text(e.shape_provenance),
-        "reference set": provenance_text(e.reference_provenance),
+        "label set": provenance_text(e.reference_provenance),
         **({"joints set": provenance_text(e.joint_provenance)} if e.joint_provenance is not None else {}),
         **({"switches set": provenance_text(e.switch_provenance)} if e.switch_provenance is not None else {}),
     }
@@ -106,19 +106,19 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
 
 
 def _live(e: Entity) -> str:
-    """Where it is just now, how old that is and where it comes from."""
-    if by := holder_of(e):
-        source = f"where {by} holds it"
+    """Return the live pose with its age and source."""
+    if holder := holder_of(e):
+        source = f"the attachment to {holder}"
     else:
-        source = "the simulator" if e.tracked == "sim" else "a stream of poses"
+        source = "the simulator" if e.tracked == "sim" else "published poses"
     if e.live is None:
-        return f"tracked from {source}, which has told nothing yet"
+        return f"tracked from {source}; no pose received yet"
     stale = " (stale)" if e.live.stale else ""
     return f"{pose_text(e.live.pose)}; {wording.duration(e.live.age_s)} ago{stale}, from {source}"
 
 
 def _stated(e: Entity, properties: Mapping[str, PropertyInfo]) -> dict[str, str]:
-    """The properties with their labels: `isOpen (is open)`, `color_red (red)`."""
+    """Return the properties with labels: `isOpen (is open)`, `color_red (red)`."""
     rows = {}
     for name, stated in e.properties.items():
         known = properties.get(name)
@@ -135,17 +135,17 @@ def _label(known: PropertyInfo | None, value: Value) -> str:
 
 
 def property_table(properties: Iterable[PropertyInfo]) -> Table:
-    """One row a property."""
-    rows = table("property", "label", "of", "takes", "values", fold=("label", "of", "takes"))
+    """Return a table with one row per property."""
+    rows = table("property", "label", "domain", "range", "values", fold=("label", "domain", "range"))
     for p in properties:
-        takes = ", ".join(p.range) or ("a value" if p.kind == "data" else "an individual")
-        often = "one" if p.functional else "any number"
-        rows.add(p.name, english(p.labels), ", ".join(p.domain), takes, often)
+        range_ = ", ".join(p.range) or ("a value" if p.kind == "data" else "an individual")
+        count = "one" if p.functional else "any number"
+        rows.add(p.name, english(p.labels), ", ".join(p.domain), range_, count)
     return rows
 
 
 def class_tree(classes: Iterable[ClassInfo]) -> Tree:
-    """The class tree with the number of entities of each class, by inference."""
+    """Return the class tree with the number of entities per class, including inferred types."""
     by_name = {c.name: c for c in classes}
     children: dict[str, list[str]] = {}
     for c in by_name.values():
@@ -161,7 +161,7 @@ def class_tree(classes: Iterable[ClassInfo]) -> Tree:
 
 
 def frame_tree(frames: Iterable[Frame]) -> Tree:
-    """Frames below one another, each with its pose in the one above; what cannot be used with the reason."""
+    """Return the frame tree, with the pose of each frame in its parent, or the reason why it is unusable."""
     branches: dict[str, Tree] = {}
     root = Tree(Text("frames", style="bold"))
     for f in frames:
@@ -176,32 +176,32 @@ def frame_tree(frames: Iterable[Frame]) -> Tree:
 
 
 def _frame_pose(f: Frame) -> str:
-    """Its pose in its parent; of one that leans the quaternion, as its yaw says little."""
+    """Return the pose of a frame in its parent, with the quaternion if it is not a rotation about z."""
     if not f.parent or f.pose is None:
         return ""
     w, x, y, z = f.pose.orientation_wxyz
     if max(abs(x), abs(y)) < _LEVEL:
         return pose_text(f.pose)
-    turned = " ".join(f"{value:.3f}" for value in (w, x, y, z))
-    return f"{pose_text(f.pose).partition(', yaw')[0]}, wxyz {turned}"
+    quaternion = " ".join(f"{value:.3f}" for value in (w, x, y, z))
+    return f"{pose_text(f.pose).partition(', yaw')[0]}, wxyz {quaternion}"
 
 
 def _frame_note(f: Frame) -> str:
-    """Where its pose comes from, how old it is, and what is wrong with it."""
+    """Return the source, age and problem of a frame."""
     source = {"map": "", "sim": "the simulator", "stream": "a stream", "camera": "a camera"}[f.source]
     age = "" if f.age_s is None else f", {wording.duration(f.age_s)} ago"
     if f.source == "stream" and f.age_s is None and not f.problem:
         age = ", fixed"
-    said = f"  from {source}{age}" if source and f.source != "camera" else f"  {source}" if source else ""
-    return f"{said}  ({f.problem})" if f.problem else said
+    note = f"  from {source}{age}" if source and f.source != "camera" else f"  {source}" if source else ""
+    return f"{note}  ({f.problem})" if f.problem else note
 
 
 def status_table(status: SystemStatus) -> Table:
-    """One row a node; with its host, if they run on several."""
-    worries = ("last error",) if any(n.last_error for n in status.nodes) else ()
+    """Return a table with one row per node, and the hosts if there are several."""
+    errors = ("last error",) if any(n.last_error for n in status.nodes) else ()
     hosts = ("host",) if len({n.host for n in status.nodes}) > 1 else ()
-    columns = ("node", *hosts, "state", "pid", "uptime", "heartbeat", "detail", *worries)
-    rows = table(*columns, fold=("detail", *worries))
+    columns = ("node", *hosts, "state", "pid", "uptime", "heartbeat", "detail", *errors)
+    rows = table(*columns, fold=("detail", *errors))
     for n in status.nodes:
         colour = {"ready": "green", "starting": "yellow"}.get(n.state, "red")
         rows.add(
@@ -212,15 +212,15 @@ def status_table(status: SystemStatus) -> Table:
             _duration(n.uptime_s),
             f"{n.heartbeat_age_s:.1f} s ago",
             n.detail,
-            *((n.last_error,) if worries else ()),
+            *((n.last_error,) if errors else ()),
         )
     return rows
 
 
 def status_line(status: SystemStatus) -> str:
-    """The map and the scene in one line."""
+    """Return the state of the map and the scene in one line."""
     verdicts = {
-        True: "map and scene agree" + (", except where noted below" if status.problems else ""),
+        True: "map and scene agree" + (", except for the problems below" if status.problems else ""),
         False: "map and scene do not agree yet",
         None: "the map is updated by perception only"
         if status.truth == "perceived"
@@ -233,12 +233,12 @@ def status_line(status: SystemStatus) -> str:
 
 
 def status_notes(status: SystemStatus) -> Iterable[str]:
-    """What is good to know of what the nodes work with: of the knowledge base, on its TBox."""
+    """Yield the notes of the nodes, which are about the TBox."""
     return (f"TBox: {note}" for node in status.nodes for note in node.notes)
 
 
 def commit_line(commit: Commit) -> str:
-    """A commit in one line."""
+    """Return a commit as one line."""
     stamp = time.strftime("%H:%M:%S", time.localtime(commit.stamp_ns / 1e9))
     extent = commit.extent
     counts = f"+{extent.inserted} -{extent.retracted} triples"
@@ -251,12 +251,17 @@ def commit_line(commit: Commit) -> str:
 
 
 def _where(e: Described) -> str:
-    known = ", ".join(map(_whereabouts, e.whereabouts))
+    known = ", ".join(map(_without_measurement, e.whereabouts))
     return "; ".join(filter(None, (known, e.on_nothing.removeprefix(f"{e.name} is "))))
 
 
-def _whereabouts(relation: Relation) -> str:
-    """Without the measurement, which `semmap relations` gives."""
+def _problems(e: Described) -> tuple[str, ...]:
+    """Return the relations that do not hold and the suppressed facts."""
+    return (*(relation.text for relation in e.denied), *e.withheld)
+
+
+def _without_measurement(relation: Relation) -> str:
+    """Return a relation without the measurement, which `semmap relations` prints."""
     return relation.text.removeprefix(f"{relation.subject} is ").partition(":")[0]
 
 
@@ -281,4 +286,4 @@ def _grow(tree: Tree, parent: str, children: dict[str, list[str]], by_name: dict
 
 def _model(e: Entity) -> str:
     model = (e.body.model if e.body is not None else "") or e.model or "a box"
-    return f"{model} (as stated)" if "model" in e.properties else model
+    return f"{model} (property model)" if "model" in e.properties else model

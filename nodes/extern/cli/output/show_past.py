@@ -1,4 +1,4 @@
-"""The past as a person reads it in a terminal."""
+"""History and sightings as tables and cards for a terminal."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from semmap.schemas.replies import LoggedCommit, Sighting
 
 
 def history_table(commits: Iterable[LoggedCommit]) -> Table:
-    """One row a commit, and one a note on it."""
-    columns = ("commit", "time", "by", "why", "sure", "what")
-    rows = table(*columns, fold=("by", "why", "what"))
+    """Return a table with one row per commit, and one per note."""
+    columns = ("commit", "time", "author", "reason", "confidence", "changes")
+    rows = table(*columns, fold=("author", "reason", "changes"))
     rows.columns[0].justify = "right"
     for c in commits:
         rows.add(
@@ -32,12 +32,12 @@ def history_table(commits: Iterable[LoggedCommit]) -> Table:
 
 
 def sighting_card(s: Sighting) -> Table:
-    """Where an entity was last, and by whose word."""
+    """Return the last known pose of an entity, with its source."""
     rows = {"name": s.name, "where": pose_text(s.pose), "last change": provenance_text(s.provenance)}
     if s.removed is not None:
         rows["removed"] = provenance_text(s.removed)
     if s.seen_ns is not None:
-        rows["last in sight"] = moment(s.seen_ns)
-    if s.removed is None or s.gone is not None:  # else it is said already
+        rows["last observed"] = moment(s.seen_ns)
+    if s.removed is None or s.gone is not None:  # otherwise the row `removed` has the status
         rows["status"] = s.text
     return card(rows)

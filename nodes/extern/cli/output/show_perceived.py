@@ -1,4 +1,4 @@
-"""What `semmap perceive` shows."""
+"""The output of `semmap perceive`."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _UPRIGHT = 0.7
 
 
 def counts(sight: Sight) -> dict[int, int]:
-    """How many points each label has."""
+    """Return the number of points of each label."""
     return {segment.label: segment.count for segment in sight.segments}
 
 
 def as_records(sight: Sight, told: Mapping[int, Observation | None]) -> list[dict[str, Any]]:
-    """Each object for programs: its label, its points, and the observation; null for clutter."""
+    """Return the objects with label, number of points, and observation (None for clutter)."""
     of = counts(sight)
     return [
         {"label": label, "points": of[label], "observation": seen} for label, seen in sorted(told.items())
@@ -35,7 +35,7 @@ def as_records(sight: Sight, told: Mapping[int, Observation | None]) -> list[dic
 
 
 def as_table(sight: Sight, told: Mapping[int, Observation | None]) -> Table:
-    """A row for each object: what it is taken for, and where the whole of it stands."""
+    """Return a table with one row per object: its class, pose and size."""
     rows = table(*_COLUMNS, fold=("class", "size [m]"))
     of = counts(sight)
     for label, seen in sorted(told.items()):
@@ -44,7 +44,7 @@ def as_table(sight: Sight, told: Mapping[int, Observation | None]) -> Table:
 
 
 def show_frame(row: FrameRow) -> None:
-    """One frame of a dataset."""
+    """Print the objects of one frame of a dataset."""
     console().print(f"{row.frame}: {row.error or wording.counted(len(row.objects), 'object')}", markup=False)
     if row.objects:
         rows = table(*_COLUMNS, fold=("class", "size [m]"))

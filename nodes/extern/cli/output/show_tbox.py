@@ -1,4 +1,4 @@
-"""What `semmap tbox check` found out, for people."""
+"""The report of `semmap tbox check` as text."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ _FEW = 20
 
 
 def report(found: TBoxReport) -> Iterator[str]:
-    """One line or more for each thing that there is to say."""
+    """Yield the lines of a report."""
     for iri, version in found.ontologies.items():
         yield _line("ontology", iri + (f" ({version})" if version else ""))
-    yield _line("holds", _contents(found))
+    yield _line("contents", _contents(found))
     for iri, file in found.imports.items():
         yield _line("imports", f"{iri} from {file}")
     for iri in found.missing:
-        yield _line("missing", f"{iri} (--import {iri}=FILE says where it is)")
+        yield _line("missing", f"{iri} (add --import {iri}=FILE)")
     for kind, count in found.outside_rl.items():
-        yield _line("inert", f"{count} x {kind} (beyond OWL 2 RL)")
+        yield _line("ignored", f"{count} x {kind} (outside OWL 2 RL)")
     yield from _names(found)
     yield from _verdict(found)
     if (quick := found.quickness) is not None:
-        yield _line("loads in", f"{quick.load_s:.2f} s")
+        yield _line("load time", f"{quick.load_s:.2f} s")
         if quick.add_p50_ms is not None:
-            yield _line("a change takes", f"{quick.add_p50_ms:.3f} ms (median)")
+            yield _line("change time", f"{quick.add_p50_ms:.3f} ms (median)")
         if quick.not_incremental:
             yield _line("not incremental", quick.not_incremental)
 
 
 def _contents(found: TBoxReport) -> str:
-    spatial = "" if found.spatial_classes is None else f" ({found.spatial_classes} of things in space)"
+    spatial = "" if found.spatial_classes is None else f" ({found.spatial_classes} spatial)"
     counts = {
         f"object {_properties(found.object_properties)}": found.object_properties,
         f"data {_properties(found.data_properties)}": found.data_properties,
@@ -50,8 +50,8 @@ def _properties(count: int) -> str:
 
 
 def _names(found: TBoxReport) -> Iterator[str]:
-    for name, called in list(found.ambiguous.items())[:_FEW]:
-        yield _line("ambiguous", f"{name}: {' or '.join(called)}")
+    for name, iris in list(found.ambiguous.items())[:_FEW]:
+        yield _line("ambiguous", f"{name}: {' or '.join(iris)}")
     if (more := len(found.ambiguous) - _FEW) > 0:
         yield _line("ambiguous", f"and {more} more names")
 
@@ -60,10 +60,10 @@ def _verdict(found: TBoxReport) -> Iterator[str]:
     if found.inconsistent:
         yield _line("inconsistent", found.inconsistent)
         return
-    for wrong in found.unsatisfiable:
-        yield _line("unsatisfiable", f"{wrong.iri}: {wrong.why}")
+    for class_ in found.unsatisfiable:
+        yield _line("unsatisfiable", f"{class_.iri}: {class_.why}")
     if found.untried:
-        yield _line("untried", f"{found.untried} classes, because each would take too long")
+        yield _line("not checked", f"{found.untried} classes, because the check would take too long")
     if found.is_sound and not found.untried:
         yield _line("consistent", "yes, and every class is satisfiable")
 

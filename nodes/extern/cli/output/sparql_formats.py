@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 
 def plain_table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Iterator[str]:
-    """One line a row, with prefixed names, for whatever is no terminal."""
+    """Yield a table as plain lines with prefixed names, for a file or a pipe."""
     return plain.lines(variables, [[spoken(term) for term in row] for row in rows])
 
 
 def table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Table:
-    """The same for a terminal."""
+    """Return the table for a terminal."""
     from semmap.nodes.extern.cli.output import tables
 
     shown = tables.table(*variables, fold=variables)
@@ -35,7 +35,7 @@ def table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Table:
 
 
 def text(result: SparqlResult, format: Format) -> str:
-    """An answer as a document. Raises BadRequest for a format that it has no form in."""
+    """Return a result as a document. Raises BadRequest if the format does not support this kind of result."""
     if format == "turtle":
         return _turtle(result)
     if result.kind == "ask":
@@ -50,7 +50,7 @@ def text(result: SparqlResult, format: Format) -> str:
 
 
 def news(variables: tuple[str, ...], changed: RowsChanged) -> Iterator[str]:
-    """A line for each row that came (+) or went (-), with the commit that caused it."""
+    """Yield a line for each row that appeared (+) or disappeared (-), with its commit."""
     by = f"commit {changed.seq}"
     if changed.since < changed.seq - 1:
         by = f"commits {changed.since + 1} to {changed.seq}"
@@ -61,7 +61,7 @@ def news(variables: tuple[str, ...], changed: RowsChanged) -> Iterator[str]:
 
 
 def spoken(term: Term | None) -> str:
-    """A term as Turtle would write it for a reader: `:chair1`, `dm:Chair`, `1.5`, `"text"`."""
+    """Return a term in the syntax of Turtle: `:chair1`, `dm:Chair`, `1.5`, `"text"`."""
     if term is None:
         return ""
     if term.startswith("<"):
@@ -85,7 +85,7 @@ def _csv(result: SparqlResult) -> Iterator[str]:
 
 
 def _cell(term: Term | None) -> str:
-    """As the W3C's CSV has it: the bare IRI or text, in quotes where it holds what CSV lives on."""
+    """Return a term in the SPARQL 1.1 CSV format."""
     if term is None or term.startswith("_:"):
         return term or ""
     bare = v.bare(term) if term.startswith("<") else v.lexical(term)
@@ -93,7 +93,7 @@ def _cell(term: Term | None) -> str:
 
 
 def _binding(term: Term) -> dict[str, str]:
-    """A term as the W3C's JSON has it."""
+    """Return a term in the SPARQL 1.1 JSON format."""
     if term.startswith("<"):
         return {"type": "uri", "value": v.bare(term)}
     if term.startswith("_:"):
@@ -108,7 +108,7 @@ def _binding(term: Term) -> dict[str, str]:
 def _turtle(result: SparqlResult) -> str:
     if result.kind != "graph":
         raise errors.BadRequest(
-            "--format turtle needs a CONSTRUCT or DESCRIBE query; for rows use table, json or csv"
+            "--format turtle requires a CONSTRUCT or DESCRIBE query; for rows use table, json or csv"
         )
     lines = "".join(f"{' '.join(map(str, row))} .\n" for row in result.rows).encode()
     extras.require("RDF as Turtle", "kb")

@@ -1,4 +1,4 @@
-"""Building blocks of tables and cards in a terminal."""
+"""Tables and cards for a terminal."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from semmap.nodes.extern.cli.output import plain
 from semmap.nodes.extern.cli.output.printable import escaped
 
 _NARROWEST = 8
-"""Characters: a column that folds keeps so many, if it has them."""
+"""The minimum width of a wrapped column."""
 _BETWEEN = 2
 _MANY = 1000
-"""Rows for which laying them out takes too long: seconds, and minutes for a large map."""
+"""From this number of rows, plain lines are printed, because rich takes seconds or even minutes."""
 
 
 class Rows(Table):
-    """A table whose cells are plain text, whatever stands in them, and of which nothing is ever cut off."""
+    """A table whose cells are plain text without markup, and are never truncated."""
 
     def __init__(self, *headers: Column | str, **style: Any) -> None:
         super().__init__(*headers, **style)
         self._lines: list[tuple[str | Text, ...]] = []
 
     def add(self, *cells: str | Text) -> None:
-        """A row. What is no printable character in a string is shown by its escape."""
+        """Add a row. Control characters in strings are escaped."""
         self._lines.append(cells)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """As wide as it must be: what is too wide for the terminal is for the terminal to wrap."""
+        """Render the table with its full width, even if the terminal is narrower and wraps the lines."""
         if len(self._lines) >= _MANY:
             return self._in_plain_lines()
         for cells in self._lines[self.row_count :]:
@@ -49,7 +49,7 @@ class Rows(Table):
         self.add_row(*texts)
 
     def _in_plain_lines(self) -> RenderResult:
-        """The same without colours and folding."""
+        """Render the table without colours and wrapped columns."""
         names = [str(column.header) for column in self.columns]
         rows = [[str(cell) for cell in cells] for cells in self._lines]
         to_the_right = [column.justify == "right" for column in self.columns]
@@ -57,7 +57,7 @@ class Rows(Table):
 
 
 def table(*columns: str, fold: Collection[str]) -> Rows:
-    """An empty table; in a narrow terminal the columns `fold` go on in the next line, the others do not."""
+    """Return an empty table. In a narrow terminal, only the columns `fold` are wrapped."""
     rows = Rows(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for name in columns:
         least = min(len(name), _NARROWEST) if name in fold else len(name)
@@ -66,12 +66,12 @@ def table(*columns: str, fold: Collection[str]) -> Rows:
 
 
 def printable(text: str) -> Text:
-    """Text with its line ends and the like escaped, for rich."""
+    """Return a text for rich, with its line ends and control characters escaped."""
     return Text(escaped(text))
 
 
 def card(rows: Mapping[str, str]) -> Table:
-    """Names and values, one row each."""
+    """Return a table of names and values."""
     lines = Table(box=None, show_header=False, pad_edge=False)
     lines.add_column(style="dim", no_wrap=True)
     lines.add_column(overflow="fold")

@@ -12,8 +12,8 @@ def test_of_many_consequences_a_few_are_shown_and_the_rest_counted(count, shown)
     facts = tuple(f"cup{i} type Cup" for i in range(count))
     text, *rest = lines.changed(Changed(commit=None, text="it would be", no_longer_follows=facts))
     assert text == "it would be"
-    assert rest[:shown] == [f"  would no longer follow: {fact}" for fact in facts[:shown]]
-    assert rest[shown:] == [f"  would no longer follow: {count - shown} more facts"] * (count > shown)
+    assert rest[:shown] == [f"  would no longer be inferred: {fact}" for fact in facts[:shown]]
+    assert rest[shown:] == [f"  would no longer be inferred: {count - shown} more facts"] * (count > shown)
 
 
 def test_what_a_thing_bears_is_one_sentence():

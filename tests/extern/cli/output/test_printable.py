@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from semmap.nodes.extern.cli.calling import complain, print_json, print_lines
-from semmap.nodes.extern.cli.output.printable import say, write
+from semmap.nodes.extern.cli.common import print_error, print_json, print_lines
+from semmap.nodes.extern.cli.output.printable import print_escaped, write
 
 CLEAR = "\x1b[2J\x1b]0;owned\x07 \x9b31m \x7f \u202e"
 
@@ -16,7 +16,7 @@ def commands(text):
     return [c for c in text if not c.isprintable() and c != "\n"]
 
 
-@pytest.mark.parametrize("show", [say, complain, print_json, lambda text: print_lines([text])])
+@pytest.mark.parametrize("show", [print_escaped, print_error, print_json, lambda text: print_lines([text])])
 def test_no_control_character_is_printed(capsys, show):
     show(f"a reference {CLEAR} of a cup")
     out, err = capsys.readouterr()
@@ -25,7 +25,7 @@ def test_no_control_character_is_printed(capsys, show):
 
 
 def test_lines_and_letters_stay(capsys):
-    say("zwei\nZeilen: \u00e4\u00f6\u00fc \u65e5\u672c")
+    print_escaped("zwei\nZeilen: \u00e4\u00f6\u00fc \u65e5\u672c")
     assert capsys.readouterr().out == "zwei\nZeilen: \u00e4\u00f6\u00fc \u65e5\u672c\n"
 
 

@@ -52,7 +52,7 @@ def test_turtle_is_for_graphs():
     (triple,) = ox.parse(document, ox.RdfFormat.TURTLE)
     assert tuple(map(str, triple.triple)) == GRAPH.rows[0]
     for result in (ROWS, ASK):
-        with pytest.raises(errors.BadRequest, match="needs a CONSTRUCT or DESCRIBE query"):
+        with pytest.raises(errors.BadRequest, match="requires a CONSTRUCT or DESCRIBE query"):
             formats.text(result, "turtle")
 
 

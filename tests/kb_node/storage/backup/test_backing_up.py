@@ -83,7 +83,7 @@ def test_what_is_restored_is_what_was_backed_up(tmp_path, semantic_map, size):
 def test_a_file_that_is_there_is_kept_unless_that_is_wanted(tmp_path, semantic_map):
     file = tmp_path / "b"
     file.write_text("precious")
-    with pytest.raises(errors.BadFile, match="is there already; overwrite it with --overwrite"):
+    with pytest.raises(errors.BadFile, match="already exists; add --overwrite"):
         backed_up(semantic_map, file)
     assert file.read_text() == "precious"
 

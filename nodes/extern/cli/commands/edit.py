@@ -1,0 +1,217 @@
+"""The commands that change the map: `add`, `update`, `set`, `unset`, `track`, `remove`, `clear`, `load`."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from semmap.nodes.extern.cli.angles import yaw_option
+from semmap.nodes.extern.cli.command import NegativeNumbers, command
+from semmap.nodes.extern.cli.common import (
+    carry_options,
+    drop_unset,
+    frame_option,
+    print_lines,
+    vector_option,
+    with_client,
+)
+from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from semmap.nodes.extern.cli.output import lines
+from semmap.nodes.extern.cli.output.printable import print_escaped
+from semmap.nodes.extern.cli.shell_completion import class_names, entity_names
+from semmap.nodes.extern.plan_files import is_plan, read_plan
+from semmap.schemas import errors
+
+if TYPE_CHECKING:
+    from semmap.nodes.extern.client import Client
+
+
+def _options(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    return lambda function: functools.reduce(lambda f, decorate: decorate(f), reversed(decorators), function)
+
+
+def _drop_none(fields: dict[str, Any]) -> dict[str, Any]:
+    """Return the options that were set; an empty text is a value."""
+    return {name: value for name, value in fields.items() if value not in (None, False)}
+
+
+_id = click.option(
+    "--id", "id", metavar="ID", help="Command id; a command sent twice with one id is executed once."
+)
+_dry_run = click.option(
+    "--dry-run", is_flag=True, help="Report what would change, without changing anything."
+)
+_set = click.option(
+    "--set", "set", multiple=True, metavar="PROPERTY=VALUE", help="Set a property; may be repeated."
+)
+_if_is = click.option(
+    "--if-is", metavar="VALUE", help="Only if the property has this value (compare and set)."
+)
+_describing = _options(
+    vector_option("--at", metavar="X Y Z", help="Position of the bottom centre [m]."),
+    frame_option("Frame of --at and of the rotation. Default: map"),
+    yaw_option,
+    click.option("--orientation", nargs=4, type=float, metavar="W X Y Z", help="Unit quaternion."),
+    vector_option("--size", metavar="X Y Z", help="Size along its own axes [m]."),
+    click.option("--extent", metavar="WKT", help="Area of a place: 'POLYGON ((X Y, ...))' [m]."),
+    click.option("--ref", metavar="TEXT", help="Label (skos:prefLabel)."),
+    click.option("--alt", multiple=True, metavar="TEXT", help="Alias (skos:altLabel); may be repeated."),
+    click.option("--confidence", type=float, metavar="P", help="Confidence, 0 to 1."),
+    click.option("--wait", is_flag=True, help="Wait until its body is in the scene."),
+    _id,
+)
+
+
+@command(example='semmap add Cup cup1 --at 2.5 1 0.75 --ref "coffee cup"')
+@click.argument("class_", metavar="CLASS", shell_complete=class_names)
+@click.argument("name", required=False)
+@_describing
+@_set
+@click.option(
+    "--track", type=click.Choice(["stream", "sim"]), help="Track it from the start (see: semmap track)."
+)
+@click.option("--default", is_flag=True, help="Use the label of the class as its label.")
+@_dry_run
+@with_client
+def add(client: Client, **fields: Any) -> None:
+    """Add an entity to the map.
+
+    Without --at, it is placed at the next free position.
+    """
+    print_lines(lines.changed(client.add(**drop_unset(fields))))
+
+
+@command(example="semmap update cup1 --at 2.5 1 0.75 --yaw 90deg")
+@click.argument("name", shell_complete=entity_names)
+@_describing
+@click.option("--class", "class_", metavar="CLASS", shell_complete=class_names)
+@click.option(
+    "--conflict",
+    metavar="TEXT",
+    help="Store an observation that contradicts the map; an empty text clears it.",
+)
+@_set
+@click.option(
+    "--unset",
+    multiple=True,
+    metavar="PROPERTY[=VALUE]",
+    help="Remove one value of a property, or all. With --set of the same property, replace them.",
+)
+@click.option("--force", is_flag=True, help="Allow an object to become a place, or a place an object.")
+@carry_options
+@_dry_run
+@with_client
+def update(client: Client, **fields: Any) -> None:
+    """Change an entity; omitted fields keep their values."""
+    print_lines(lines.changed(client.update(**drop_unset(fields))))
+
+
+@command("set", example="semmap set door1 isOpen true", cls=NegativeNumbers)
+@click.argument("name", shell_complete=entity_names)
+@click.argument("property", metavar="PROPERTY")
+@click.argument("values", metavar="VALUE...", nargs=-1, required=True)
+@_if_is
+@click.option("--if-unset", is_flag=True, help="Only if the property has no value now.")
+@click.option("--confidence", type=float, metavar="P", help="Confidence, 0 to 1.")
+@_id
+@_dry_run
+@with_client
+def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fields: Any) -> None:
+    """Set a property of an entity.
+
+    The value of a functional property replaces the previous one. Other properties keep their previous values.
+    """
+    print_lines(lines.changed(client.set(name, property, *values, **_drop_none(fields))))
+
+
+@command(example="semmap unset cup1 hasColor", cls=NegativeNumbers)
+@click.argument("name", shell_complete=entity_names)
+@click.argument("property", metavar="PROPERTY")
+@click.argument("value", required=False)
+@_if_is
+@_id
+@_dry_run
+@with_client
+def unset(client: Client, **fields: Any) -> None:
+    """Remove one value of a property of an entity, or all."""
+    print_lines(lines.changed(client.unset(**_drop_none(fields))))
+
+
+@command(example="semmap track robot1 --from stream")
+@click.argument("name", shell_complete=entity_names)
+@click.option(
+    "--from",
+    "from_",
+    type=click.Choice(["stream", "sim"]),
+    default="stream",
+    show_default=True,
+    help="Source of its pose: programs that publish it, or the simulator.",
+)
+@click.option("--off", is_flag=True, help="Stop tracking; the entity keeps its last pose.")
+@_id
+@_dry_run
+@with_client
+def track(client: Client, **fields: Any) -> None:
+    """Receive live poses of an entity on semmap/live/NAME.
+
+    The newest pose is used and is not committed. When the entity stops, its pose is committed.
+    """
+    print_lines(lines.changed(client.track(**drop_unset(fields))))
+
+
+@command(example="semmap remove cup1 cup2")
+@click.argument("names", nargs=-1, required=True, shell_complete=entity_names)
+@_dry_run
+@with_client
+def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
+    """Remove entities from the map and the scene."""
+    print_lines(lines.changed(client.remove(*names, dry_run=dry_run)))
+
+
+@command(example="semmap clear --dry-run")
+@_dry_run
+@with_client
+def clear(client: Client, dry_run: bool) -> None:
+    """Remove all entities from the map and the scene."""
+    from semmap.nodes.extern.cli.output.progress import progress
+
+    with progress(client):
+        reply = client.clear(dry_run=dry_run)
+    print_lines(lines.changed(reply))
+
+
+@command(example="semmap load demo/flat.ttl --replace")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--replace", is_flag=True, help="Replace the current entities.")
+@click.option("--skip-unknown", is_flag=True, help="Skip entities of unknown classes.")
+@click.option("--strict", is_flag=True, help="Reject files that refer to undescribed entities.")
+@click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) that replaces the current one.")
+@click.option("--parts", is_flag=True, help="Load in several commits, for files of any size.")
+@import_option
+@spatial_root_option
+@_dry_run
+@with_client
+def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
+    """Load a map, a scene or a TBox from a file.
+
+    A map is an ABox in any RDF or OWL syntax, a JSON scene or a HuRIC map. A TBox is loaded with its imports.
+    A plan is the .yaml file of an occupancy grid of the ROS map server: its free space becomes rooms and
+    doors.
+    """
+    from semmap.nodes.extern.cli.output.progress import progress
+
+    with progress(client):
+        try:
+            reply = client.load(file, imports=dict(imports), **how)
+        except errors.NoAnswer as error:
+            raise errors.NoAnswer(
+                f"{error.text}; {file.name} may or may not have been loaded; see: semmap history"
+            ) from None
+    print_lines(lines.changed(reply))
+    if is_plan(file) and not how["tbox"]:
+        for line in read_plan(file).lines:
+            print_escaped(f"  {line}")

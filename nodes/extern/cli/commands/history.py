@@ -1,0 +1,121 @@
+"""The commands about the history: `history`, `last-seen`, `diff`, `when`, `undo`."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any, get_args
+
+import click
+
+from semmap.nodes.extern.cli import output
+from semmap.nodes.extern.cli.command import command
+from semmap.nodes.extern.cli.common import TIME, print_json, print_lines, with_client
+from semmap.nodes.extern.cli.output import lines
+from semmap.nodes.extern.cli.shell_completion import entity_names
+from semmap.schemas import errors
+from semmap.schemas.happenings import KeptRelation
+
+if TYPE_CHECKING:
+    from semmap.nodes.extern.client import Client
+
+_format = click.option(
+    "--format", "format", type=click.Choice(["table", "json"]), default="table", show_default=True
+)
+
+_text_or_json = click.option(
+    "--format", "format", type=click.Choice(["text", "json"]), default="text", show_default=True
+)
+_PIPED_WIDTH = 120
+"""Columns, if the output is not a terminal: the list of changes can be long."""
+
+
+@command(example="semmap history cup1 --since 12:30")
+@click.argument("name", required=False, shell_complete=entity_names)
+@click.option("--since", metavar="COMMIT|TIME", help="First commit.")
+@click.option("--until", metavar="COMMIT|TIME", help=f"Last commit. {TIME}")
+@click.option(
+    "--limit", type=int, default=20, show_default=True, help="Number of commits; the newest are shown."
+)
+@_format
+@with_client
+def history(
+    client: Client, name: str | None, since: str | None, until: str | None, limit: int, format: str
+) -> None:
+    """Show the newest commits, or those of one entity, in order."""
+    commits = client.history(name, since=since, until=until, limit=limit)
+    if format == "json":
+        print_json(commits)
+        return
+    if commits:
+        output.show.console(_PIPED_WIDTH).print(output.show_past.history_table(commits))
+    print(f"{len(commits)} {'commit' if len(commits) == 1 else 'commits'}")
+
+
+@command("last-seen", example="semmap last-seen cup1")
+@click.argument("name", shell_complete=entity_names)
+@_format
+@with_client
+def last_seen(client: Client, name: str, format: str) -> None:
+    """Show where and when an entity was last seen or placed.
+
+    The entity may have been removed since. The status distinguishes entities that were observed to be gone
+    from entities that were not observed again.
+    """
+    sighting = client.last_seen(name)
+    if format == "json":
+        print_json(sighting)
+    else:
+        output.show.console().print(output.show_past.sighting_card(sighting))
+
+
+@command(example="semmap diff 12:30")
+@click.argument("since", metavar="COMMIT|TIME")
+@click.argument("until", metavar="[COMMIT|TIME]", required=False)
+@_text_or_json
+@with_client
+def diff(client: Client, since: str, until: str | None, format: str) -> None:
+    """Show what changed between two commits or times.
+
+    Without a second argument, show what has changed since the first.
+    """
+    found = client.diff(since, until)
+    if format == "json":
+        print_json(found)
+    else:
+        print_lines(lines.difference(found))
+
+
+@command(example="semmap when cup1 isOn table1")
+@click.argument("name", shell_complete=entity_names)
+@click.argument("relation", metavar="RELATION", type=click.Choice(get_args(KeptRelation)))
+@click.argument("other", shell_complete=entity_names)
+@_text_or_json
+@with_client
+def when(client: Client, name: str, relation: Any, other: str, format: str) -> None:
+    """Show when one entity was on, in or attached to another.
+
+    RELATION is isOn, isInside, isLocatedIn or isAttachedTo. The exit status is 1 if the relation never held.
+    """
+    found = client.when(name, relation, other)
+    if format == "json":
+        print_json(found)
+    else:
+        print_lines([found.text])
+    if not found.spells:
+        sys.exit(errors.Refused.exit_status)
+
+
+@command(example="semmap undo --dry-run")
+@click.argument("commit", type=int, required=False)
+@click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
+@with_client
+def undo(client: Client, commit: int | None, dry_run: bool) -> None:
+    """Undo a commit, unless later ones depend on it.
+
+    Without COMMIT, undo the newest commit that a client requested.
+    """
+    from semmap.nodes.extern.cli.output.progress import progress
+
+    with progress(client):
+        reply = client.undo(commit, dry_run=dry_run)
+    print_lines(lines.changed(reply))

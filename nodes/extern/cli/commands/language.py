@@ -1,0 +1,112 @@
+"""The commands of natural language: `find`, `understand` and `tell`."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import textwrap
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from semmap.nodes.extern.cli.angles import from_pose
+from semmap.nodes.extern.cli.command import command
+from semmap.nodes.extern.cli.common import print_error, print_json, print_lines, with_client
+from semmap.nodes.extern.cli.output import lines, lu4r
+from semmap.nodes.extern.cli.shell_completion import entity_names
+from semmap.schemas import errors
+
+if TYPE_CHECKING:
+    from semmap.nodes.extern.client import Client
+    from semmap.schemas.language import Language, Mood
+
+_WHY: Final[dict[Mood, str]] = {
+    "command": "'{text}': no command recognized; example: take the cup from the table",
+    "question": "'{text}' is a question, not a command; example of a command: take the cup from the table",
+    "past": "'{text}' is a statement about the past, not a command; example of a command: take the cup from"
+    " the table",
+}
+
+
+@command(example="semmap tell kitchen1 --words 50")
+@click.argument("name", required=False, shell_complete=entity_names)
+@click.option(
+    "--words",
+    type=click.IntRange(20, 5000),
+    default=150,
+    show_default=True,
+    help="Maximum number of words.",
+)
+@click.option("--format", "format", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@with_client
+def tell(client: Client, name: str | None, words: int, format: str) -> None:
+    """Describe the map, a place or an object in a short text.
+
+    NAME is a name, or a label or class that only one entity has. Without it, the whole map is described.
+    """
+    found = client.tell(name, words=words)
+    if format == "json":
+        print_json(found)
+    else:
+        width = shutil.get_terminal_size().columns
+        print_lines(textwrap.wrap(found.text, width) if sys.stdout.isatty() else [found.text])
+
+
+@command(example='semmap find "the red cup on the kitchen table"')
+@click.argument("text")
+@click.option(
+    "--from", "viewer", metavar="VIEWER", help="Viewer, for left of, behind, the second from the left ..."
+)
+@from_pose
+@click.option("--for", "asker", metavar="NAME", help="Speaker: the person that 'my' refers to.")
+@click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@with_client
+def find(client: Client, text: str, format: str, **fields: Any) -> None:
+    """Find the entities that a noun phrase describes.
+
+    The phrase is English or Italian. If several entities match, a clarification question is printed. The exit
+    status is 1 if none matches.
+    """
+    found = client.find(text=text, **fields)
+    if format == "json":
+        print_json(found)
+    else:
+        print_lines(list(lines.found(found)))
+    if found.outcome == "none":
+        sys.exit(errors.Refused.exit_status)
+
+
+@command(example='semmap understand "take the bottle from the table"')
+@click.argument("text")
+@click.option(
+    "--format",
+    "format",
+    type=click.Choice(["text", "json", "lu4r"]),
+    default="text",
+    show_default=True,
+    help="lu4r: the format of the LU4R interpreter.",
+)
+@click.option("--language", type=click.Choice(["english", "italian"]), help="Default: detected.")
+@with_client
+def understand(client: Client, text: str, format: str, language: Language | None) -> None:
+    """Parse a spoken command to semantic frames.
+
+    The command is English or Italian. The arguments of its FrameNet frames are resolved to entities of the
+    map. Unknown verbs, and arguments that do not match the map, are reported on stderr. The exit status is 1
+    if no frame is recognized.
+    """
+    found = client.understand(text, language=language)
+    if format == "json":
+        print_json(found)
+    elif format == "lu4r":
+        print_json(lu4r.document(found))
+    else:
+        print_lines([frame.text for frame in found.frames] + ([found.question] if found.question else []))
+    for doubt in found.doubts:
+        print_error(doubt)
+    if found.unknown:
+        print_error(f"unknown {'verbs' if len(found.unknown) > 1 else 'verb'}: {', '.join(found.unknown)}")
+    if not found.frames:
+        if not found.unknown:
+            print_error(_WHY[found.mood].format(text=text))
+        sys.exit(errors.Refused.exit_status)

@@ -1,0 +1,134 @@
+"""The command `mcp`: the map for language-model agents."""
+
+from __future__ import annotations
+
+import functools
+import os
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from semmap.nodes.extern.cli.command import command
+from semmap.nodes.extern.cli.common import with_client
+from semmap.nodes.extern.cli.output.printable import print_escaped
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors
+
+if TYPE_CHECKING:
+    from semmap.nodes.extern.client import Client
+    from semmap.nodes.extern.mcp.tools import Tool
+
+
+def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
+    """Check that the extra `mcp` is installed before the command connects to a system."""
+
+    @functools.wraps(function)
+    def checked(**arguments: Any) -> None:
+        extras.require("semmap mcp", "mcp")
+        function(**arguments)
+
+    return checked
+
+
+def _names(_: click.Context, __: click.Parameter, value: str | None) -> frozenset[str]:
+    """Split a comma-separated list of names."""
+    return frozenset(filter(None, (word.strip() for word in (value or "").split(","))))
+
+
+@command(example="semmap mcp --allow change --places kitchen1 --approve")
+@click.option("--allow", type=click.Choice(["change"]), help="Also let agents change the map.")
+@click.option(
+    "--classes", callback=_names, metavar="CLASSES", help="Changes only to these classes, such as Cup,Book."
+)
+@click.option(
+    "--places", callback=_names, metavar="PLACES", help="Changes only in these places, such as kitchen1."
+)
+@click.option(
+    "--rate", type=click.FloatRange(min=0.1, max=6000.0), help="Changes per minute, at most. Default: 30."
+)
+@click.option("--approve", is_flag=True, help="Changes require approval by a person: semmap approve.")
+@click.option(
+    "--agent",
+    default="agent",
+    show_default=True,
+    metavar="NAME",
+    help="Author of the changes in the history.",
+)
+@click.option(
+    "--http",
+    type=click.IntRange(0, 65_535),
+    is_flag=False,
+    flag_value=7448,
+    metavar="[PORT]",
+    help="Serve over HTTP on this machine (port 7448), for clients with the printed token.",
+)
+@_with_its_extra
+@with_client
+def mcp(
+    client: Client,
+    allow: str | None,
+    classes: frozenset[str],
+    places: frozenset[str],
+    rate: float | None,
+    approve: bool,
+    agent: str,
+    http: int | None,
+) -> None:
+    """Serve the map to language-model agents over MCP.
+
+    The server uses the Model Context Protocol on standard input and output; the host of the agent starts it.
+    It is read-only by default. With --allow change, an agent proposes a change, reads its consequences, and
+    commits it.
+    """
+    limits = [
+        option
+        for option, value in (
+            ("--classes", classes),
+            ("--places", places),
+            ("--rate", rate),
+            ("--approve", approve),
+        )
+        if value
+    ]
+    if limits and allow is None:
+        raise errors.BadRequest(f"{limits[0]} requires --allow change")
+    from semmap.nodes.extern.mcp.server import run_stdio
+    from semmap.nodes.extern.mcp.tools import Tools
+
+    tools = Tools(client, _change_tools(client, agent, classes, places, rate, approve) if allow else ())
+    if http is None:
+        run_stdio(tools)
+        return
+    from semmap.nodes.extern.mcp.http import TOKEN_VARIABLE, choose_token, run_http
+
+    run_http(
+        tools,
+        http,
+        choose_token(os.environ.get(TOKEN_VARIABLE)),
+        lambda text: print_escaped(text, file=sys.stderr),
+    )
+
+
+def _change_tools(
+    client: Client,
+    agent: str,
+    classes: frozenset[str],
+    places: frozenset[str],
+    rate: float | None,
+    approve: bool,
+) -> tuple[Tool, ...]:
+    from semmap.nodes.extern.mcp.changes import Changes
+    from semmap.nodes.extern.mcp.limits import CHANGES_PER_MIN, Limits
+    from semmap.nodes.extern.mcp.tools import change_tools
+
+    signed = agent if client.identity is None else client.identity.name
+    changes = Changes(
+        client,
+        signed,
+        allowed=Limits(classes=classes, places=places),
+        per_min=rate or CHANGES_PER_MIN,
+        approve=approve,
+    )
+    return change_tools(changes)

@@ -1,0 +1,261 @@
+"""The command `perceive`: object detection in files, without a running system."""
+
+from __future__ import annotations
+
+import io
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from semmap.nodes.extern.cli.command import command
+from semmap.nodes.extern.cli.common import print_error, print_json
+from semmap.nodes.extern.cli.output.printable import print_escaped
+from semmap.nodes.extern.cli.output.show import console
+from semmap.nodes.extern.cli.output.show_perceived import as_records, as_table, show_frame
+from semmap.nodes.extern.files import read_label_map, write_atomically
+from semmap.nodes.runtime import extras
+from semmap.schemas import errors, wording
+from semmap.schemas.perception import FrameRow
+
+if TYPE_CHECKING:
+    from semmap.nodes.perception_node.detector import Detector
+    from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+
+_PROGRESS_S = 5.0
+"""Period of progress messages [s]."""
+_CLUTTER = "?: too few points to classify, or a part of furniture (with --frames, parts are combined)"
+_FRAMES = {
+    "map": "map frame",
+    "plane": "frame: z = 0 is the floor or the largest plane, the origin is below the camera",
+}
+
+
+def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[Any], Any]:
+    """Return an option whose value is a file or a folder."""
+    return click.option(name, *also, metavar=metavar, type=click.Path(path_type=Path), help=help)
+
+
+@command(example="semmap perceive --frames recording --format json")
+@click.argument("files", metavar="[FILE...]", nargs=-1, type=click.Path(path_type=Path))
+@_path_option(
+    "--frames",
+    "DIR",
+    "Dataset, or one of its frames: a folder with rgb.png, depth.png [mm] and camera.json.",
+)
+@_path_option(
+    "--labels",
+    "OUT",
+    "Write the object label of each point to this .npy file or, with --frames, to files in this folder.",
+)
+@_path_option(
+    "--json", "OUT", "With --frames: write the results to this JSON file, one row per frame.", "rows"
+)
+@_path_option(
+    "--intrinsics",
+    "FILE.json",
+    "JSON file with fx, fy, cx, cy [pixel] and, optionally, depth_scale [m] and map_from_camera.",
+)
+@_path_option(
+    "--masks",
+    "FILE",
+    "Masks of a detector (COCO JSON or label image); with --frames, their file name in each folder.",
+)
+@_path_option(
+    "--label-map", "FILE.json", 'With --masks: labels and their classes, as in {"coffee mug": "Cup"}.'
+)
+@click.option("--masks-only", is_flag=True, help="With --masks: report only the objects in the masks.")
+@click.option("--fit", is_flag=True, help="Fit class models to the objects, for full poses (needs Open3D).")
+@_path_option("--data", "DIR", "Also use the exemplars in this data folder (semmap learn --data).")
+@click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
+def perceive(
+    files: tuple[Path, ...],
+    frames: Path | None,
+    labels: Path | None,
+    rows: Path | None,
+    intrinsics: Path | None,
+    masks: Path | None,
+    label_map: Path | None,
+    masks_only: bool,
+    fit: bool,
+    data: Path | None,
+    format: str,
+) -> None:
+    """Find the objects in point clouds, depth images or datasets.
+
+    Point clouds are PCD or PLY files and, with Open3D, .xyz, .xyzrgb and .pts files. Images are a colour and
+    a depth image (PNG). The labels are integers in the shape of the cloud: (height, width), or (1, points)
+    for unorganized clouds. 0 is the background, 1 to n are the objects.
+    """
+    extras.require("semmap perceive", "perception")
+    if fit:
+        _require_open3d()
+    detector = _detector(masks, label_map, masks_only=masks_only)
+    if frames is not None:
+        if files or intrinsics is not None:
+            raise errors.BadRequest(
+                "--frames excludes FILE and --intrinsics; each frame has its own camera.json"
+            )
+        _dataset(frames, labels, rows, detector, _learnt(data), format, fit=fit)
+        return
+    if rows is not None:
+        raise errors.BadRequest("--json requires --frames; for files use --format json")
+    if not files:
+        raise errors.BadRequest("missing argument FILE; name a file, or a dataset with --frames DIR")
+    if labels is not None and labels.suffix != ".npy":
+        raise errors.BadRequest(
+            f"--labels {labels.name}: the suffix must be .npy, as in {labels.with_suffix('.npy').name}"
+        )
+    import numpy as np  # importing it takes half of the start of the command line
+
+    from semmap.nodes.perception_node.fitting.model_surfaces import shipped as surfaces
+    from semmap.nodes.perception_node.fitting.things import fitted_in_sight
+    from semmap.nodes.perception_node.input.files.cloud_files import read_frames
+    from semmap.nodes.perception_node.pipeline import one_by_one
+    from semmap.nodes.perception_node.views.masked import with_masks
+    from semmap.nodes.perception_node.views.segmented_view import see
+
+    learnt = _learnt(data)
+    clouds = list(read_frames(files, intrinsics))
+    for option, value in (("--labels", labels), ("--masks", masks)):
+        if value is not None and len(clouds) != 1:
+            raise errors.BadRequest(f"{option} requires a single frame, not {len(clouds)}")
+    records = []
+    for file, cloud in clouds:
+        sight = see(cloud)
+        if detector is not None:
+            masks_found = detector.masks_of(detector.file, sight.labels.shape)
+            if unknown_here := detector.labels.unknown([masks_found]):
+                print_error(wording.unknown_labels(unknown_here))
+            sight = with_masks(sight, masks_found)
+        told = one_by_one(sight, learnt, None if detector is None else detector.labels)
+        if fit:
+            told = fitted_in_sight(sight, told, surfaces())
+        frame = "plane" if cloud.map_from_camera is None else "map"
+        if format == "json":
+            records.append({"file": str(file), "frame": frame, "objects": as_records(sight, told)})
+        else:
+            console().print(f"{file}: {wording.counted(len(told), 'object')}; {_FRAMES[frame]}")
+            if told:
+                console().print(as_table(sight, told))
+            if None in told.values():
+                console().print(_CLUTTER)
+        if labels is not None:
+            buffer = io.BytesIO()
+            np.save(buffer, np.where(np.isin(sight.labels, list(sight.carriers)), 0, sight.labels))
+            write_atomically(labels, buffer.getvalue())
+            if format == "table":
+                print(f"wrote {labels}")
+    if format == "json":
+        print_json(records)
+
+
+def _require_open3d() -> None:
+    from semmap.nodes.perception_node.fitting.fit import available
+
+    if not available():
+        raise errors.BadRequest(
+            "--fit requires Open3D (installed by the extra semmap[perception] for Python up to 3.12); without"
+            " it, boxes are reported"
+        )
+
+
+def _learnt(data: Path | None) -> Learnt:
+    """Return the trained classifiers, with the exemplars of a data folder."""
+    from semmap.nodes.perception_node.lesson_book import FILENAME, LessonBook
+    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+
+    if data is None:
+        return shipped()
+    if not (data / FILENAME).exists():
+        raise errors.BadFile(
+            f"no exemplars in {data}; to add one: semmap learn CLASS --frames DIR --data {data}"
+        )
+    return LessonBook(data / FILENAME, shipped()).learnt
+
+
+def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -> Detector | None:
+    """Return the results of an external detector, if there are any."""
+    if masks is None:
+        if label_map is not None or masks_only:
+            raise errors.BadRequest("--label-map and --masks-only require --masks")
+        return None
+    from semmap.nodes.perception_node.detector import Detector
+    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+    from semmap.nodes.perception_node.recognition.told_names import Labels
+
+    classes = read_label_map(label_map) if label_map is not None else {}
+    labels = Labels(shipped(), classes)
+    if untrained := sorted({name for name in classes.values() if not labels.is_learnt(name)}):
+        hint = errors.did_you_mean(untrained[0], shipped().ancestors)
+        print_error(f"note: classes of the label map without training data: {wording.few(untrained)}{hint}")
+    return Detector(masks, labels, masks_only)
+
+
+def _dataset(
+    folder: Path,
+    labels: Path | None,
+    out: Path | None,
+    detector: Detector | None,
+    learnt: Learnt,
+    format: str,
+    *,
+    fit: bool,
+) -> None:
+    """Find the objects in each frame of a dataset. The error of a frame is in its row."""
+    import msgspec
+    import numpy as np
+
+    from semmap.nodes.perception_node.datasets import perceived
+    from semmap.nodes.perception_node.fitting.model_surfaces import shipped as surfaces
+    from semmap.nodes.perception_node.input.files.frame_folders import frames_in
+
+    folders = frames_in(folder)
+    if out is not None and (out.is_dir() or not out.absolute().parent.is_dir()):
+        raise errors.BadFile(f"{out} cannot be written: it is a folder, or its parent folder does not exist")
+    if labels is not None:
+        try:
+            labels.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise errors.BadFile(f"{labels} cannot be created: {error.strerror}") from None
+    rows, unknown, printed_s, began_s = [], set[str](), 0.0, time.monotonic()
+    for told in perceived(folders, learnt, detector, surfaces() if fit else None):
+        rows.append(told.row)
+        unknown.update(told.unknown_labels)
+        if labels is not None and told.labels is not None:
+            buffer = io.BytesIO()
+            np.save(buffer, told.labels)
+            write_atomically(labels / f"{told.row.frame}.npy", buffer.getvalue())
+        if out is None and format == "table":
+            show_frame(told.row)
+        elif time.monotonic() > printed_s + _PROGRESS_S:
+            printed_s = time.monotonic()
+            print_escaped(
+                f"semmap: {len(rows)} of {len(folders)} frames ({printed_s - began_s:.0f} s)", file=sys.stderr
+            )
+    if out is not None:
+        lines = b",\n".join(msgspec.json.encode(row) for row in rows)
+        write_atomically(out, b"[\n" + lines + b"\n]\n")
+    if unknown:
+        print_error(wording.unknown_labels(sorted(unknown)))
+    if out is None and format == "json":
+        print_json(rows)
+    else:
+        print_escaped(
+            _summary(rows, time.monotonic() - began_s, [path for path in (out, labels) if path is not None])
+        )
+    if all(row.error for row in rows):
+        raise errors.BadFile(f"{folder}: no usable frames")
+
+
+def _summary(rows: Sequence[FrameRow], took_s: float, written: Sequence[Path]) -> str:
+    bad = [row for row in rows if row.error]
+    objects = wording.counted(sum(len(row.objects) for row in rows), "object")
+    speed = f"{took_s:.1f} s ({len(rows) / took_s:.1f} frames/s)"
+    lines = [f"{wording.counted(len(rows), 'frame')}, {objects} in {speed}"]
+    if bad:
+        lines.append(f"{wording.counted(len(bad), 'frame')} skipped; first error: {bad[0].error}")
+    return "\n".join([*lines, *(f"wrote {path}" for path in written)])

@@ -1,0 +1,476 @@
+"""The methods of the clients, one for each command, with its fields, types and documentation.
+
+A `CommandMethod` has the parameters of the command's constructor, so type checkers and editors see
+`client.add(class_, name=None, at=None, ...) -> Changed`. So do `help(client.add)` and `inspect.signature`.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Coroutine, Mapping, Sequence
+from functools import cached_property, partial
+from pathlib import Path
+from types import MappingProxyType, MethodType
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Generic,
+    Literal,
+    ParamSpec,
+    TypeVar,
+    get_args,
+    get_type_hints,
+    overload,
+)
+
+from semmap.nodes.extern.files import read_file
+from semmap.nodes.extern.ontology_upload import ontology
+from semmap.nodes.extern.plan_files import is_plan, read_plan
+from semmap.schemas import commands, errors, replies
+from semmap.schemas.calls import reply_type
+from semmap.schemas.commands import Command
+from semmap.schemas.entities import Entity, Value
+from semmap.schemas.moments import When
+from semmap.schemas.packing import packed
+from semmap.schemas.plans import HEIGHTS_M, RADIUS_M, HeightRange, Way
+from semmap.schemas.scenes import Picture
+
+if TYPE_CHECKING:
+    from semmap.nodes.extern.async_client import AsyncClient
+    from semmap.nodes.extern.client import Client
+
+P = ParamSpec("P")
+R = TypeVar("R")
+U = TypeVar("U")
+
+
+class CommandMethod(Generic[P, U]):
+    """A method that makes a command with `make`, sends it, and returns the reply, converted by `read`.
+
+    It is a function of a `Client` and a coroutine of an `AsyncClient`. Its types and documentation are those
+    of `make`.
+    """
+
+    @overload
+    def __init__(self: CommandMethod[P, R], make: Callable[P, Command[R]]) -> None: ...
+    @overload
+    def __init__(
+        self: CommandMethod[P, U], make: Callable[P, Command[R]], read: Callable[[R], U]
+    ) -> None: ...
+    def __init__(self, make: Callable[..., Command[Any]], read: Callable[[Any], Any] | None = None) -> None:
+        self._make, self._read = make, read
+
+    def __set_name__(self, owner: type[Any], name: str) -> None:
+        self._owner, self._name = owner.__name__, name
+
+    @cached_property
+    def _method(self) -> Callable[..., Any]:
+        """The function of this method. It is made at first use, because making the signatures is slow."""
+        make, read = self._make, self._read
+
+        def method(client: Any, *args: Any, **fields: Any) -> Any:
+            return client.request(partial(make, *args, **fields), read)
+
+        method.__name__, method.__qualname__ = self._name, f"{self._owner}.{self._name}"
+        method.__doc__, method.__module__ = make.__doc__, make.__module__
+        method.__signature__ = _signature(make, read)  # type: ignore[attr-defined]
+        return method
+
+    @overload
+    def __get__(self, client: Client, owner: type[Client]) -> Callable[P, U]: ...
+    @overload
+    def __get__(
+        self, client: AsyncClient, owner: type[AsyncClient]
+    ) -> Callable[P, Coroutine[Any, Any, U]]: ...
+    @overload
+    def __get__(self, client: None, owner: type[Any]) -> Callable[..., Any]: ...
+    def __get__(self, client: Any, owner: type[Any]) -> Any:
+        return self._method if client is None else MethodType(self._method, client)
+
+
+def _signature(make: Callable[..., Any], read: Callable[[Any], Any] | None) -> inspect.Signature:
+    """Return the signature of `make` as a method, with the type of the reply, and types as in the code."""
+    signature = inspect.signature(make)
+    written = _annotations_of(make) if isinstance(make, type) else {}
+    parameters = [p.replace(annotation=written.get(n, p.annotation)) for n, p in signature.parameters.items()]
+    if read is not None:
+        reply = get_type_hints(read)["return"]
+    elif isinstance(make, type):
+        reply = reply_type(make)
+    else:
+        (reply,) = get_args(get_type_hints(make)["return"])
+    itself = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
+    return signature.replace(parameters=[itself, *parameters], return_annotation=reply)
+
+
+def _annotations_of(kind: type[Any]) -> dict[str, Any]:
+    return {
+        name: annotation
+        for base in reversed(kind.__mro__)
+        for name, annotation in inspect.get_annotations(base).items()
+    }
+
+
+def _remove(
+    *names: str,
+    unchanged: Sequence[str] = (),
+    since: int = 0,
+    dry_run: bool = False,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Changed]:
+    """Remove entities from the map and the scene. If one of them is unknown, none is removed.
+
+    Raises PreconditionFailed if a commit after `since` changed one of the entities `unchanged`.
+    """
+    return commands.Remove(
+        names=names, unchanged=tuple(unchanged), since=since, dry_run=dry_run, id=id, reason=reason
+    )
+
+
+def _set(
+    name: str,
+    property: str,
+    *values: Value,
+    if_is: Value | None = None,
+    if_unset: bool = False,
+    confidence: float | None = None,
+    unchanged: Sequence[str] = (),
+    since: int = 0,
+    dry_run: bool = False,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Changed]:
+    """Set a data or object property of an entity: `client.set("door1", "isOpen", True)`.
+
+    The value of a functional property replaces the previous one. Other properties keep their previous values.
+    Raises PreconditionFailed in these cases:
+
+    - `if_is` is not a value of the property.
+    - `if_unset` is true and the property has a value.
+    - A commit after `since` changed one of the entities `unchanged`.
+    """
+    return commands.Set(
+        name=name,
+        property=property,
+        values=values,
+        if_is=if_is,
+        if_unset=if_unset,
+        confidence=confidence,
+        unchanged=tuple(unchanged),
+        since=since,
+        dry_run=dry_run,
+        id=id,
+        reason=reason,
+    )
+
+
+def _batch(
+    *changes: commands.Update | commands.Set | commands.Unset,
+    confidence: float | None = None,
+    unchanged: Sequence[str] = (),
+    since: int = 0,
+    dry_run: bool = False,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Changed]:
+    """Apply several changes in one commit, or none of them: `client.batch(Set(...), Update(...))`.
+
+    The changes are commands of `semmap.commands`. A batch has at most one update of an entity, and sets or
+    unsets a property at most once. Positions are in the map frame. Raises the error of the first rejected
+    change, and PreconditionFailed if a commit after `since` changed one of the entities `unchanged`.
+    """
+    return commands.Batch(
+        changes=changes,
+        confidence=confidence,
+        unchanged=tuple(unchanged),
+        since=since,
+        dry_run=dry_run,
+        id=id,
+        reason=reason,
+    )
+
+
+def _load(
+    path: str | Path,
+    *,
+    replace: bool = False,
+    skip_unknown: bool = False,
+    strict: bool = False,
+    tbox: bool = False,
+    parts: bool = False,
+    imports: Mapping[str, str | Path] = MappingProxyType({}),
+    spatial_root: Sequence[str] = (),
+    dry_run: bool = False,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Changed]:
+    """Load a file: an ABox, a JSON scene, a HuRIC map, a plan or a TBox. Raises BadFile.
+
+    A plan is the YAML file of a map of the ROS map server: its free space is divided into rooms at the doors.
+
+    `replace` removes the current entities in the same commit. `skip_unknown` skips entities whose class is
+    not in the TBox. `strict` rejects a file that refers to undescribed entities. `parts` loads the file in
+    several commits, for files of any size.
+
+    With `tbox`, the file (or folder) is a TBox that replaces the current one, including its imports. These
+    are found by `imports` (a file for each IRI), by a catalogue, or in the same folder. `spatial_root` are
+    classes, by IRI or name, whose instances have a position.
+    """
+    if imports and not tbox:
+        raise errors.BadRequest("--import applies to TBoxes only; add --tbox")
+    if tbox:
+        content, filename = ontology(Path(path), imports)
+    elif is_plan(Path(path)):
+        content, filename = read_plan(Path(path)).content, Path(path).name
+    else:
+        content, filename = read_file(Path(path)), Path(path).name
+    return commands.Load(
+        content=packed(content),
+        filename=filename,
+        replace=replace,
+        skip_unknown=skip_unknown,
+        strict=strict,
+        tbox=tbox,
+        spatial_root=tuple(spatial_root),
+        parts=parts,
+        dry_run=dry_run,
+        id=id,
+        reason=reason,
+    )
+
+
+def _move(
+    name: str,
+    at: Sequence[float],
+    yaw: float | None = None,
+    *,
+    frame: str | None = None,
+    carry: bool = False,
+    leave: Sequence[str] = (),
+    wait: bool = True,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Moved]:
+    """Move the body of an entity manually, and return when the map is updated.
+
+    The `commit` of the reply is the update. If there is none, its `notes` have the reason: the body came to
+    rest at its pose in the map, is still moving after 30 s, or time is paused. With `wait=False`, the method
+    returns when the body is released.
+
+    `at` is the bottom centre [m] and `yaw` [rad] the rotation, in the map frame or in `frame`. With `carry`,
+    the objects on it and inside it are moved with it as one rigid body, except those in `leave`. Raises
+    Refused if the map rejects the new pose, an undo stops the move, or the entity is removed before it is at
+    rest. Raises NoAnswer if the simulator ends.
+    """
+    return commands.Move(
+        name=name,
+        at=tuple(at),  # type: ignore[arg-type]
+        yaw=yaw,
+        frame=frame,
+        carry=carry,
+        leave=tuple(leave),
+        wait=wait,
+        id=id,
+        reason=reason,
+    )
+
+
+def _open(
+    name: str,
+    to: float = 1.0,
+    joint: str | None = None,
+    *,
+    wait: bool = True,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Moved]:
+    """Open a door, lid or drawer to this fraction, and return when the map is updated.
+
+    With `joint`, only that joint of the object is moved. Obstacles stop it. `wait`, the reply and the errors
+    are as for `move`. Raises also Refused for an object without joints.
+    """
+    return commands.Open(name=name, to=to, joint=joint, wait=wait, id=id, reason=reason)
+
+
+def _close(
+    name: str, joint: str | None = None, *, wait: bool = True, id: str = "", reason: str = ""
+) -> Command[replies.Moved]:
+    """Close a door, lid or drawer, and return when the map is updated; see `open`."""
+    return commands.Close(name=name, joint=joint, wait=wait, id=id, reason=reason)
+
+
+def _drive(
+    name: str,
+    to: Sequence[Sequence[float]] = (),
+    yaw: float | None = None,
+    *,
+    frame: str | None = None,
+    speed: float = 0.4,
+    stop: bool = False,
+    wait: bool = True,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Moved]:
+    """Drive a simulated robot to a point, or through several, and return when the map is updated.
+
+    The robot drives in a straight line to each point [m], with at most `speed` [m/s], and finally turns to
+    `yaw` [rad]. Both are in the map frame, or in `frame` as it is at the start. `stop` stops the robot.
+    `wait`, the reply and the errors are as for `move`. Raises also Refused if the robot is blocked or falls.
+    """
+    return commands.Drive(
+        name=name,
+        to=tuple(map(tuple, to)),  # type: ignore[arg-type]
+        yaw=yaw,
+        frame=frame,
+        speed=speed,
+        stop=stop,
+        wait=wait,
+        id=id,
+        reason=reason,
+    )
+
+
+def _list(
+    class_: str | None = None,
+    *,
+    as_of: When | None = None,
+    on: str | None = None,
+    in_: str | None = None,
+    near: str | None = None,
+    within: float | None = None,
+    nearest: int | None = None,
+    to: str | None = None,
+    frame: str | None = None,
+) -> commands.List:
+    """Return the entities, or those of a class, including inferred types.
+
+    They can be restricted to the entities `on` an object, `in_` a place or container, `near` an object
+    (`within` a distance [m]), or to the `nearest` N entities `to` an object. Each of these is a name, a label
+    or a class; `near` and `to` may also be positions: "2.5,1,0.8" [m]. With `frame`, these positions and the
+    poses in the reply are in that frame.
+
+    `as_of` selects the state of the map after a commit number or at a time: seconds since 1970, ISO 8601, or
+    the `stamp_ns` of a reply. A time means its written precision (see `semmap.schemas.moments.When`).
+    """
+    return commands.List(
+        class_=class_,
+        as_of=as_of,
+        on=on,
+        in_=in_,
+        near=near,
+        within=within,
+        nearest=nearest,
+        to=to,
+        frame=frame,
+    )
+
+
+def _list_as(
+    format: Literal["lu4r", "legacy"], class_: str | None = None, *, as_of: When | None = None
+) -> commands.List:
+    """Return the list of entities in the format of another system."""
+    return commands.List(class_=class_, format=format, as_of=as_of)
+
+
+def _route(
+    from_: str | Sequence[float],
+    to: str | Sequence[float],
+    *,
+    radius: float = RADIUS_M,
+    heights: HeightRange = HEIGHTS_M,
+    as_of: When | None = None,
+) -> Command[Way]:
+    """Return the shortest route of a robot with a `radius` [m] through places and doors.
+
+    `from_` and `to` are entities (by name, label or class) or positions (x, y) [m] in the map frame. Objects
+    with a part within `heights` [m] above the floor are obstacles. `closed` has the closed doors on the
+    route, which must be opened first. Raises Refused, with the reason, if there is no route.
+    """
+    start, end = (word if isinstance(word, str) else ",".join(map(repr, word)) for word in (from_, to))
+    return commands.FindWay(from_=start, to=end, radius=radius, heights=heights, as_of=as_of)
+
+
+def _entities(reply: tuple[Entity, ...] | dict[str, Any]) -> tuple[Entity, ...]:
+    if not isinstance(reply, tuple):
+        raise errors.InternalError("the reply is not a list of entities")
+    return reply
+
+
+def _document(reply: tuple[Entity, ...] | dict[str, Any]) -> dict[str, Any]:
+    if not isinstance(reply, dict):
+        raise errors.InternalError("the reply is not in the requested format")
+    return reply
+
+
+def _png(picture: Picture) -> bytes:
+    return picture.png
+
+
+class CommandMethods:
+    """The methods of a client: one for each command, which returns its reply.
+
+    Positions are in metres in the map frame, angles in radians, quaternions `wxyz`. Each method also accepts
+    an `id`; commands with the same id are executed once. Raises Refused, BadRequest or NoAnswer.
+    """
+
+    # Change the map
+    add = CommandMethod(commands.Add)
+    update = CommandMethod(commands.Update)
+    set = CommandMethod(_set)
+    unset = CommandMethod(commands.Unset)
+    batch = CommandMethod(_batch)
+    track = CommandMethod(commands.Track)
+    remove = CommandMethod(_remove)
+    clear = CommandMethod(commands.Clear)
+    load = CommandMethod(_load)
+    undo = CommandMethod(commands.Undo)
+
+    # Query
+    list = CommandMethod(_list, _entities)
+    list_as = CommandMethod(_list_as, _document)
+    get = CommandMethod(commands.Get)
+    frames = CommandMethod(commands.ListFrames)
+    check = CommandMethod(commands.Check)
+    infer = CommandMethod(commands.Infer)
+    explain = CommandMethod(commands.Explain)
+    could = CommandMethod(commands.Could)
+    relations = CommandMethod(commands.Relations)
+    understand = CommandMethod(commands.Understand)
+    tell = CommandMethod(commands.Tell)
+    find = CommandMethod(commands.Find)
+    diff = CommandMethod(commands.Diff)
+    when = CommandMethod(commands.WasWhen)
+    export = CommandMethod(commands.Export)
+    floorplan = CommandMethod(commands.PlanFloor)
+    route = CommandMethod(_route)
+    classes = CommandMethod(commands.Classes)
+    properties = CommandMethod(commands.Properties)
+    status = CommandMethod(commands.Status)
+    history = CommandMethod(commands.History)
+    last_seen = CommandMethod(commands.LastSeen)
+    sparql = CommandMethod(commands.Sparql)
+
+    # Approve changes of agents
+    submit = CommandMethod(commands.Submit)
+    approve = CommandMethod(commands.Approve)
+
+    # Storage
+    compact = CommandMethod(commands.Compact)
+
+    # Scene and simulation
+    move = CommandMethod(_move)
+    drive = CommandMethod(_drive)
+    attach = CommandMethod(commands.Attach)
+    detach = CommandMethod(commands.Detach)
+    open = CommandMethod(_open)
+    close = CommandMethod(_close)
+    pause = CommandMethod(commands.Pause)
+    step = CommandMethod(commands.StepOnce)
+    reset = CommandMethod(commands.Reset)
+    picture = CommandMethod(commands.TakePicture, _png)
+
+    # Perception
+    learn = CommandMethod(commands.Learn)
+    learned = CommandMethod(commands.Learned)
+    forget = CommandMethod(commands.Forget)

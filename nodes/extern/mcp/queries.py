@@ -1,0 +1,238 @@
+"""The read-only tools: functions of a client and of the arguments of a tool. They raise SemmapError."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any, Final, TypeVar
+
+from semmap.nodes.extern.client import Client
+from semmap.nodes.extern.mcp import arguments as a
+from semmap.nodes.extern.mcp import rows
+from semmap.nodes.extern.mcp.answers import Answer, read_cursor, said, when
+from semmap.nodes.extern.mcp.authors import Authors
+from semmap.nodes.extern.mcp.consistent_read import known, newest, read_at_one_commit
+from semmap.nodes.extern.mcp.overview import overview as _overview
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.entities import Entity
+from semmap.schemas.language import Candidate
+from semmap.schemas.moments import When
+
+R = TypeVar("R")
+Found = tuple[dict[str, Any], Sequence[Any] | None]
+"""The head of a reply, and its items."""
+
+_RELATIONS: Final = " ".join(f"dm:{name}" for name in rows.PLACED)
+_WHERE_ALL: Final = f"SELECT ?e ?r ?o WHERE {{ VALUES ?r {{ {_RELATIONS} }} ?e ?r ?o }}"
+MOST_ROWS: Final = 2000
+_FEW: Final = 5
+_ON_A_PAGE: Final = 60
+"""An upper bound of the number of rows on a page of a list."""
+
+
+def overview(client: Client, _: a.Overview) -> Answer:
+    """Return the number of entities per class and place."""
+
+    def read() -> dict[str, Any]:
+        where = rows.places_of(client.sparql(_WHERE_ALL, inferred=True, limit=100_000).rows)
+        return _overview(client.status(), client.list(), where)
+
+    return _answer(client, read)
+
+
+def find(client: Client, asked: a.Find) -> Answer:
+    """Return the entities that a noun phrase describes."""
+    found = client.find(asked.text, viewer=asked.viewer, viewpoint=asked.viewpoint, asker=asked.asker)
+    authors = Authors(client.list())
+
+    def quote(text: str) -> dict[str, str]:
+        return said(text, authors.by(text))
+
+    def candidate(each: Candidate) -> dict[str, Any]:
+        return rows.candidate(each, authors.by(each.called, *each.reasons))
+
+    head: dict[str, Any] = {"outcome": found.outcome, "answer": quote(found.text)}
+    if found.question:
+        head["question_to_ask_back"] = quote(found.question)
+    if found.nearest:
+        head["nearest"] = [candidate(each) for each in found.nearest[:_FEW]]
+    if found.gone:
+        head["gone"] = [quote(text) for text in found.gone[:_FEW]]
+    if found.read_as:
+        head["read_as"] = dict(found.read_as)
+    items = [candidate(each) for each in found.candidates]
+    return Answer(first=found.seq, last=found.seq, head=head, items=items, of="candidates")
+
+
+def get(client: Client, asked: a.Get) -> Answer:
+    """Return one entity."""
+
+    def read(as_of: When | None) -> Found:
+        return rows.described(client.get(asked.name, as_of=as_of, where=as_of is None))
+
+    return _paged(client, asked, asked.as_of, read, of="facts")
+
+
+def relations(client: Client, asked: a.Relations) -> Answer:
+    """Return the spatial relations of an entity."""
+
+    def read(as_of: When | None) -> Found:
+        found = client.relations(
+            asked.name, asked.other, viewer=asked.viewer, viewpoint=asked.viewpoint, as_of=as_of
+        )
+        return {"subject": found[0].subject if found else asked.name}, [rows.relation(r) for r in found]
+
+    return _paged(client, asked, asked.as_of, read, of="relations")
+
+
+def list_(client: Client, asked: a.List) -> Answer:
+    """Return the entities of a class, or at a location."""
+    start = read_cursor(asked.cursor)[1] if asked.cursor else 0
+
+    def read(as_of: When | None) -> Found:
+        found = client.list(
+            asked.class_,
+            as_of=as_of,
+            on=asked.on,
+            in_=asked.in_,
+            near=asked.near,
+            within=asked.within,
+            nearest=asked.nearest,
+            to=asked.to,
+        )
+        page = found[start : start + _ON_A_PAGE]
+        where = placed(client, page) if as_of is None else {}
+        return {}, [rows.entity(entity, where.get(entity.name, {})) for entity in found]
+
+    return _paged(client, asked, asked.as_of, read, of="entities")
+
+
+def query(client: Client, asked: a.Query) -> Answer:
+    """Return the result of a SPARQL query."""
+
+    def read(as_of: When | None) -> Found:
+        found = client.sparql(asked.query, inferred=asked.inferred, as_of=as_of, timeout=5.0, limit=MOST_ROWS)
+        notes = {"notes": list(found.notes)} if found.notes else {}
+        if found.kind == "ask":
+            return {"answer": found.verdict, **notes}, None
+        variables = found.variables if found.kind == "select" else ("subject", "predicate", "object")
+        return {"variables": variables, **notes}, [rows.solution(row) for row in found.rows]
+
+    return _paged(client, asked, asked.as_of, read, of="rows")
+
+
+def explain(client: Client, asked: a.Explain) -> Answer:
+    """Explain why a statement holds or, negated, cannot hold."""
+
+    def read(as_of: When | None) -> Found:
+        if as_of is not None:
+            raise errors.Refused("the map has changed since that page; call explain without a cursor")
+        found = client.explain(asked.name, asked.predicate, asked.value, negated=asked.negated)
+        steps = [
+            {
+                "rule": step.rule,
+                "from": {"said": [v.spoken(triple) for triple in step.premises]},
+                "follows": {
+                    "said": "a contradiction" if step.conclusion is None else v.spoken(step.conclusion)
+                },
+            }
+            for step in found.steps
+        ]
+        asserted = {"said": [v.spoken(triple) for triple in found.support]}
+        return {"because": said(found.text, "the reasoner"), "asserted": asserted}, steps
+
+    return _paged(client, asked, None, read, of="steps")
+
+
+def history(client: Client, asked: a.History) -> Answer:
+    """Return the newest commits, in order."""
+
+    def read(as_of: When | None) -> Found:
+        found = client.history(
+            asked.name,
+            since=asked.since,
+            until=as_of if asked.until is None else asked.until,
+            limit=asked.limit,
+        )
+        return {}, [rows.commit(commit) for commit in found]
+
+    return _paged(client, asked, None, read, of="commits")
+
+
+def diff(client: Client, asked: a.Diff) -> Answer:
+    """Return the changes between two commits or times."""
+
+    def read(as_of: When | None) -> Found:
+        found = client.diff(asked.since, as_of if asked.until is None else asked.until)
+        return {"since": found.first, "until": found.last}, list(rows.difference(found))
+
+    return _paged(client, asked, None, read, of="changes")
+
+
+def when_(client: Client, asked: a.WasWhen) -> Answer:
+    """Return when one entity was on, inside, in or attached to another."""
+
+    def read(_: When | None) -> Found:
+        found = client.when(asked.name, asked.relation, asked.other)
+        spells = [
+            {
+                "since": spell.since,
+                "from": when(spell.since_ns) if spell.since else "before the history begins",
+                **(
+                    {"until": spell.until, "to": when(spell.until_ns)}
+                    if spell.until is not None and spell.until_ns is not None
+                    else {"until": "now"}
+                ),
+            }
+            for spell in found.spells
+        ]
+        return {"answer": found.text, "total_s": round(found.total_s, 1)}, spells
+
+    return _paged(client, asked, None, read, of="spells")
+
+
+def render_picture(client: Client, asked: a.Picture) -> tuple[Answer, bytes]:
+    """Return an image of the scene (PNG) with its caption."""
+    png, first, last = _now(
+        client, lambda: client.picture(place=asked.place, labels=True, width=asked.width, height=asked.height)
+    )
+    head = {"picture": "the scene as it is simulated", "of": asked.place or "everything"}
+    return Answer(first=first, last=last, head=head), png
+
+
+def _answer(client: Client, read: Callable[[], dict[str, Any]]) -> Answer:
+    """Return a reply without pages."""
+    head, first, last = _now(client, read)
+    return Answer(first=first, last=last, head=head)
+
+
+def _paged(
+    client: Client,
+    asked: a.Paged,
+    as_of: When | None,
+    read: Callable[[When | None], Found],
+    *,
+    of: str,
+) -> Answer:
+    """Return a reply in pages. Later pages refer to the commit of the first page."""
+    wanted = None if asked.cursor is None else read_cursor(asked.cursor)[0]
+    (head, items), first, last = _now(client, partial(read, as_of))
+    if wanted is not None and not first == last == wanted:
+        (head, items), first, last = read(wanted if as_of is None else as_of), wanted, wanted
+    if as_of is not None:
+        head = {"as_of": as_of, **head}
+    return Answer(first=first, last=last, head=head, items=items, of=of)
+
+
+def _now(client: Client, read: Callable[[], R]) -> tuple[R, int, int]:
+    return read_at_one_commit(partial(known, client), partial(newest, client), read)
+
+
+def placed(client: Client, entities: Sequence[Entity]) -> dict[str, dict[str, list[str]]]:
+    """Return what these entities are on, inside and in."""
+    if not entities:
+        return {}
+    values = " ".join(f"<{entity.iri}>" for entity in entities)
+    query = f"SELECT ?e ?r ?o WHERE {{ VALUES ?e {{ {values} }} VALUES ?r {{ {_RELATIONS} }} ?e ?r ?o }}"
+    return rows.places_of(client.sparql(query, inferred=True).rows)

@@ -1,0 +1,205 @@
+"""`semmap perceive`, which needs no system."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.perception_node.fitting import fit
+from tests.perception_node.files.made import header
+from tests.perception_node.segmentation.scenes import boxes_on_table
+from tests.perception_node.segmentation.test_patches import SCENES
+
+SEEN = boxes_on_table(*SCENES["apart"])
+
+
+def write_cloud(file, *, organised=True):
+    points = SEEN.cloud.points_camera
+    height, width = points.shape[:2] if organised else (1, points.size // 3)
+    head = header("binary", fields="x y z", width=width, height=height)
+    file.write_bytes(head + points.astype(np.float32).tobytes())
+    return str(file)
+
+
+@pytest.mark.parametrize("organised", [True, False])
+def test_labels_have_the_shape_of_the_cloud(tmp_path, capsys, organised):
+    cloud = write_cloud(tmp_path / "boxes.pcd", organised=organised)
+    assert execute(["perceive", cloud, "--labels", str(tmp_path / "labels.npy")]) == 0
+    labels = np.load(tmp_path / "labels.npy")
+    assert np.issubdtype(labels.dtype, np.integer)
+    assert labels.shape == ((480, 640) if organised else (1, 480 * 640))
+    assert labels.max() == 2
+    for box in (1, 2):
+        assert np.bincount(SEEN.truth.ravel()[labels.ravel() == box]).argmax() > 0
+    assert "2 objects" in capsys.readouterr().out
+
+
+def test_json_is_for_programs(tmp_path, capsys):
+    cloud = write_cloud(tmp_path / "boxes.pcd")
+    assert execute(["perceive", cloud, "--format", "json", "--labels", str(tmp_path / "labels.npy")]) == 0
+    (frame,) = json.loads(capsys.readouterr().out)
+    assert (frame["file"], frame["frame"]) == (cloud, "plane")
+    labels = np.load(tmp_path / "labels.npy")
+    assert [thing["label"] for thing in frame["objects"]] == [1, 2]
+    assert [thing["points"] for thing in frame["objects"]] == [(labels == label).sum() for label in (1, 2)]
+    for thing in frame["objects"]:
+        assert 0.0 < thing["observation"]["probability"] <= 1.0
+        assert len(thing["observation"]["pose"]["position_m"]) == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["missing.pcd"], "missing.pcd cannot be read"),
+        (["boxes.pcd", "boxes.pcd", "--labels", "labels.npy"], "a single frame"),
+        (["boxes.pcd", "--labels", "labels.txt"], "labels.npy"),
+        (["boxes.pcd", "--labels", "nowhere/labels.npy"], "cannot be written"),
+        (["empty.pcd"], "contains no points"),
+        ([], "FILE"),
+    ],
+)
+def test_what_cannot_be_done_is_told_in_one_line(tmp_path, capsys, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    write_cloud(tmp_path / "boxes.pcd")
+    (tmp_path / "empty.pcd").write_bytes(header("binary", width=0, height=0))
+    assert execute(["perceive", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def write_frame(folder):
+    points = SEEN.cloud.points_camera
+    height, width = points.shape[:2]
+    folder.mkdir(parents=True)
+    depth = np.nan_to_num(points[..., 2] * 1000).astype(np.uint16)
+    Image.fromarray(depth).save(folder / "depth.png")
+    Image.new("RGB", (width, height), (120, 120, 120)).save(folder / "rgb.png")
+    (fx, _, cx), (_, fy, cy), _ = SEEN.cloud.intrinsics.tolist()
+    (folder / "camera.json").write_text(json.dumps({"fx": fx, "fy": fy, "cx": cx, "cy": cy}))
+
+
+def test_a_dataset_has_a_row_for_each_frame_and_goes_on_after_a_bad_one(tmp_path, capsys):
+    for name in ("first", "third"):
+        write_frame(tmp_path / "frames" / name)
+    (tmp_path / "frames" / "second").mkdir()
+    out, labels = tmp_path / "out.json", tmp_path / "labels"
+    words = ["--frames", str(tmp_path / "frames"), "--json", str(out), "--labels", str(labels)]
+    assert execute(["perceive", *words]) == 0
+    rows = json.loads(out.read_text())
+    assert [row["frame"] for row in rows] == ["first", "second", "third"]
+    assert "lacks" in rows[1]["error"]
+    assert rows[1]["objects"] == []
+    assert rows[0]["objects"] == rows[2]["objects"]
+    seen = np.load(labels / "first.npy")
+    for n, thing in enumerate(rows[0]["objects"], 1):
+        x0, y0, x1, y1 = thing["box_px"]
+        ys, xs = np.nonzero(seen == n)
+        assert (xs.min(), ys.min(), xs.max() + 1, ys.max() + 1) == (x0, y0, x1, y1)
+        assert thing["points"] == len(xs)
+    assert not (labels / "second.npy").exists()
+    said = capsys.readouterr().out
+    assert "3 frames" in said
+    assert "1 frame skipped" in said
+
+
+def test_a_dataset_without_any_frame_that_can_be_used_is_an_error(tmp_path, capsys):
+    (tmp_path / "frames" / "half").mkdir(parents=True)
+    out = tmp_path / "out.json"
+    assert execute(["perceive", "--frames", str(tmp_path / "frames"), "--json", str(out)]) == 2
+    assert "no usable frames" in capsys.readouterr().err
+    assert [bool(row["error"]) for row in json.loads(out.read_text())] == [True]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["boxes.pcd", "--frames", "."], "camera.json"),
+        (["boxes.pcd", "--json", "out.json"], "--frames"),
+        (["--frames", "missing"], "cannot be read"),
+        (["--frames", "empty"], "no folders of frames"),
+    ],
+)
+def test_what_a_dataset_is_not_is_told(tmp_path, capsys, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "empty").mkdir()
+    assert execute(["perceive", *arguments]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_masks_cut_a_frame_up_and_a_label_that_nobody_knows_is_told(tmp_path, capsys):
+    write_frame(tmp_path / "frames" / "first")
+    (height, width), box = SEEN.truth.shape, np.isin(SEEN.truth, [1])
+    np.save(tmp_path / "frames" / "first" / "mine.npy", box.astype(np.uint16))
+    out = tmp_path / "out.json"
+    words = ["perceive", "--frames", str(tmp_path / "frames"), "--json", str(out), "--masks-only", "--masks"]
+    assert execute([*words, "mine.npy"]) == 0
+    ((found,),) = [row["objects"] for row in json.loads(out.read_text())]
+    ys, xs = np.nonzero(box)
+    assert found["box_px"] == pytest.approx([xs.min(), ys.min(), xs.max() + 1, ys.max() + 1], abs=6)
+    counts = [0, *np.diff(np.flatnonzero(np.diff(np.r_[-1, box.T.ravel().astype(int), -1]))).tolist()]
+    counts = counts[1:] if not box[0, 0] else counts
+    told = [{"segmentation": {"size": [height, width], "counts": counts}, "category": "spork", "score": 0.9}]
+    (tmp_path / "frames" / "first" / "yolo.json").write_text(json.dumps(told))
+    capsys.readouterr()
+    assert execute([*words, "yolo.json"]) == 0
+    assert "no class here: spork; --label-map FILE" in capsys.readouterr().err
+    (tmp_path / "map.json").write_text('{"spork": "Box"}')
+    assert execute([*words, "yolo.json", "--label-map", str(tmp_path / "map.json")]) == 0
+    ((found,),) = [row["objects"] for row in json.loads(out.read_text())]
+    assert found["class"] == "Box"
+    (tmp_path / "map.json").write_text('{"spork": "Boxx"}')  # of an ontology of one's own, or misspelt
+    capsys.readouterr()
+    assert execute([*words, "yolo.json", "--label-map", str(tmp_path / "map.json")]) == 0
+    assert "without training data: Boxx; did you mean Box" in capsys.readouterr().err
+    ((found,),) = [row["objects"] for row in json.loads(out.read_text())]
+    assert (found["class"], found["probability"]) == ("Boxx", 0.9)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["boxes.pcd", "--label-map", "map.json"], "require --masks"),
+        (["boxes.pcd", "--masks-only"], "require --masks"),
+        (["boxes.pcd", "--masks", "missing.npy"], "missing.npy cannot be read"),
+        (["boxes.pcd", "--masks", "small.npy"], "this one has 4 x 3 of int64"),
+        (["boxes.pcd", "--masks", "small.npy", "--label-map", "small.npy"], "not a JSON object of labels"),
+    ],
+)
+def test_what_is_wrong_with_masks_is_told_in_one_line(tmp_path, capsys, monkeypatch, words, said):
+    monkeypatch.chdir(tmp_path)
+    write_cloud(tmp_path / "boxes.pcd")
+    np.save(tmp_path / "small.npy", np.zeros((3, 4), int))
+    assert execute(["perceive", *words]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def test_without_open3d_models_are_not_fitted(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(fit, "find_spec", lambda module: None)
+    assert execute(["perceive", write_cloud(tmp_path / "boxes.pcd"), "--fit"]) == 2
+    error = capsys.readouterr().err
+    assert "--fit requires Open3D" in error
+    assert error.count("\n") == 1
+
+
+@pytest.mark.skipif(not fit.available(), reason="Open3D is not installed")
+def test_models_are_fitted_where_it_is_asked_for(tmp_path, capsys):
+    cloud = write_cloud(tmp_path / "boxes.pcd")
+    write_frame(tmp_path / "frames" / "one")
+    assert execute(["perceive", cloud, "--fit", "--format", "json"]) == 0
+    (frame,) = json.loads(capsys.readouterr().out)
+    dataset = ["perceive", "--frames", str(tmp_path / "frames"), "--json", str(tmp_path / "rows.json")]
+    assert execute([*dataset, "--fit"]) == 0
+    (row,) = json.loads((tmp_path / "rows.json").read_text())
+    seen = [*(thing["observation"] for thing in frame["objects"]), *row["objects"]]
+    assert len(seen) > 2
+    for thing in seen:
+        score = thing.get("fit")
+        assert score is None or 0.0 <= score <= 1.0
+        assert np.linalg.norm(thing["pose"]["orientation_wxyz"]) == pytest.approx(1.0)

@@ -1,0 +1,59 @@
+import json
+
+import pytest
+
+from semmap.nodes.extern.cli.app import execute
+
+SOUND = "Ontology(<http://o.org/o> <http://o.org/o/1> Import(<http://o.org/m>) Declaration(Class(<http://o.org/o#A>)))"
+UNSOUND = SOUND[:-1] + " SubClassOf(<http://o.org/o#A> owl:Nothing))"
+
+
+@pytest.fixture
+def file(tmp_path):
+    def file(text: str):
+        path = tmp_path / "o.ofn"
+        path.write_text(text)
+        return str(path)
+
+    return file
+
+
+def test_what_is_found_is_told(file, capsys):
+    assert execute(["tbox", "check", file(SOUND)]) == 0
+    said = capsys.readouterr().out
+    assert "ontology        http://o.org/o (http://o.org/o/1)\n" in said
+    assert "contents        1 class" in said
+    assert "missing         http://o.org/m (add --import http://o.org/m=FILE)\n" in said
+    assert "consistent      yes, and every class is satisfiable\n" in said
+    assert " ms (median)\n" in said
+
+
+def test_an_import_may_be_said(file, tmp_path, capsys):
+    other = tmp_path / "elsewhere.ttl"
+    other.write_text("<http://o.org/m> a <http://www.w3.org/2002/07/owl#Ontology> .")
+    assert execute(["tbox", "check", file(SOUND), "--import", f"http://o.org/m={other}"]) == 0
+    said = capsys.readouterr().out
+    assert f"imports         http://o.org/m from {other}\n" in said
+    assert "missing" not in said
+
+
+def test_an_unsatisfiable_class_is_the_exit_status(file, capsys):
+    assert execute(["tbox", "check", file(UNSOUND), "--format", "json"]) == 1
+    report = json.loads(capsys.readouterr().out)
+    assert [wrong["iri"] for wrong in report["unsatisfiable"]] == ["http://o.org/o#A"]
+    assert execute(["tbox", "check", file(UNSOUND)]) == 1
+    assert "unsatisfiable   http://o.org/o#A: " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("text", ["Ontology(<http://o.org/o>\n  Nonsense())", ""])
+def test_what_cannot_be_read_is_one_line(file, capsys, text):
+    path = file(text)
+    assert execute(["tbox", "check", path]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert path in line
+
+
+def test_several_files_are_checked_together(file, tmp_path, capsys):
+    (tmp_path / "m.ttl").write_text("<http://o.org/m> a <http://www.w3.org/2002/07/owl#Ontology> .")
+    assert execute(["tbox", "check", file(SOUND), str(tmp_path)]) == 0
+    assert "2 files" in capsys.readouterr().out

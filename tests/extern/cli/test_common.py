@@ -1,0 +1,36 @@
+"""What the options of a verb say."""
+
+import pytest
+
+from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.extern.cli.common import drop_unset
+
+
+def test_what_is_left_out_is_not_given():
+    assert drop_unset({"name": "cup1", "at": None, "alt": (), "wait": False}) == {"name": "cup1"}
+
+
+def test_zero_is_given():
+    assert drop_unset({"yaw": 0.0, "speed": 0, "ref": "", "wait": True}) == {
+        "yaw": 0.0,
+        "speed": 0,
+        "ref": "",
+        "wait": True,
+    }
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--at", "1,2,3"], "--at requires 3 values, separated by spaces: --at X Y Z"),
+        (["--at", "1", "2"], "--at requires 3 values, separated by spaces: --at X Y Z"),
+        (
+            ["--at", "1m", "2m", "0"],
+            "Invalid value for '--at': '1m' is not a number; use metres without a unit",
+        ),
+        (["--ref"], "Option '--ref' requires an argument."),
+    ],
+)
+def test_what_an_option_takes_is_told(capsys, words, said):
+    assert execute(["add", "Cup", *words]) == 2
+    assert capsys.readouterr().err.startswith(f"semmap: {said}")

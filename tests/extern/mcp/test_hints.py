@@ -1,0 +1,57 @@
+"""No advice that an agent cannot follow."""
+
+import pytest
+
+from semmap.nodes.extern.mcp.hints import translate_hints
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        (
+            "say who it is: --from VIEWER, or --from-pose X Y Z YAW",
+            "say who it is: viewer, or viewpoint as x, y, z, yaw",
+        ),
+        (
+            "as a Cup it would be an object; if that is intended, add --force",
+            "as a Cup it would be an object; only an operator can do that all the same",
+        ),
+        (
+            "nearest and to (--nearest N, --to NAME) go together: the N nearest to NAME",
+            "nearest and to go together: the N nearest to NAME",
+        ),
+        ("the viewer (--from) must be another entity", "the viewer must be another entity"),
+        (
+            "use in (--in) for what is in there, or say how far from it (--near PLACE --within M)",
+            "use in for what is in there, or say how far from it (near the place, within so many metres)",
+        ),
+        (
+            "the query has more than 9 rows; narrow it, add LIMIT to it, or raise the limit",
+            "the query has more than 9 rows; narrow it, or add LIMIT and OFFSET to it",
+        ),
+        (
+            "type is changed with: semmap update fridge1 --class CLASS",
+            "type is changed with: propose verb=update name=fridge1 with class",
+        ),
+        (
+            "hasPosition is changed with: semmap update cup1 --at X Y Z",
+            "hasPosition is changed with: propose verb=update name=cup1 at=[x, y, z]",
+        ),
+        ("the name 'cup1' is taken; see: semmap get cup1", "the name 'cup1' is taken; see: get name=cup1"),
+        (
+            "for the reason: semmap explain cup1 isOn table1",
+            "for the reason: explain name=cup1 predicate=isOn value=table1",
+        ),
+        ("undo that one first: semmap undo 7", "undo that one first: undo commit=7, if that is your own"),
+        (
+            "unknown property; see: semmap properties",
+            "unknown property; see: the resource semmap://schema/properties",
+        ),
+        ("to have none: semmap unset", "to have none: propose verb=unset"),
+        ("add --carry", "add carry"),
+        ("a well--known cup of semmap://schema", "a well--known cup of semmap://schema"),
+        ("nothing is named 'cup1'", "nothing is named 'cup1'"),
+    ],
+)
+def test_verbs_and_options_become_tools_and_fields(said, told):
+    assert translate_hints(said) == told
