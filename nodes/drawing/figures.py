@@ -10,7 +10,7 @@ from semmap.schemas.entities import Entity, Pose, Size, angle_rad, distance_m
 from semmap.schemas.polygons import Polygon, extent_of
 from semmap.schemas.scenes import Body, Surface
 
-Look = Literal["solid", "ghost", "believed", "furniture", "place"]
+Appearance = Literal["solid", "ghost", "believed", "furniture", "place"]
 """`believed`: in the map, but the running simulator has no body for it. `furniture`: the world's own."""
 
 UNKNOWN_SIZE_M: Size = (0.2, 0.2, 0.2)
@@ -28,7 +28,7 @@ class Figure:
     label: str
     class_: str
     size_m: Size
-    look: Look
+    appearance: Appearance
     surface: Surface | None = None
     extent: Polygon | None = None
     """What a place covers, map frame, where that is no box."""
@@ -36,7 +36,7 @@ class Figure:
     @property
     def group(self) -> str:
         """The branch of the recording that it belongs to."""
-        return {"place": "places", "furniture": "furniture"}.get(self.look, "bodies")
+        return {"place": "places", "furniture": "furniture"}.get(self.appearance, "bodies")
 
 
 def figure_of(
@@ -48,18 +48,18 @@ def figure_of(
     if entity is None:
         if body is None:
             raise errors.InternalError("a figure needs an entity or a body")
-        return Figure(body.name, body.class_ or "", body.size_m, _look_of(body), surface)
+        return Figure(body.name, body.class_ or "", body.size_m, _appearance_of(body), surface)
     if entity.place:
         label = entity.preferred_reference or entity.name
         size_m = entity.size_m or UNKNOWN_SIZE_M
         return Figure(label, entity.class_, size_m, "place", extent=extent_of(entity))
     if body is not None:
         return Figure(entity.name, entity.class_, body.size_m, "ghost" if body.ghost else "solid", surface)
-    look: Look = "believed" if simulated else "solid"
-    return Figure(entity.name, entity.class_, entity.size_m or UNKNOWN_SIZE_M, look)
+    appearance: Appearance = "believed" if simulated else "solid"
+    return Figure(entity.name, entity.class_, entity.size_m or UNKNOWN_SIZE_M, appearance)
 
 
-def _look_of(body: Body) -> Look:
+def _appearance_of(body: Body) -> Appearance:
     if not body.entity:
         return "furniture"
     return "ghost" if body.ghost else "solid"
@@ -72,6 +72,6 @@ def pose_of(entity: Entity | None, body: Body | None) -> Pose | None:
     return entity.pose if entity is not None else None
 
 
-def still(before: Pose, now: Pose) -> bool:
+def is_still(before: Pose, now: Pose) -> bool:
     """Whether it has moved too little to be worth recording."""
     return distance_m(before, now) < STILL_M and angle_rad(before, now) < STILL_RAD

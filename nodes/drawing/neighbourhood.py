@@ -23,7 +23,7 @@ _FEW: Final = 14
 _MOST: Final = 60
 
 
-class Knot(NamedTuple):
+class GraphNode(NamedTuple):
     """A node of the drawn graph. The `id` of an entity is its name; other ids hold a colon, as no name does.
 
     `hidden` is how many entities it stands for, beside or instead of itself.
@@ -36,7 +36,7 @@ class Knot(NamedTuple):
     hidden: int = 0
 
 
-class Link(NamedTuple):
+class GraphEdge(NamedTuple):
     """What leads from one node to another; `label` has the properties, with commas."""
 
     source: str
@@ -47,8 +47,8 @@ class Link(NamedTuple):
 class Neighbourhood(NamedTuple):
     """A graph small enough to read."""
 
-    knots: tuple[Knot, ...] = ()
-    links: tuple[Link, ...] = ()
+    knots: tuple[GraphNode, ...] = ()
+    links: tuple[GraphEdge, ...] = ()
 
 
 def around(
@@ -100,7 +100,7 @@ def by_place(entities: Mapping[str, Entity], relations: Relations) -> Neighbourh
     shown = sorted(places, key=lambda name: (-number[name], name))[:_MOST]
     knots = [_place_knot(places[name], number[name]) for name in shown]
     if elsewhere:
-        knots.append(Knot("more:elsewhere", f"{elsewhere} elsewhere", "more", "", elsewhere))
+        knots.append(GraphNode("more:elsewhere", f"{elsewhere} elsewhere", "more", "", elsewhere))
     return Neighbourhood(tuple(knots), _links(_between_places(shown, places, relations)))
 
 
@@ -108,19 +108,19 @@ def by_class(entities: Mapping[str, Entity], unfolded: Iterable[str] = ()) -> Ne
     """The classes of the map with the number of their entities; those of `unfolded` classes one by one."""
     number = Counter(entity.class_ for entity in entities.values())
     shown = [class_ for class_, _ in sorted(number.items(), key=lambda item: (-item[1], item[0]))[:_MOST]]
-    knots = [Knot(_class_id(c), f"{c} ({number[c]})", "class", c, number[c]) for c in shown]
+    knots = [GraphNode(_class_id(c), f"{c} ({number[c]})", "class", c, number[c]) for c in shown]
     links = []
     for class_ in dict.fromkeys(unfolded):
         members = sorted(name for name, entity in entities.items() if entity.class_ == class_)
         if class_ not in shown:
             continue
         for name in members[:_MOST]:
-            knots.append(Knot(name, name, "entity", class_))
-            links.append(Link(name, _class_id(class_), "is a"))
+            knots.append(GraphNode(name, name, "entity", class_))
+            links.append(GraphEdge(name, _class_id(class_), "is a"))
         if len(members) > _MOST:
             more = _more(_class_id(class_), len(members) - _MOST)
             knots.append(more)
-            links.append(Link(more.id, _class_id(class_), ""))
+            links.append(GraphEdge(more.id, _class_id(class_), ""))
     return Neighbourhood(tuple(knots), tuple(links))
 
 
@@ -151,9 +151,9 @@ def _smallest_around(name: str, places: Mapping[str, Entity], relations: Relatio
     return min(around_it, key=lambda place: (_floor_m2(places[place]), place), default=None)
 
 
-def _place_knot(place: Entity, number: int) -> Knot:
+def _place_knot(place: Entity, number: int) -> GraphNode:
     label = place.preferred_reference or place.name
-    return Knot(place.name, f"{label} ({number})" if number else label, "place", place.class_, number)
+    return GraphNode(place.name, f"{label} ({number})" if number else label, "place", place.class_, number)
 
 
 class _Drawing:
@@ -161,7 +161,7 @@ class _Drawing:
 
     def __init__(self, entities: Mapping[str, Entity]) -> None:
         self._entities = entities
-        self._knots: dict[str, Knot] = {}
+        self._knots: dict[str, GraphNode] = {}
         self._pairs: dict[tuple[str, str], set[str]] = {}
 
     @property
@@ -173,8 +173,8 @@ class _Drawing:
 
     def centre(self, name: str) -> None:
         class_ = self._entities[name].class_
-        self._knots[name] = Knot(name, name, "centre", class_)
-        self._knots.setdefault(_class_id(class_), Knot(_class_id(class_), class_, "class", class_))
+        self._knots[name] = GraphNode(name, name, "centre", class_)
+        self._knots.setdefault(_class_id(class_), GraphNode(_class_id(class_), class_, "class", class_))
         self._pairs.setdefault((name, _class_id(class_)), set()).add("is a")
 
     def neighbours(
@@ -191,9 +191,9 @@ class _Drawing:
             self._knots[more.id] = more
             self._pairs[(name, more.id) if outgoing else (more.id, name)] = set()
 
-    def _entity(self, name: str) -> Knot:
+    def _entity(self, name: str) -> GraphNode:
         entity = self._entities[name]
-        return Knot(name, name, "place" if entity.place else "entity", entity.class_)
+        return GraphNode(name, name, "place" if entity.place else "entity", entity.class_)
 
 
 def _incoming(entities: Mapping[str, Entity], relations: Relations) -> dict[str, dict[str, list[str]]]:
@@ -213,12 +213,14 @@ def _grouped(related: Iterable[tuple[str, str]], entities: Mapping[str, Entity])
     return found
 
 
-def _links(pairs: Mapping[tuple[str, str], Iterable[str]]) -> tuple[Link, ...]:
-    return tuple(Link(source, target, ", ".join(sorted(said))) for (source, target), said in pairs.items())
+def _links(pairs: Mapping[tuple[str, str], Iterable[str]]) -> tuple[GraphEdge, ...]:
+    return tuple(
+        GraphEdge(source, target, ", ".join(sorted(said))) for (source, target), said in pairs.items()
+    )
 
 
-def _more(of: str, number: int) -> Knot:
-    return Knot(f"more:{of}", f"{number} more", "more", "", number)
+def _more(of: str, number: int) -> GraphNode:
+    return GraphNode(f"more:{of}", f"{number} more", "more", "", number)
 
 
 def _class_id(class_: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final
 
-from semmap.nodes.drawing.bending import bends_of, bent
+from semmap.nodes.drawing.articulation import articulated, joint_positions_of
 from semmap.schemas.entities import Size
 from semmap.schemas.scenes import Body, Surface
 
@@ -13,7 +13,7 @@ Kind = tuple[str, Size]
 _OWN: Final = "body:"
 
 
-def look_of(body: Body) -> str:
+def appearance_of(body: Body) -> str:
     """What a body looks like: the name of its model, or its own, for one that comes with the world."""
     return body.model or f"{_OWN}{body.name}"
 
@@ -27,7 +27,11 @@ class SurfaceCache:
     def of(self, body: Body | None) -> Surface | None:
         """The surface of a body with its joints as they stand, if it is known."""
         surface = None if body is None else self._known.get(_kind(body))
-        return surface if surface is None or body is None else bent(surface, bends_of(body.joints))
+        return (
+            surface
+            if surface is None or body is None
+            else articulated(surface, joint_positions_of(body.joints))
+        )
 
     def of_kind(self, model: str, size_m: Size) -> Surface | None:
         """The surface of a model at a size, if it is known."""
@@ -54,4 +58,4 @@ class SurfaceCache:
 
 
 def _kind(body: Body) -> Kind:
-    return look_of(body), body.size_m
+    return appearance_of(body), body.size_m

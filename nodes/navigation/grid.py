@@ -185,7 +185,7 @@ def things_mask(plan: Plan, frame: Frame, heights: HeightRange, things: Iterable
     return mask
 
 
-def in_the_way(plan: Plan) -> list[PlannedThing]:
+def obstacle_things(plan: Plan) -> list[PlannedThing]:
     """The things that may stand in the way: not doors, unless they are said to be closed."""
     return [thing for thing in plan.things if not thing.door or thing.open is False]
 
@@ -201,7 +201,7 @@ def occupancy(
     cells = np.full((frame.height, frame.width), UNKNOWN, dtype=np.int8)
     cells[floor_mask(plan, frame)] = FREE
     cells[wall_mask(plan, frame, heights)] = OCCUPIED
-    in_way = in_the_way(plan) if furniture else [t for t in plan.things if t.class_ in _BUILT]
+    in_way = obstacle_things(plan) if furniture else [t for t in plan.things if t.class_ in _BUILT]
     cells[things_mask(plan, frame, heights, in_way)] = OCCUPIED
     return OccupancyGrid(frame, cells)
 
@@ -210,7 +210,7 @@ _BUILT: Final = frozenset(("Wall", "Window", "Stairs"))
 """The classes of things that are no furniture."""
 
 
-def forbidden(plan: Plan, frame: Frame) -> Mask:
+def forbidden_mask(plan: Plan, frame: Frame) -> Mask:
     """Where robots are to stay out."""
     mask = frame.mask()
     for place in plan.places:
@@ -242,7 +242,7 @@ def _area(place: PlannedPlace) -> float:
     return Region(place.rings).area
 
 
-def widened(mask: Mask, reach_m: float, resolution: float) -> Mask:
+def inflated(mask: Mask, reach_m: float, resolution: float) -> Mask:
     """A mask, and all cells whose middles are nearer than `reach_m` to that of one in it."""
     reach = reach_m / resolution
     rows = math.floor(reach)

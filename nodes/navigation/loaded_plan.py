@@ -9,8 +9,8 @@ from typing import Final
 import msgspec
 
 from semmap.nodes.geometry.polygons import Point
-from semmap.nodes.navigation.map_server import Described, Pixels, grid_of
-from semmap.nodes.navigation.rooms import Cut, cut
+from semmap.nodes.navigation.map_server import MapDescription, Pixels, grid_of
+from semmap.nodes.navigation.rooms import RoomSegmentation, segment_rooms
 from semmap.schemas import errors, scene_files
 from semmap.schemas.polygons import simple, wkt
 from semmap.schemas.scene_files import SceneFile
@@ -33,12 +33,12 @@ class LoadedPlan:
         return msgspec.json.encode(self.scene)
 
 
-def loaded_plan(described: Described, pixels: Pixels, name: str) -> LoadedPlan:
+def loaded_plan(described: MapDescription, pixels: Pixels, name: str) -> LoadedPlan:
     """The rooms of a plan as places, and the passages between them as doors.
 
     Raises BadFile for a plan without free space, or whose rooms are all too small.
     """
-    found = cut(grid_of(described, pixels))
+    found = segment_rooms(grid_of(described, pixels))
     if not found.rooms:
         raise errors.BadFile(
             f"{name} has no room in it: nothing free is larger than 2 square metres; look at its thresholds,"
@@ -47,7 +47,7 @@ def loaded_plan(described: Described, pixels: Pixels, name: str) -> LoadedPlan:
     return _scene(found, described)
 
 
-def _scene(found: Cut, described: Described) -> LoadedPlan:
+def _scene(found: RoomSegmentation, described: MapDescription) -> LoadedPlan:
     x0, y0, yaw = described.origin
     c, s = math.cos(yaw), math.sin(yaw)
 

@@ -40,7 +40,7 @@ _PGM_HEAD = re.compile(rb"P([25])" + _GAP + rb"(\d+)" + _GAP + rb"(\d+)" + _GAP 
 
 
 @dataclass(frozen=True)
-class Described:
+class MapDescription:
     """What the YAML file says of an image: `origin` is the pose of its lower left corner [m, m, rad]."""
 
     image: str
@@ -88,7 +88,7 @@ def png(pixels: Pixels) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", body) + chunk(b"IEND", b"")
 
 
-def read_yaml(text: str, name: str) -> Described:
+def read_yaml(text: str, name: str) -> MapDescription:
     """What a map server's YAML file says. Raises BadFile."""
     said = dict(_entries(text, name))
     if "image" not in said or "resolution" not in said:
@@ -107,7 +107,7 @@ def read_yaml(text: str, name: str) -> Described:
         thresholds[key] = _number(said, key, name) if key in said else usual
     if not 0.0 <= thresholds["free_thresh"] < thresholds["occupied_thresh"] <= 1.0:
         raise errors.BadFile(f"{name}: free_thresh must be below occupied_thresh, both from 0 to 1")
-    return Described(
+    return MapDescription(
         image=said["image"],
         resolution=resolution,
         origin=origin,
@@ -189,7 +189,7 @@ def _pgm(content: bytes, name: str) -> Pixels:
         raise errors.BadFile(f"{name} ends before its {width} x {height} pixels do") from None
 
 
-def grid_of(described: Described, pixels: Pixels) -> OccupancyGrid:
+def grid_of(described: MapDescription, pixels: Pixels) -> OccupancyGrid:
     """The grid of an image in its own frame: not turned, with its lower left corner at (0, 0)."""
     shade = pixels.astype(np.float64) / 255.0
     occupied = shade if described.negate else 1.0 - shade

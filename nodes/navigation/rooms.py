@@ -59,16 +59,16 @@ class Doorway:
 
 
 @dataclass(frozen=True)
-class Cut:
+class RoomSegmentation:
     """What a plan falls into; rooms in the order of their middles, from the lower left on."""
 
     rooms: tuple[Room, ...]
     doorways: tuple[Doorway, ...]
 
 
-def cut(
+def segment_rooms(
     grid: OccupancyGrid, *, widest_door_m: float = WIDEST_DOOR_M, least_room_m2: float = LEAST_ROOM_M2
-) -> Cut:
+) -> RoomSegmentation:
     """The rooms of a grid, and the passages between them.
 
     A passage is at most `widest_door_m` wide; what is smaller than `least_room_m2` belongs to a neighbour, or
@@ -77,7 +77,7 @@ def cut(
     resolution = grid.frame.resolution
     free = _without_specks(grid.cells, resolution)
     if not free.any():
-        return Cut((), ())
+        return RoomSegmentation((), ())
     free |= _islands(free, resolution)
     clearance = ndimage.distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1] * resolution
     labels = _basins(clearance, widest_door_m / 2.0, resolution, Jambs(free, resolution))
@@ -214,7 +214,7 @@ def _without_small(labels: Labels, clearance: NDArray[np.float64], least: int) -
         labels[labels == one] = -max(widest)[1]
 
 
-def _described(labels: Labels, free: Mask, grid: OccupancyGrid) -> Cut:
+def _described(labels: Labels, free: Mask, grid: OccupancyGrid) -> RoomSegmentation:
     resolution = grid.frame.resolution
     found: list[tuple[tuple[float, float], int, Room]] = []
     for k in [int(k) for k in np.unique(labels) if k]:
@@ -227,7 +227,7 @@ def _described(labels: Labels, free: Mask, grid: OccupancyGrid) -> Cut:
         found.append((middle, k, Room(polygon, polygon.area_m2)))
     found.sort(key=lambda entry: (entry[0], entry[1]))
     place = {k: number for number, (_, k, _) in enumerate(found)}
-    return Cut(tuple(room for _, _, room in found), tuple(_doorways(labels, place, resolution)))
+    return RoomSegmentation(tuple(room for _, _, room in found), tuple(_doorways(labels, place, resolution)))
 
 
 def _filled(mask: Mask, grid: OccupancyGrid) -> Mask:

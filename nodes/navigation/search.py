@@ -21,7 +21,7 @@ _STEPS: Final = tuple(
 _DIAGONALLY: Final = math.sqrt(2.0) - 1.0
 
 
-def shortest(free: Mask, starts: Iterable[Cell], goals: Iterable[Cell]) -> list[Cell] | None:
+def shortest_path(free: Mask, starts: Iterable[Cell], goals: Iterable[Cell]) -> list[Cell] | None:
     """The cells of a shortest way from one of the starts to one of the goals; None without any.
 
     It squeezes past no corner: to go diagonally, both cells beside the step must be free. Of ways of one
@@ -87,19 +87,19 @@ def _back(cell: int, before: dict[int, int], across: int) -> list[Cell]:
     return [(c // across - 1, c % across - 1) for c in reversed(found)]
 
 
-def straightened(cells: Sequence[Cell], free: Mask) -> list[Cell]:
+def without_detours(cells: Sequence[Cell], free: Mask) -> list[Cell]:
     """The corners that are left of a way when each is joined to the furthest that can be seen from it."""
     kept = [cells[0]]
     at = 0
     while at < len(cells) - 1:
         step, furthest = 1, at + 1
-        while at + step < len(cells) and is_seen(cells[at], cells[at + step], free):
+        while at + step < len(cells) and in_line_of_sight(cells[at], cells[at + step], free):
             furthest = at + step
             step *= 2
         low, high = furthest, min(len(cells) - 1, at + step)
         while low < high:
             middle = (low + high + 1) // 2
-            if is_seen(cells[at], cells[middle], free):
+            if in_line_of_sight(cells[at], cells[middle], free):
                 low = middle
             else:
                 high = middle - 1
@@ -108,7 +108,7 @@ def straightened(cells: Sequence[Cell], free: Mask) -> list[Cell]:
     return kept
 
 
-def is_seen(one: Cell, other: Cell, free: Mask) -> bool:
+def in_line_of_sight(one: Cell, other: Cell, free: Mask) -> bool:
     """Whether all cells that the line between two cells' middles passes through are free."""
     (y0, x0), (y1, x1) = one, other
     count = 2 * max(abs(y1 - y0), abs(x1 - x0)) + 1

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from semmap.nodes.recorder.intact_part import chunks, open_intact_part
 from semmap.nodes.recorder.recording import COMMIT_FIELDS, COMMITS
-from semmap.nodes.recorder.whole_part import chunks, whole_part
 from semmap.schemas.explanations import Triple
 
 log = logging.getLogger(__name__)
@@ -44,15 +44,15 @@ def read_commits(path: Path) -> list[RecordedCommit]:
     or its writer was killed, or is damaged, the commits up to there are given, and a warning tells how much
     is left out.
     """
-    with whole_part(path) as whole:
-        if told := whole.told(path):
-            log.warning("%s", told)
+    with open_intact_part(path) as whole:
+        if text := whole.describe(path):
+            log.warning("%s", text)
         return commits_of(whole.path)
 
 
 def commits_of(path: Path) -> list[RecordedCommit]:
     """All commits in a recording that can be read to its end, by number."""
-    return sorted(_once_each(_commits(path)), key=lambda commit: (commit.seq, commit.stamp_ns))
+    return sorted(_deduplicated(_commits(path)), key=lambda commit: (commit.seq, commit.stamp_ns))
 
 
 def _commits(path: Path) -> Iterator[RecordedCommit]:
@@ -61,7 +61,7 @@ def _commits(path: Path) -> Iterator[RecordedCommit]:
             yield from map(_commit_of, _rows(chunk.to_record_batch()))
 
 
-def _once_each(commits: Iterable[RecordedCommit]) -> set[RecordedCommit]:
+def _deduplicated(commits: Iterable[RecordedCommit]) -> set[RecordedCommit]:
     """Without those that were recorded twice: the one that tells what was computed is kept."""
     found: dict[RecordedCommit, RecordedCommit] = {}
     for commit in commits:

@@ -48,7 +48,7 @@ class Recording:
         self.arrange()
         stream.log("map", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
 
-    def at(self, seq: int, stamp_ns: int, sim_time_s: float | None) -> None:
+    def set_time(self, seq: int, stamp_ns: int, sim_time_s: float | None) -> None:
         """When what follows is: after commit `seq`, at this wall time and this simulated time."""
         self._stream.reset_time()
         self._stream.set_time("commit", sequence=seq)

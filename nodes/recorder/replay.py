@@ -8,7 +8,7 @@ import sysconfig
 from collections.abc import Callable
 from pathlib import Path
 
-from semmap.nodes.recorder.whole_part import whole_part
+from semmap.nodes.recorder.intact_part import open_intact_part
 from semmap.schemas import errors
 
 
@@ -18,9 +18,9 @@ def replay(path: Path, tell: Callable[[str], None] = lambda text: None) -> None:
     Of one that is cut off or damaged, what is whole is shown, and `tell` is told of the rest. Raises BadFile
     when `path` is no recording or nothing of it can be read, and Refused when the viewer cannot be opened.
     """
-    with whole_part(path) as whole:
-        if told := whole.told(path):
-            tell(told)
+    with open_intact_part(path) as whole:
+        if text := whole.describe(path):
+            tell(text)
         viewer = Path(sysconfig.get_path("scripts"), "rerun")
         command = [str(viewer), "--bind", "127.0.0.1", "--port", "auto", str(whole.path)]
         status = subprocess.run(command, env=viewer_environment()).returncode

@@ -12,17 +12,17 @@ import mujoco
 import numpy as np
 from msgspec import structs
 
-from semmap.nodes.sim_node import orders
+from semmap.nodes.sim_node import order_validation
 from semmap.nodes.sim_node.bodies import Floats, Ints, pose_of
 from semmap.nodes.sim_node.models.facets import surface_of
 from semmap.nodes.sim_node.models.library import build as library_model
 from semmap.nodes.sim_node.models.world_surface import body_surface, world_surface
-from semmap.nodes.sim_node.orders import ModelSource
+from semmap.nodes.sim_node.order_validation import ModelSource
 from semmap.nodes.sim_node.physics import base_scene, build
 from semmap.nodes.sim_node.physics.engine import Engine
 from semmap.nodes.sim_node.physics.walls import walls
 from semmap.nodes.sim_node.placement.settling import Settling
-from semmap.nodes.sim_node.robots.courses import ACTUATORS, Outcome, actuators
+from semmap.nodes.sim_node.robots.base_controller import ACTUATORS, Outcome, actuators
 from semmap.nodes.sim_node.vision.view import bulk, camera_names, optical_pose, overview
 from semmap.schemas import wording
 from semmap.schemas.entities import Pose, relative
@@ -61,23 +61,23 @@ class World:
         *,
         name: str = "empty",
         models: ModelSource = library_model,
-        meanwhile: Callable[[], None] = lambda: None,
+        while_waiting: Callable[[], None] = lambda: None,
         is_class: Callable[[str], bool] = lambda word: False,
     ) -> None:
         """Start from a scene that compiles (`groundwork`), or from a bare floor.
 
-        `meanwhile` is called again and again while models are read and compiled. It may let time pass
+        `while_waiting` is called again and again while models are read and compiled. It may let time pass
         (`step`), and ask for `poses` and a `snapshot`: newcomers are not yet there. `is_class` tells words
         that name classes: a part of one of the world's bodies that is called so is a body of its own.
         """
         ground = ground or base_scene.bare_floor()
         self.ignored = base_scene.ignored(ground)
         """What the world declares in vain, each with the reason."""
-        self._engine = Engine(ground, meanwhile, is_class)
+        self._engine = Engine(ground, while_waiting, is_class)
         self.left_out = self._engine.left_out
         """The bodies of the world that are only parts of others, each by name or by what it is part of."""
         self._settling = Settling(self._engine)
-        self._models, self._meanwhile = models, meanwhile
+        self._models, self._while_waiting = models, while_waiting
         self.name = name
         self.run = uuid.uuid4().hex[:12]
         self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
@@ -112,8 +112,9 @@ class World:
 
     def spawn(self, ordered: Sequence[BodyOrder]) -> Spawned:
         """Make bodies, all in one go; what cannot be made is told in `failed`, name by name."""
-        newcomers, failed = build.aside(
-            lambda: orders.newcomers(ordered, self._models, self._engine.has), self._meanwhile
+        newcomers, failed = build.run_in_background(
+            lambda: order_validation.validate_spawn(ordered, self._models, self._engine.has),
+            self._while_waiting,
         )
         if newcomers:
             self._settling.add(newcomers)
@@ -128,7 +129,7 @@ class World:
 
     def move(self, placements: Sequence[Placement]) -> BodiesMoved:
         """Put bodies elsewhere as a hand would: there at once, with no speed, then left to physics."""
-        accepted, failed = orders.moves(placements, self._engine.records)
+        accepted, failed = order_validation.validate_moves(placements, self._engine.records)
         records = self._engine.records
         for placement in placements:
             if placement.commit is not None and placement.name in records:
@@ -137,14 +138,14 @@ class World:
             if placement.commit is not None:
                 records[placement.name].ordered = placement.pose
             self._has_begun(placement.name)
-            self._engine.courses.stop(self.model, self.data, placement.name, "stopped")
+            self._engine.base_controller.stop(self.model, self.data, placement.name, "stopped")
         moved = {placement.name: placement.pose for placement in accepted}
         self._settling.put(moved)
         return BodiesMoved(bodies=self._bodies(moved), failed=failed)
 
     def move_joints(self, ordered: Sequence[JointOrder]) -> JointsMoving:
         """Begin to move joints as a hand would; time has to pass until they are there."""
-        targets, failed = orders.joint_targets(ordered, self._engine.records)
+        targets, failed = order_validation.joint_targets(ordered, self._engine.records)
         for order in ordered:
             if order.name in targets and order.commit is not None:
                 self._engine.records[order.name].joint_commit = order.commit
@@ -155,7 +156,7 @@ class World:
     def grip(self, ordered: Sequence[GripOrder]) -> Gripped:
         """Have bodies held by others, or let go where they are."""
         records = self._engine.records
-        accepted, failed = orders.grips(ordered, records)
+        accepted, failed = order_validation.validate_grips(ordered, records)
         changed = []
         for order in accepted:
             record = records[order.name]
@@ -211,18 +212,18 @@ class World:
         if order.to and self.pose(name).upright < UPRIGHT:
             raise Refused(f"{name} {wording.fallen(name, self.pose(name))}")
         if not order.to:
-            engine.courses.stop(engine.model, engine.data, name, "stopped")
+            engine.base_controller.stop(engine.model, engine.data, name, "stopped")
             return
         for x, y in order.to:
-            if math.hypot(x, y) > orders.REACH_M:
-                raise Refused(f"({x:g}, {y:g}) is too far; the limit is {orders.REACH_M:.0f} m")
+            if math.hypot(x, y) > order_validation.REACH_M:
+                raise Refused(f"({x:g}, {y:g}) is too far; the limit is {order_validation.REACH_M:.0f} m")
         self._has_begun(name)
         engine.drive_base(name, order.to, order.yaw, order.speed)
 
     def ended(self) -> dict[str, Outcome]:
         """How courses ended since this was asked last, by robot."""
-        ended = dict(self._engine.courses.ended)
-        self._engine.courses.ended.clear()
+        ended = dict(self._engine.base_controller.ended)
+        self._engine.base_controller.ended.clear()
         return ended
 
     def pose(self, name: str) -> Pose:
@@ -245,7 +246,7 @@ class World:
         )
         return len(self)
 
-    def look_over(self) -> None:
+    def aim_overview_camera(self) -> None:
         """Let the bare floor's camera see all bodies from as near as can be."""
         view = overview(*self.extent(), 4, 3, fovy_rad=base_scene.OVERVIEW_FOVY_RAD)
         self._engine.aim(base_scene.OVERVIEW, view)
@@ -258,9 +259,9 @@ class World:
 
     def extent(self) -> tuple[Floats, Floats]:
         """Lowest and highest corner, each (3,) [m], of the box around all bodies but those far off."""
-        stage = self._engine.stage()
-        felt = np.isfinite(stage.body_low).all(axis=1)
-        return bulk(stage.body_low[felt], stage.body_high[felt])
+        obstacles = self._engine.obstacles()
+        felt = np.isfinite(obstacles.body_low).all(axis=1)
+        return bulk(obstacles.body_low[felt], obstacles.body_high[felt])
 
     def walls(self) -> tuple[Outline, ...]:
         """What of the world itself stands in the way, seen from above."""
@@ -268,10 +269,10 @@ class World:
 
     def tops(self, box: tuple[Floats, Floats] | None = None) -> dict[str, Floats]:
         """The middle of the top (3,) [m] of each entity's body; only of those whose middle is in the box."""
-        stage, index = self._engine.stage(), self._engine.index
+        obstacles, index = self._engine.obstacles(), self._engine.index
         found = {}
         for name, row in index.row.items():
-            low, high = stage.body_low[row], stage.body_high[row]
+            low, high = obstacles.body_low[row], obstacles.body_high[row]
             middle = (low + high) / 2.0
             if not self._engine.records[name].entity or not np.isfinite(middle).all():
                 continue

@@ -13,9 +13,9 @@ import numpy as np
 from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.sim_node.config import RobotConfig
 from semmap.nodes.sim_node.models.parts import rotation_matrix
-from semmap.nodes.sim_node.orders import ModelSource
+from semmap.nodes.sim_node.order_validation import ModelSource
 from semmap.nodes.sim_node.physics import base_scene
-from semmap.nodes.sim_node.physics.build import aside
+from semmap.nodes.sim_node.physics.build import run_in_background
 from semmap.nodes.sim_node.robots.robot import put
 from semmap.nodes.sim_node.vision.view import View, look_at, pinhole
 from semmap.nodes.sim_node.world import World
@@ -51,7 +51,7 @@ def require_world(path: Path, models: ModelSource, robot: RobotConfig | None = N
 def open_world(
     path: Path | None,
     models: ModelSource,
-    meanwhile: Callable[[], None] = lambda: None,
+    while_waiting: Callable[[], None] = lambda: None,
     classes: ClassNames | None = None,
     robot: RobotConfig | None = None,
 ) -> World:
@@ -59,27 +59,27 @@ def open_world(
 
     Bodies of a JSON scene are the world's own furniture (commit 0). Each has the model of its class, and
     stays where it is put if its class is fixed, as `classes` say; a class that they do not know has the model
-    of its own name. If the scene places no cameras, there is one that sees all of it. `meanwhile` is as in
-    World. Raises BadFile for a file that is neither MJCF nor a scene, or has a body that cannot be made.
+    of its own name. If the scene places no cameras, there is one that sees all of it. `while_waiting` is as
+    in `World`. Raises BadFile for a file that is neither MJCF nor a scene, or has a body that cannot be made.
     """
     if path is None:
-        return _world(base_scene.bare_floor(), robot, models=models, meanwhile=meanwhile)
+        return _world(base_scene.bare_floor(), robot, models=models, while_waiting=while_waiting)
     if not is_scene(path):
-        ground = aside(lambda: base_scene.read_mjcf(path), meanwhile)
+        ground = run_in_background(lambda: base_scene.read_mjcf(path), while_waiting)
         known = classes or ClassNames()
-        how = {"name": path.name, "models": models, "meanwhile": meanwhile, "is_class": known.has}
+        how = {"name": path.name, "models": models, "while_waiting": while_waiting, "is_class": known.has}
         return _world(ground, robot, **how)
     scene = scene_files.read(_read(path), path.name)
     views = (
         None if scene.cameras is None else [(camera.name or "", _view(camera)) for camera in scene.cameras]
     )
     floor = base_scene.bare_floor(views)
-    world = _world(floor, robot, name=path.name, models=models, meanwhile=meanwhile)
+    world = _world(floor, robot, name=path.name, models=models, while_waiting=while_waiting)
     spawned = world.spawn(_orders(scene.entities, classes or ClassNames()))
     for name, reason in spawned.failed.items():
         raise BadFile(f"{path.name}: {name} cannot be created: {reason}")
     if views is None:
-        world.look_over()
+        world.aim_overview_camera()
     return world
 
 

@@ -8,8 +8,8 @@ from scipy import ndimage
 
 from semmap.nodes.navigation.grid import FREE, OCCUPIED, UNKNOWN, Frame, OccupancyGrid
 from semmap.nodes.navigation.loaded_plan import loaded_plan
-from semmap.nodes.navigation.map_server import Described, pixels_of
-from semmap.nodes.navigation.rooms import cut
+from semmap.nodes.navigation.map_server import MapDescription, pixels_of
+from semmap.nodes.navigation.rooms import segment_rooms
 from semmap.schemas.errors import BadFile
 from semmap.schemas.polygons import read_wkt
 
@@ -70,7 +70,7 @@ def fits(found, truth, shape):
 @pytest.mark.parametrize("noise", [0.0, 0.005])
 def test_rooms_are_found_however_the_plan_is_turned(turn, noise):
     grid, truth = drawn(turn, noise)
-    found = cut(grid)
+    found = segment_rooms(grid)
 
     assert len(found.rooms) == 3
     assert min(fits(found, truth, grid.cells.shape).values()) > 0.85
@@ -80,7 +80,7 @@ def test_rooms_are_found_however_the_plan_is_turned(turn, noise):
 
 def test_doors_are_where_they_were_drawn():
     grid, _ = drawn()
-    middles = [door.middle for door in cut(grid).doorways]
+    middles = [door.middle for door in segment_rooms(grid).doorways]
     shift = (6.0 - 5.5, 4.5 - 3.6)
 
     for x, y, _, _ in list(DOORS.values())[:2]:
@@ -88,13 +88,13 @@ def test_doors_are_where_they_were_drawn():
 
 
 def test_the_same_plan_makes_the_same_rooms():
-    assert cut(drawn(0.35, 0.005)[0]) == cut(drawn(0.35, 0.005)[0])
+    assert segment_rooms(drawn(0.35, 0.005)[0]) == segment_rooms(drawn(0.35, 0.005)[0])
 
 
 def test_furniture_that_stands_about_belongs_to_its_room_and_makes_no_other():
     grid, truth = drawn()
     grid.cells[60:80, 60:80] = OCCUPIED
-    found = cut(grid)
+    found = segment_rooms(grid)
 
     assert len(found.rooms) == 3
     assert min(fits(found, truth, grid.cells.shape).values()) > 0.9
@@ -127,7 +127,7 @@ def test_furniture_against_walls_makes_no_doors(turn):
     wrong = 0
     for seed in range(6):
         grid, truth = furnished(seed, turn)
-        found = cut(grid)
+        found = segment_rooms(grid)
         doors = sorted(door.rooms for door in found.doorways)
         if (len(found.rooms), doors) == (3, [(0, 1), (0, 2), (1, 2)]):
             assert min(fits(found, truth, grid.cells.shape).values()) > 0.5
@@ -141,7 +141,7 @@ def test_a_corridor_of_which_a_door_takes_the_whole_end_but_two_stubs():
     cells[10:32, 10:100] = FREE  # 1.1 m wide
     cells[12:30, 100:102] = FREE  # 0.9 m
     cells[5:55, 102:180] = FREE
-    found = cut(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 60), cells))
+    found = segment_rooms(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 60), cells))
     assert len(found.rooms) == 2
     assert [door.width_m for door in found.doorways] == [0.9]
 
@@ -151,7 +151,7 @@ def test_a_door_that_is_flush_with_a_wall():
     cells[10:90, 10:98] = FREE
     cells[10:28, 98:100] = FREE
     cells[10:90, 100:190] = FREE
-    found = cut(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 100), cells))
+    found = segment_rooms(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 100), cells))
     assert len(found.rooms) == 2
     assert found.doorways[0].width_m == pytest.approx(0.9, abs=0.05)
 
@@ -161,13 +161,13 @@ def test_a_narrow_place_between_two_cupboards_is_no_door():
     cells[10:70, 10:190] = FREE
     cells[10:29, 90:106] = OCCUPIED
     cells[49:70, 92:110] = OCCUPIED
-    found = cut(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 80), cells))
+    found = segment_rooms(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 80), cells))
     assert (len(found.rooms), found.doorways) == (1, ())
 
 
 def test_a_plan_becomes_places_and_doors_where_its_origin_says():
     grid, _ = drawn()
-    described = Described(image="x", resolution=SIDE, origin=(10.0, 20.0, math.pi / 2))
+    described = MapDescription(image="x", resolution=SIDE, origin=(10.0, 20.0, math.pi / 2))
     made = loaded_plan(described, pixels_of(grid), "plan.yaml")
     rooms = [e for e in made.scene.entities if e.class_ == "Room"]
     doors = [e for e in made.scene.entities if e.class_ == "Door"]
@@ -186,4 +186,4 @@ def test_a_plan_without_rooms_is_refused():
     cells[10:20, 10:20] = FREE
     pixels = pixels_of(OccupancyGrid(Frame(0.0, 0.0, SIDE, 50, 50), cells))
     with pytest.raises(BadFile, match="has no room in it"):
-        loaded_plan(Described(image="x", resolution=SIDE), pixels, "plan.yaml")
+        loaded_plan(MapDescription(image="x", resolution=SIDE), pixels, "plan.yaml")

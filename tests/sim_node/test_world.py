@@ -200,7 +200,7 @@ def test_reset_brings_everything_back_to_the_map():
 def test_others_hear_of_us_while_much_is_made(monkeypatch):
     monkeypatch.setattr(build, "_PATIENCE_S", 0.001)
     beats = []
-    world = World(meanwhile=lambda: beats.append(None))
+    world = World(while_waiting=lambda: beats.append(None))
     world.spawn([order(f"can{i}", "can", pose(0.5 * (i % 15), 0.5 * (i // 15))) for i in range(200)])
     assert len(world) == 200
     assert beats
@@ -210,12 +210,12 @@ def test_time_goes_on_while_much_is_made(monkeypatch):
     monkeypatch.setattr(build, "_PATIENCE_S", 0.001)
     told = []
 
-    def meanwhile():
+    def while_waiting():
         if told:
             world.step(0.01)
             told.append(world.poses())
 
-    world = World(meanwhile=meanwhile)
+    world = World(while_waiting=while_waiting)
     world.spawn([order("shelf1", "shelf", pose(5, 5), fixed=True), order("can1", "can", pose(0, 0, 50))])
     world.step(0.1)
     told.append(world.poses())
@@ -511,7 +511,7 @@ def test_the_extent_is_that_of_all_bodies():
 def test_the_overview_looks_at_all_bodies():
     world = World()
     world.spawn([order("box1", "", pose(50.0, 20.0), size_m=(4.0, 4.0, 3.0))])
-    world.look_over()
+    world.aim_overview_camera()
     (camera,) = world.cameras()
     view = overview(*world.extent(), 4, 3, fovy_rad=base_scene.OVERVIEW_FOVY_RAD)
     assert camera.pose.position_m == pytest.approx(view.map_from_camera[:3, 3])

@@ -19,7 +19,7 @@ from typing import Any, Final, Literal, TypeVar
 from msgspec import Struct
 
 from semmap.nodes import bus
-from semmap.nodes.drawing.bending import Bends, bends_of
+from semmap.nodes.drawing.articulation import JointPositions, joint_positions_of
 from semmap.nodes.drawing.scene_state import SceneState
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.sparql_client import StandingQuery
@@ -92,10 +92,10 @@ class Live:
         self._poses_heard = 0
         self._entities: dict[str, Entity] = {}
         self._poses: dict[str, Pose] = {}
-        self._bends: dict[str, Bends] = {}
+        self._bends: dict[str, JointPositions] = {}
         self.entities: Mapping[str, Entity] = MappingProxyType(self._entities)
         self.poses: Mapping[str, Pose] = MappingProxyType(self._poses)
-        self.bends: Mapping[str, Bends] = MappingProxyType(self._bends)
+        self.bends: Mapping[str, JointPositions] = MappingProxyType(self._bends)
         """Of bodies with joints: which are not at 0, and where."""
         self._told: list[Told] = []
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -207,7 +207,7 @@ class Live:
             if self.scene is not None:
                 self._poses.update((body.name, body.pose) for body in self.scene.bodies)
                 self._bends.update(
-                    (body.name, bends_of(body.joints)) for body in self.scene.bodies if body.joints
+                    (body.name, joint_positions_of(body.joints)) for body in self.scene.bodies if body.joints
                 )
             yield Happening(kind="scene")
         self._poses_heard += news.poses_heard
@@ -256,7 +256,7 @@ class _News:
         self.commits: list[Commit] = []
         self.scene: _Bodies | None = None
         self.moved: dict[str, Pose] = {}
-        self.bends: dict[str, Bends] = {}
+        self.bends: dict[str, JointPositions] = {}
         self.poses_heard = 0
         self.health: dict[str, Health] = {}
         self.why_not: str | None = None
@@ -365,7 +365,9 @@ class _Following:
         if moved:
             self._news.moved.update(moved)
             bodies = (self._scene.bodies[name] for name in moved)
-            self._news.bends.update((body.name, bends_of(body.joints)) for body in bodies if body.joints)
+            self._news.bends.update(
+                (body.name, joint_positions_of(body.joints)) for body in bodies if body.joints
+            )
             self._notice()
 
     def _fetch_scene(self) -> None:

@@ -7,7 +7,7 @@ import rerun as rr
 
 from semmap.nodes.drawing.figures import Figure
 from semmap.nodes.drawing.palette import GREY, colour_of
-from semmap.nodes.drawing.sheets import triangles_of
+from semmap.nodes.drawing.triangulation import triangles_of
 from semmap.schemas.polygons import Polygon
 from semmap.schemas.scenes import Surface
 
@@ -24,9 +24,9 @@ def shape_of(figure: Figure) -> tuple[rr.AsComponents, ...]:
 
     A place is a translucent sheet on the floor, of its polygon where it has one.
     """
-    if figure.look == "place":
+    if figure.appearance == "place":
         return _sheet(figure)
-    if figure.surface is None or figure.look == "ghost":
+    if figure.surface is None or figure.appearance == "ghost":
         return (_box(figure),)
     return _box(figure), _mesh(figure.surface)
 
@@ -42,11 +42,11 @@ def _mesh(surface: Surface) -> rr.Mesh3D:
 
 def _box(figure: Figure) -> rr.Boxes3D:
     x, y, z = figure.size_m
-    colour = GREY if figure.look == "furniture" else colour_of(figure.class_)
+    colour = GREY if figure.appearance == "furniture" else colour_of(figure.class_)
     return rr.Boxes3D(
         half_sizes=[(x / 2.0, y / 2.0, z / 2.0)],
         centers=[(0.0, 0.0, z / 2.0)],
-        colors=[(*colour, _GHOST_ALPHA if figure.look == "ghost" else 255)],
+        colors=[(*colour, _GHOST_ALPHA if figure.appearance == "ghost" else 255)],
         radii=None if figure.surface is None else [_THIN_M],
         fill_mode=_fill_mode(figure),
         labels=[figure.label],
@@ -57,7 +57,7 @@ def _box(figure: Figure) -> rr.Boxes3D:
 def _fill_mode(figure: Figure) -> rr.components.FillMode:
     """The edges only, where there is more to be seen within."""
     usual = rr.components.FillMode.Solid if figure.surface is None else rr.components.FillMode.MajorWireframe
-    return _FILL_MODE.get(figure.look, usual)
+    return _FILL_MODE.get(figure.appearance, usual)
 
 
 _FILL_MODE = {

@@ -7,7 +7,7 @@ from typing import Final
 
 import rerun as rr
 
-from semmap.nodes.drawing.neighbourhood import Knot, Link, Neighbourhood, around, by_place
+from semmap.nodes.drawing.neighbourhood import GraphEdge, GraphNode, Neighbourhood, around, by_place
 from semmap.nodes.drawing.palette import GREY, colour_of
 from semmap.schemas.entities import Entity
 
@@ -46,16 +46,16 @@ def nodes_and_edges(graph: Neighbourhood) -> tuple[rr.GraphNodes, rr.GraphEdges]
     return nodes, rr.GraphEdges(edges, graph_type="directed")
 
 
-def _pairs(link: Link) -> tuple[tuple[str, str], ...]:
+def _pairs(link: GraphEdge) -> tuple[tuple[str, str], ...]:
     if not link.label:
         return ((link.source, link.target),)
     return ((link.source, _relation_id(link)), (_relation_id(link), link.target))
 
 
-def _relation_id(link: Link) -> str:
+def _relation_id(link: GraphEdge) -> str:
     """No name of an entity holds a space."""
     return f"{link.source} {link.label} {link.target}"
 
 
-def _colour(knot: Knot) -> tuple[int, int, int]:
+def _colour(knot: GraphNode) -> tuple[int, int, int]:
     return colour_of(knot.class_) if knot.class_ else GREY

@@ -14,7 +14,7 @@ import numpy as np
 
 from semmap.nodes.sim_node.models.library import DENSITY, ModelError
 from semmap.nodes.sim_node.models.parts import Colour, Floats, Joint, Part, Role, Shape, Vec3, bounds, mesh
-from semmap.nodes.sim_node.physics.ends import Ends
+from semmap.nodes.sim_node.physics.joint_texts import JointTexts
 from semmap.schemas import wording
 
 _SHAPES = {
@@ -46,7 +46,7 @@ def read_mjcf(path: Path) -> MjcfModel:
     world and moves nothing. Raises ModelError, ValueError.
     """
     spec = mujoco.MjSpec.from_file(str(path))
-    ends = Ends.of(spec)
+    ends = JointTexts.of(spec)
     left_out = tuple(_left_out(spec))
     model = spec.compile()
     data = mujoco.MjData(model)
@@ -83,7 +83,7 @@ def _left_out(spec: mujoco.MjSpec) -> Iterator[str]:
 
 
 def _joints(
-    model: mujoco.MjModel, data: mujoco.MjData, bodies: set[int], ends: Ends
+    model: mujoco.MjModel, data: mujoco.MjData, bodies: set[int], ends: JointTexts
 ) -> tuple[dict[int, Joint | None], list[str]]:
     """The joint that moves each of these bodies, if any, and which joints stay as they stand."""
     chains = {body: list(_chain(model, body)) for body in bodies}
@@ -130,7 +130,7 @@ def _names(model: mujoco.MjModel, numbers: list[int]) -> dict[int, str]:
     return found
 
 
-def _joint(model: mujoco.MjModel, data: mujoco.MjData, number: int, name: str, ends: Ends) -> Joint:
+def _joint(model: mujoco.MjModel, data: mujoco.MjData, number: int, name: str, ends: JointTexts) -> Joint:
     """A hinge or slide, whose positions count from where it stands in the file."""
     limits: tuple[float, float] | None = None
     closed: float | None = None
@@ -138,7 +138,7 @@ def _joint(model: mujoco.MjModel, data: mujoco.MjData, number: int, name: str, e
         drawn = float(model.qpos0[model.jnt_qposadr[number]])
         lower, upper = (float(limit) - drawn for limit in model.jnt_range[number])
         limits = (min(lower, 0.0), max(upper, 0.0))
-        end = ends.said(model.joint(number).name) or ("lower" if -lower <= upper else "upper")
+        end = ends.closed_end(model.joint(number).name) or ("lower" if -lower <= upper else "upper")
         closed = limits[0] if end == "lower" else limits[1]
     return Joint(
         name=name,

@@ -54,7 +54,7 @@ class Models:
         return next((path for path in candidates if path.is_file()), None)
 
 
-def passed_over(folder: Path, models: Collection[str]) -> list[str]:
+def ignored_files(folder: Path, models: Collection[str]) -> list[str]:
     """The model files of `folder` that are none of `models`, those of the classes, and what they are near."""
     return [
         path.name + (f" ({hint.removeprefix('; ')})" if (hint := did_you_mean(path.stem, models)) else "")

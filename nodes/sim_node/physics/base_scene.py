@@ -16,7 +16,14 @@ from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.bodies import BodyRecord, Floats, pose_of
 from semmap.nodes.sim_node.physics.build import FELT_GROUP, IMPEDANCE
-from semmap.nodes.sim_node.physics.ends import CLOSED_TEXT, ENDS, OFF_TEXT, Ends, said, tied
+from semmap.nodes.sim_node.physics.joint_texts import (
+    CLOSED_TEXT,
+    ENDS,
+    OFF_TEXT,
+    JointTexts,
+    coupled_joints,
+    read_texts,
+)
 from semmap.nodes.sim_node.vision.view import OPTICAL, View, look_at
 from semmap.schemas.entities import NAME_PATTERN
 from semmap.schemas.errors import BadFile
@@ -178,9 +185,9 @@ def bodies_of(
     """
     model, data = compiled
     classes = _declared(spec)
-    ends = Ends.of(spec)
+    ends = JointTexts.of(spec)
     switches = {joint for joint in range(model.njnt) if ends.is_switch(model, joint)}
-    follow = tied(model, switches)  # the burner that a knob lowers opens nothing
+    follow = coupled_joints(model, switches)  # the burner that a knob lowers opens nothing
     records: dict[str, BodyRecord] = {}
     owner = [""] * model.nbody
     for number in range(1, model.nbody):  # wholes have lower numbers than their parts
@@ -216,7 +223,7 @@ def ignored(spec: mujoco.MjSpec) -> list[str]:
         elif not re.match(NAME_PATTERN, name):
             told.append(f"{name} (no entity can have this name)")
     for prefix, how in ((CLOSED_TEXT, "closed"), (OFF_TEXT, "off")):
-        for name, end in said(spec, prefix):
+        for name, end in read_texts(spec, prefix):
             if name not in joints:
                 told.append(f"{name} (no such joint)")
             elif end not in ENDS:
@@ -247,18 +254,29 @@ def names_classes(spec: mujoco.MjSpec) -> bool:
 
 def _declared(spec: mujoco.MjSpec) -> dict[str, str]:
     """The classes that the world's texts declare, by name of the body."""
-    return dict(said(spec, _CLASS_TEXT))
+    return dict(read_texts(spec, _CLASS_TEXT))
 
 
 def _give_joints(
-    record: BodyRecord, model: mujoco.MjModel, body: int, ends: Ends, switches: set[int], follow: set[int]
+    record: BodyRecord,
+    model: mujoco.MjModel,
+    body: int,
+    ends: JointTexts,
+    switches: set[int],
+    follow: set[int],
 ) -> None:
     """Add the joints that move a body to a record; those that `follow` switches do nothing by themselves."""
     first = int(model.body_jntadr[body])
     joints = range(first, first + int(model.body_jntnum[body]))
     numbers = [joint for joint in joints if int(model.jnt_type[joint]) in _KINDS]
     record.joints += tuple(
-        _joint(model, number, ends.said(model.joint(number).name), number in switches, number in follow)
+        _joint(
+            model,
+            number,
+            ends.closed_end(model.joint(number).name),
+            number in switches,
+            number in follow,
+        )
         for number in numbers
     )
     record.joint_names += tuple(model.joint(number).name for number in numbers)

@@ -36,7 +36,7 @@ _SPARE_PARTS = (14, 14, 14, 28)
 
 
 @dataclass(frozen=True)
-class Berth:
+class BodySlot:
     """Body number `body` of a model, which stays where it is put if `static`.
 
     It has `geoms` geoms from number `geom` on and `nodes` nodes of the tree of bounding boxes from `node` on.
@@ -50,10 +50,10 @@ class Berth:
     nodes: int
 
     @staticmethod
-    def of(model: mujoco.MjModel, name: str) -> Berth:
+    def of(model: mujoco.MjModel, name: str) -> BodySlot:
         """The body of that name in a model as it was compiled."""
         body = model.body(name).id
-        return Berth(
+        return BodySlot(
             body=body,
             static=bool(model.body_weldid[body] == 0),
             geom=int(model.body_geomadr[body]),
@@ -62,40 +62,40 @@ class Berth:
             nodes=int(model.body_bvhnum[body]),
         )
 
-    def takes(self, alone: mujoco.MjModel, *, static: bool) -> bool:
+    def has_room_for(self, alone: mujoco.MjModel, *, static: bool) -> bool:
         """Whether a body has room here."""
         return self.static == static and self.geoms >= alone.ngeom and self.nodes >= alone.body_bvhnum[1]
 
 
-def spare_parts(bodies: int) -> list[tuple[bool, int]]:
-    """The berths to compile beside so many bodies: for each whether it is static, and for how many parts."""
+def spare_slots(bodies: int) -> list[tuple[bool, int]]:
+    """The slots to compile beside so many bodies: for each whether it is static, and for how many parts."""
     least, most = _SPARES
     count = min(most, least + bodies // _SPARE_OF)
     return [(i % 6 == 5, _SPARE_PARTS[i % len(_SPARE_PARTS)]) for i in range(count)]
 
 
-def moor(
+def fill_slot(
     model: mujoco.MjModel,
     data: mujoco.MjData,
-    berth: Berth,
+    slot: BodySlot,
     newcomer: tuple[BodyRecord, mujoco.MjModel],
     pose: Pose,
 ) -> None:
-    """Make `berth` the body of the newcomer, whose model `alone` is, standing at `pose` and awake."""
-    (record, alone), body = newcomer, berth.body
-    clear(model, data, berth)
+    """Make `slot` the body of the newcomer, whose model `alone` is, standing at `pose` and awake."""
+    (record, alone), body = newcomer, slot.body
+    clear_slot(model, data, slot)
     for field in _BODY:
         getattr(model, f"body_{field}")[body] = getattr(alone, f"body_{field}")[1]
-    geoms = slice(berth.geom, berth.geom + alone.ngeom)
+    geoms = slice(slot.geom, slot.geom + alone.ngeom)
     for field in _GEOM:
         getattr(model, f"geom_{field}")[geoms] = getattr(alone, f"geom_{field}")
-    _copy_boxes(model, berth, alone)
+    _copy_boxes(model, slot, alone)
     if record.ghost:
         model.geom_contype[geoms] = model.geom_conaffinity[geoms] = 0
         model.body_contype[body] = model.body_conaffinity[body] = 0
     position, quaternion = frame_of(pose, record.origin_m)
     model.body_pos[body], model.body_quat[body] = position, quaternion
-    if not berth.static:
+    if not slot.static:
         dof = int(model.body_dofadr[body])
         for field in _DOF:
             getattr(model, f"dof_{field}")[dof : dof + 6] = getattr(alone, f"dof_{field}")
@@ -103,47 +103,47 @@ def moor(
         joint = int(model.jnt_qposadr[model.body_jntadr[body]])
         data.qpos[joint : joint + 7] = np.concatenate([position, quaternion])
         sleep.wake(data, int(model.body_treeid[body]))
-    _set_frames(model, data, berth, position, quaternion)
+    _set_frames(model, data, slot, position, quaternion)
 
 
-def clear(model: mujoco.MjModel, data: mujoco.MjData, berth: Berth) -> None:
+def clear_slot(model: mujoco.MjModel, data: mujoco.MjData, slot: BodySlot) -> None:
     """Nobody is here: nothing to see, nothing to touch, nothing that moves, and no name."""
-    body = berth.body
+    body = slot.body
     model.name_bodyadr[body] = (
         model.nnames - 1
     )  # where the last name ends; names themselves cannot be written
-    geoms = slice(berth.geom, berth.geom + berth.geoms)
+    geoms = slice(slot.geom, slot.geom + slot.geoms)
     model.geom_contype[geoms] = model.geom_conaffinity[geoms] = 0
     model.geom_group[geoms] = build.FELT_GROUP
     model.body_contype[body] = model.body_conaffinity[body] = 0
     data.xfrc_applied[body] = 0.0
-    if not berth.static:
+    if not slot.static:
         model.name_jntadr[model.body_jntadr[body]] = model.nnames - 1
         dofs = slice(int(model.body_dofadr[body]), int(model.body_dofadr[body]) + 6)
         model.dof_M0[dofs] = _IMMOVABLE_KG
         data.qvel[dofs] = data.qacc_warmstart[dofs] = 0.0
 
 
-def _copy_boxes(model: mujoco.MjModel, berth: Berth, alone: mujoco.MjModel) -> None:
+def _copy_boxes(model: mujoco.MjModel, slot: BodySlot, alone: mujoco.MjModel) -> None:
     """The tree of bounding boxes, whose leaves name geoms by number."""
     count = int(alone.body_bvhnum[1])
-    nodes = slice(berth.node, berth.node + count)
+    nodes = slice(slot.node, slot.node + count)
     for field in _NODE:
         getattr(model, f"bvh_{field}")[nodes] = getattr(alone, f"bvh_{field}")[:count]
     leaves = alone.bvh_nodeid[:count]
-    model.bvh_nodeid[nodes] = np.where(leaves < 0, leaves, leaves + berth.geom)
-    model.body_bvhnum[berth.body] = count
+    model.bvh_nodeid[nodes] = np.where(leaves < 0, leaves, leaves + slot.geom)
+    model.body_bvhnum[slot.body] = count
 
 
 def _set_frames(
-    model: mujoco.MjModel, data: mujoco.MjData, berth: Berth, position: Floats, quaternion: Floats
+    model: mujoco.MjModel, data: mujoco.MjData, slot: BodySlot, position: Floats, quaternion: Floats
 ) -> None:
     """What kinematics would work out; it passes over what is static or was asleep."""
     rotation = rotation_matrix(quaternion.tolist())
-    data.xpos[berth.body] = data.xipos[berth.body] = position
-    data.xquat[berth.body] = quaternion
-    data.xmat[berth.body] = data.ximat[berth.body] = rotation.ravel()
-    for geom in range(berth.geom, berth.geom + berth.geoms):
+    data.xpos[slot.body] = data.xipos[slot.body] = position
+    data.xquat[slot.body] = quaternion
+    data.xmat[slot.body] = data.ximat[slot.body] = rotation.ravel()
+    for geom in range(slot.geom, slot.geom + slot.geoms):
         data.geom_xpos[geom] = position + rotation @ model.geom_pos[geom]
         data.geom_xmat[geom] = (rotation @ rotation_matrix(model.geom_quat[geom].tolist())).ravel()
 
@@ -152,7 +152,7 @@ def _set_frames(
 def compiled_alone(model: Model) -> mujoco.MjModel | None:
     """A MuJoCo model of nothing but this one body, free.
 
-    None if it has meshes, which no berth knows, or joints, whose bodies no berth has.
+    None if it has meshes, which no slot knows, or joints, whose bodies no slot has.
     """
     if model.leaves or any(part.mesh for part in model.parts):
         return None

@@ -66,7 +66,7 @@ def add_bodies(spec: mujoco.MjSpec, newcomers: Sequence[tuple[BodyRecord, Model,
         if any(part.mesh for part in model.parts):  # meshes are shared, so they are known to the whole
             add_body(spec, record, model, pose)
         if model.leaves:
-            _let_pass(spec, record.name, model)
+            _exclude_self_collisions(spec, record.name, model)
 
 
 def _attach(spec: mujoco.MjSpec, batch: mujoco.MjSpec) -> None:
@@ -133,18 +133,18 @@ def _as_compiled(spec: mujoco.MjSpec, kind: str, limit: float) -> float:
     return math.degrees(limit) if kind == "hinge" and spec.compiler.degree else limit
 
 
-def _let_pass(spec: mujoco.MjSpec, name: str, model: Model) -> None:
+def _exclude_self_collisions(spec: mujoco.MjSpec, name: str, model: Model) -> None:
     """A door does not collide with its own frame, nor one drawer with the next."""
     bodies = [name, *(leaf_name(name, leaf.joint.name) for leaf in model.leaves)]
     for one, other in combinations(bodies, 2):
         spec.add_exclude(bodyname1=one, bodyname2=other)
 
 
-def add_spares(spec: mujoco.MjSpec, parts: Sequence[tuple[bool, int]]) -> list[str]:
+def add_spare_bodies(spec: mujoco.MjSpec, parts: Sequence[tuple[bool, int]]) -> list[str]:
     """Bodies for those to come, each static or free and of so many parts; their names, no entity's."""
     names, batch = [], mujoco.MjSpec()
     for number, (static, count) in enumerate(parts):
-        body = batch.worldbody.add_body(name=f"berth/{number}")
+        body = batch.worldbody.add_body(name=f"slot/{number}")
         names.append(body.name)
         if not static:
             body.add_freejoint(name=body.name)
@@ -219,15 +219,15 @@ def set_standing(spec: mujoco.MjSpec, record: BodyRecord, pose: Pose) -> None:
         body.add_freejoint(name=record.name)
 
 
-def aside(make: Callable[[], Made], meanwhile: Callable[[], None]) -> Made:
-    """What `make` makes, on a thread of its own while `meanwhile` is called again and again.
+def run_in_background(make: Callable[[], Made], while_waiting: Callable[[], None]) -> Made:
+    """What `make` makes, on a thread of its own while `while_waiting` is called again and again.
 
     To compile a thousand bodies takes a second, and five thousand half a minute.
     """
     with ThreadPoolExecutor(max_workers=1, thread_name_prefix="compile") as thread:
         making = thread.submit(make)
         while not wait([making], timeout=_PATIENCE_S).done:
-            meanwhile()
+            while_waiting()
         return making.result()
 
 

@@ -10,20 +10,20 @@ from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_of
 from semmap.nodes.sim_node.models.library import Model
-from semmap.nodes.sim_node.physics import base_scene, body_slots, build, grips, sleep
-from semmap.nodes.sim_node.physics.body_slots import Berth
+from semmap.nodes.sim_node.physics import attachments, base_scene, body_slots, build, sleep
+from semmap.nodes.sim_node.physics.body_slots import BodySlot
 from semmap.nodes.sim_node.physics.drives import STEPS_A_PUSH, Drives
-from semmap.nodes.sim_node.physics.rest import JointWatch, RestWatch
-from semmap.nodes.sim_node.placement.obstacles import Stage
-from semmap.nodes.sim_node.robots.courses import Courses
+from semmap.nodes.sim_node.physics.rest import JointRestDetector, RestDetector
+from semmap.nodes.sim_node.placement.obstacles import Obstacles
+from semmap.nodes.sim_node.robots.base_controller import BaseController
 from semmap.nodes.sim_node.vision.view import View
 from semmap.schemas.entities import Pose, compose
 
-_STEPS_A_LOOK = 25
+_STEPS_A_CHECK = 25
 
 
 class Engine:
-    """Steps the bodies; compiles anew when one comes, or changes between held and free, and finds no berth.
+    """Steps the bodies; compiles anew when one comes, or changes between held and free, and finds no slot.
 
     `records` has every body, in the order of `index`; `resting` (N,) says which rest. `revision` grows with
     every change of the model; while the next is made (`compiling`) bodies are asked about and stepped only.
@@ -32,19 +32,19 @@ class Engine:
     def __init__(
         self,
         ground: mujoco.MjSpec,
-        meanwhile: Callable[[], None],
+        while_waiting: Callable[[], None],
         is_class: Callable[[str], bool] = lambda word: False,
     ) -> None:
-        """A world of nothing but its ground yet; `meanwhile` is called while it compiles, and may `step`.
+        """A world of nothing but its ground yet; `while_waiting` is called while it compiles, and may `step`.
 
         `is_class` tells the names of classes, by which parts of the world's bodies are bodies of their own.
         """
-        world = build.aside(lambda: base_scene.prepare(ground), meanwhile)
-        self._meanwhile = meanwhile
+        world = build.run_in_background(lambda: base_scene.prepare(ground), while_waiting)
+        self._while_waiting = while_waiting
         self._ground = ground
         self._shapes: dict[str, Model] = {}
-        self._berths: dict[str, Berth] = {}
-        self._vacant: list[Berth] = []
+        self._slots: dict[str, BodySlot] = {}
+        self._free_slots: list[BodySlot] = []
         self.records = base_scene.bodies_of(ground, world, is_class)
         self.left_out = base_scene.left_out(world.model, self.records)
         """The bodies of the world that are only parts of others, each by name or by what it is part of."""
@@ -54,10 +54,10 @@ class Engine:
         self.data: mujoco.MjData
         self.index: BodyIndex
         self._compile({name: record.ordered for name, record in self.records.items()})
-        self._rest = RestWatch(self.poses(), self.data.time)
-        self._joint_rest = JointWatch(self.positions(), self.data.time)
+        self._rest = RestDetector(self.poses(), self.data.time)
+        self._joint_rest = JointRestDetector(self.positions(), self.data.time)
         self._drives = Drives()
-        self.courses = Courses()
+        self.base_controller = BaseController()
         self.resting: NDArray[np.bool_] = self.index.tree < 0
 
     def poses(self) -> Floats:
@@ -68,10 +68,10 @@ class Engine:
         """(J,): where each joint of a body stands [rad, m], in the order of the index."""
         return self.index.positions(self.data)
 
-    def stage(self) -> Stage:
+    def obstacles(self) -> Obstacles:
         """The scene as it is now, for questions of who is in whose way."""
         mujoco.mj_kinematics(self.model, self.data)
-        return Stage(self.model, self.data, self.index, self.records)
+        return Obstacles(self.model, self.data, self.index, self.records)
 
     def has(self, name: str) -> bool:
         """Whether there is a body of this name, or a part of one of the world's own."""
@@ -93,13 +93,13 @@ class Engine:
         """Take bodies out."""
         own = [name for name in names if name not in self._shapes]
         jointed = any(self._shapes[name].leaves for name in names if name in self._shapes)
-        jointed = grips.concerned(names, self.records) or jointed
+        jointed = attachments.involves_attachment(names, self.records) or jointed
         for record in self.records.values():
             if record.held_by in names:
                 record.held_by, record.grip, record.grip_commit = "", None, -1
         for name in names:
             self._drives.stop(self.records[name].joint_names)
-            self._leave(name)
+            self._release_slot(name)
             self._shapes.pop(name, None)
             del self.records[name]
         for name in own:
@@ -108,7 +108,7 @@ class Engine:
         if own or jointed:
             self._recompile({})
         else:
-            self._renew()
+            self._reindex()
 
     def hold(self, poses: Mapping[str, Pose]) -> None:
         """Fix bodies at these poses or set them free there, solid or ghost, as their records say now."""
@@ -134,8 +134,8 @@ class Engine:
 
     def carry(self, names: Collection[str]) -> None:
         """Put bodies, and all that these hold, where they are held."""
-        for record in grips.held(self.records):
-            above = grips.chain(record.name, self.records)
+        for record in attachments.attached_records(self.records):
+            above = attachments.holders_of(record.name, self.records)
             if record.static or record.grip is None or not {record.name, *above} & set(names):
                 continue
             mujoco.mj_kinematics(self.model, self.data)
@@ -160,7 +160,7 @@ class Engine:
         self, name: str, points: Sequence[tuple[float, float]], yaw_rad: float | None, speed_m_s: float
     ) -> None:
         """Begin to drive a robot's base through these points [m], at the end to face `yaw_rad`."""
-        self.courses.begin(name, points, yaw_rad, speed_m_s)
+        self.base_controller.begin(name, points, yaw_rad, speed_m_s)
         sleep.wake(self.data, int(self.index.tree[self.index.row[name]]))
         self._keep_awake((name,))
 
@@ -181,34 +181,36 @@ class Engine:
         self.data.qpos[self.index.qpos[row] + 2] += rise_m
 
     def _arrange(self, poses: Mapping[str, Pose]) -> None:
-        """Give each of these bodies a berth at its pose; compile anew if there are not enough."""
+        """Give each of these bodies a slot at its pose; compile anew if there are not enough."""
         for name in poses:
-            self._leave(name)
-        enough = len(poses) <= len(self._vacant) and not grips.concerned(poses, self.records)
-        if enough and all(self._moor(name, pose) for name, pose in poses.items()):
-            self._renew()
+            self._release_slot(name)
+        enough = len(poses) <= len(self._free_slots) and not attachments.involves_attachment(
+            poses, self.records
+        )
+        if enough and all(self._assign_slot(name, pose) for name, pose in poses.items()):
+            self._reindex()
         else:
             self._recompile(poses)
 
-    def _leave(self, name: str) -> None:
-        berth = self._berths.pop(name, None)
-        if berth is not None:
-            body_slots.clear(self.model, self.data, berth)
-            self._vacant.append(berth)
+    def _release_slot(self, name: str) -> None:
+        slot = self._slots.pop(name, None)
+        if slot is not None:
+            body_slots.clear_slot(self.model, self.data, slot)
+            self._free_slots.append(slot)
 
-    def _moor(self, name: str, pose: Pose) -> bool:
-        """Give the body the smallest berth that will do; False if there is none."""
+    def _assign_slot(self, name: str, pose: Pose) -> bool:
+        """Give the body the smallest slot that will do; False if there is none."""
         record, shape = self.records[name], self._shapes.get(name)
         alone = body_slots.compiled_alone(shape) if shape is not None else None
         if alone is None:
             return False
-        fitting = [berth for berth in self._vacant if berth.takes(alone, static=record.static)]
+        fitting = [slot for slot in self._free_slots if slot.has_room_for(alone, static=record.static)]
         if not fitting:
             return False
-        berth = min(fitting, key=lambda berth: berth.geoms)
-        self._vacant.remove(berth)
-        self._berths[name] = berth
-        body_slots.moor(self.model, self.data, berth, (record, alone), pose)
+        slot = min(fitting, key=lambda slot: slot.geoms)
+        self._free_slots.remove(slot)
+        self._slots[name] = slot
+        body_slots.fill_slot(self.model, self.data, slot, (record, alone), pose)
         return True
 
     def _recompile(self, poses: Mapping[str, Pose]) -> None:
@@ -217,7 +219,7 @@ class Engine:
         now = {name: pose_of(row) for name, row in zip(index.names, self.poses(), strict=True)}
         now.update(poses)
         self._compile(now)
-        slept = sleep.drowsy(data, index.tree)
+        slept = sleep.asleep_or_ready(data, index.tree)
         self.data.time = data.time
         joints = [name for record in self.records.values() for name in record.joint_names]
         kept = dict.fromkeys([*(joint.name for joint in self._ground.joints), *joints])
@@ -231,22 +233,22 @@ class Engine:
             getattr(self.data, field)[to[:, None] + offsets] = getattr(data, field)[of[:, None] + offsets]
         self.set_joints(name for name in poses if name not in index.row and self.records[name].joints)
         mujoco.mj_kinematics(self.model, self.data)
-        sleep.lull(self.data, self.index.tree[stays & np.append(slept, False)[before]])
-        self._follow(before)
+        sleep.let_sleep(self.data, self.index.tree[stays & np.append(slept, False)[before]])
+        self._carry_rest_state(before)
 
     def _compile(self, poses: Mapping[str, Pose]) -> None:
         """A new model of all bodies, each at its pose, and of some vacant slots."""
         self.compiling = True
         try:
-            self.model, spares = build.aside(lambda: self._compiled(poses), self._meanwhile)
+            self.model, spares = build.run_in_background(lambda: self._compiled(poses), self._while_waiting)
         finally:
             self.compiling = False
         self.data = mujoco.MjData(self.model)
-        berthed = [name for name, shape in self._shapes.items() if not shape.leaves]
-        self._berths = {name: Berth.of(self.model, name) for name in berthed}
-        self._vacant = [Berth.of(self.model, name) for name in spares]
-        for berth in self._vacant:
-            body_slots.clear(self.model, self.data, berth)
+        slotted = [name for name, shape in self._shapes.items() if not shape.leaves]
+        self._slots = {name: BodySlot.of(self.model, name) for name in slotted}
+        self._free_slots = [BodySlot.of(self.model, name) for name in spares]
+        for slot in self._free_slots:
+            body_slots.clear_slot(self.model, self.data, slot)
         mujoco.mj_kinematics(self.model, self.data)
         self.index = self._indexed()
         self.revision += 1
@@ -256,17 +258,17 @@ class Engine:
         spec = self._ground.copy()
         made = [(self.records[name], shape, poses[name]) for name, shape in self._shapes.items()]
         build.add_bodies(spec, made)
-        spares = build.add_spares(spec, body_slots.spare_parts(len(made)))
+        spares = build.add_spare_bodies(spec, body_slots.spare_slots(len(made)))
         for name, record in self.records.items():
             if record.static and not record.anchored and name not in self._shapes:
                 build.set_standing(spec, record, poses[name])
-        grips.add_grips(spec, self.records)
+        attachments.add_welds(spec, self.records)
         build.set_memory(spec, len(self.records) + len(spares))
         return spec.compile(), spares
 
     def _indexed(self) -> BodyIndex:
         numbers = {
-            name: self._berths[name].body if name in self._berths else self.model.body(name).id
+            name: self._slots[name].body if name in self._slots else self.model.body(name).id
             for name in self.records
         }
         return BodyIndex.of(self.model, self.records, numbers)
@@ -275,18 +277,18 @@ class Engine:
         """(N,) the row that each body has in another index, -1 if none."""
         return np.array([index.row.get(name, -1) for name in self.index.names], dtype=np.int64)
 
-    def _renew(self) -> None:
+    def _reindex(self) -> None:
         """Go on with other bodies in the same model."""
         index = self.index
         self.index = self._indexed()
         self.revision += 1
-        self._follow(self._rows_in(index))
+        self._carry_rest_state(self._rows_in(index))
 
-    def _follow(self, before: NDArray[np.int64]) -> None:
+    def _carry_rest_state(self, before: NDArray[np.int64]) -> None:
         """Those who were there, in the rows `before`, and rested rest on."""
-        self._rest = self._rest.carried(self.poses(), self.data.time, before)
+        self._rest = self._rest.carried_over(self.poses(), self.data.time, before)
         rested = np.append(self.resting, False)[before]
-        self._joint_rest = JointWatch(self.positions(), self.data.time)
+        self._joint_rest = JointRestDetector(self.positions(), self.data.time)
         self.resting = (self.index.tree < 0) | rested
 
     def aim(self, camera: str, view: View) -> None:
@@ -304,24 +306,24 @@ class Engine:
             if self.asleep:
                 self.data.time = end
             else:
-                before, most = self.data.qpos.copy(), _STEPS_A_LOOK
+                before, most = self.data.qpos.copy(), _STEPS_A_CHECK
                 if self._drives:
                     arrived = self._drives.push(self.model, self.data, self.index)
                     self._joint_rest.arrive(arrived, self.positions(), self.data.time)
                     most = STEPS_A_PUSH
-                if self.courses:
-                    self.courses.steer(self.model, self.data, self.index)
+                if self.base_controller:
+                    self.base_controller.steer(self.model, self.data, self.index)
                     most = STEPS_A_PUSH
                 mujoco.mj_step(self.model, self.data, nstep=min(left, most))
                 if not np.isfinite(self.data.qpos).all():
-                    self._calm(before)
+                    self._stop_diverged(before)
             asleep = sleep.sleeping(self.data, self.index.tree)
             self.resting = self._rest.update(self.poses(), self.data.time, asleep)
             if len(self.index.joint):
                 still = self._joint_rest.update(self.positions(), self.data.time)
                 still[self._drives.rows(self.index)] = False
                 self.resting[self.index.joint_body[~still]] = False
-            self._keep_awake(self.courses.names)
+            self._keep_awake(self.base_controller.names)
 
     def _keep_awake(self, names: Iterable[str]) -> None:
         """Robots that drive do not rest, also before they move and where something is in their way."""
@@ -332,11 +334,11 @@ class Engine:
     @property
     def asleep(self) -> bool:
         """Nothing moves: every body sleeps, and none is about to be woken."""
-        return not self._drives and not self.courses and sleep.all_asleep(self.data)
+        return not self._drives and not self.base_controller and sleep.all_asleep(self.data)
 
     @property
     def awake(self) -> int:
-        """How many bodies do not sleep, vacant berths with them."""
+        """How many bodies do not sleep, vacant slots with them."""
         return sleep.awake(self.data)
 
     def wake(self, names: Iterable[str]) -> None:
@@ -356,7 +358,7 @@ class Engine:
         self._rest.disturb(taken, self.data.time)
         self.resting[taken] = tree[taken] < 0
 
-    def _calm(self, before: Floats) -> None:
+    def _stop_diverged(self, before: Floats) -> None:
         """A body whose motion ran out of bounds stops where it was a step ago."""
         bad = ~np.isfinite(self.data.qpos)
         self.data.qpos[bad] = before[bad]

@@ -16,16 +16,16 @@ ASLEEP_S = 0.1
 """One that sleeps rests after this; no sooner, so that followers of the poses see that it moved."""
 
 
-class RestWatch:
+class RestDetector:
     """Watches N bodies: each is compared with the pose at which it last counted as having moved."""
 
     def __init__(self, poses: Floats, time_s: float) -> None:
         self._anchor = poses.copy()
         self._since_s = np.full(len(poses), time_s)
 
-    def carried(self, poses: Floats, time_s: float, before: Ints) -> RestWatch:
+    def carried_over(self, poses: Floats, time_s: float, before: Ints) -> RestDetector:
         """A watch of other bodies, at `poses` now; `before` (M,) is the row that each had here, or -1."""
-        watch, known = RestWatch(poses, time_s), before >= 0
+        watch, known = RestDetector(poses, time_s), before >= 0
         watch._anchor[known], watch._since_s[known] = (
             self._anchor[before[known]],
             self._since_s[before[known]],
@@ -47,7 +47,7 @@ class RestWatch:
         self._since_s[rows] = time_s
 
 
-class JointWatch:
+class JointRestDetector:
     """Watches J joints in the same way: each is compared with where it last counted as having moved."""
 
     def __init__(self, positions: Floats, time_s: float) -> None:

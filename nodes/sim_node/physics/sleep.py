@@ -33,7 +33,7 @@ def sleeping(data: mujoco.MjData, tree: Ints) -> NDArray[np.bool_]:
     return _where(data, tree, data.tree_asleep >= 0)
 
 
-def drowsy(data: mujoco.MjData, tree: Ints) -> NDArray[np.bool_]:
+def asleep_or_ready(data: mujoco.MjData, tree: Ints) -> NDArray[np.bool_]:
     """(N,) which of these trees sleep, and will, or are about to."""
     asleep = data.tree_asleep
     return _where(data, tree, (asleep == _READY) | ((asleep >= 0) & (data.tree_awake == 0)))
@@ -51,6 +51,6 @@ def wake(data: mujoco.MjData, tree: int) -> None:
         data.tree_awake[tree] = 1
 
 
-def lull(data: mujoco.MjData, trees: Ints) -> None:
+def let_sleep(data: mujoco.MjData, trees: Ints) -> None:
     """Let trees, awake only because they were compiled anew, sleep after the next step."""
     data.tree_asleep[trees[trees >= 0]] = _READY

@@ -24,7 +24,7 @@ _FLAT = (
 )
 
 
-class Stage:
+class Obstacles:
     """The felt geoms of a scene at one moment. Rows are those of the index; `GROUND` is the world itself.
 
     `standing` (N,) tells who counts as an obstacle: not who is held, and makes way with what holds it.

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 import numpy as np
 
 from semmap.nodes.sim_node.bodies import pose_of
-from semmap.nodes.sim_node.orders import Newcomer
+from semmap.nodes.sim_node.order_validation import Newcomer
 from semmap.nodes.sim_node.physics.engine import Engine
 from semmap.nodes.sim_node.placement.clearance import place
 from semmap.schemas.entities import Pose
@@ -24,7 +24,7 @@ class Settling:
     def __init__(self, engine: Engine) -> None:
         self.version = 0
         self._engine = engine
-        self._haunted: set[str] = set()  # where ghosts are to be looked at again once all is at rest
+        self._ghosts_to_check: set[str] = set()  # where ghosts are to be looked at again once all is at rest
 
     def add(self, newcomers: Mapping[str, Newcomer]) -> None:
         """Bodies come, each to where its record says, all in one go."""
@@ -79,18 +79,18 @@ class Settling:
             return
         woken = np.flatnonzero(rested & ~engine.resting)
         if len(woken):
-            self._haunted |= self._neighbours(engine.index.names[row] for row in woken)
-        if self._haunted and engine.resting.all() and not engine.compiling:
-            haunted, self._haunted = self._haunted, set()
-            self._free_ghosts(haunted)
+            self._ghosts_to_check |= self._neighbours(engine.index.names[row] for row in woken)
+        if self._ghosts_to_check and engine.resting.all() and not engine.compiling:
+            to_check, self._ghosts_to_check = self._ghosts_to_check, set()
+            self._free_ghosts(to_check)
 
     def _find_room(self, names: Iterable[str]) -> None:
         """Lift those of these bodies that can be lifted; what has no room is a ghost, all else solid."""
         engine = self._engine
         rows = [engine.index.row[name] for name in names if not engine.records[name].held_by]
-        stage, poses = engine.stage(), engine.poses()
+        obstacles, poses = engine.obstacles(), engine.poses()
         turned: dict[str, Pose] = {}
-        for row, placed in place(stage, rows).items():
+        for row, placed in place(obstacles, rows).items():
             record = engine.index.records[row]
             in_the_way = "" if placed.in_the_way is None else engine.index.names[placed.in_the_way]
             self.version += in_the_way != record.in_the_way
@@ -102,7 +102,7 @@ class Settling:
                 engine.lift(row, placed.rise_m)
         engine.hold(turned)
         engine.disturb(rows)
-        self._haunted.update(turned)
+        self._ghosts_to_check.update(turned)
         self.version += bool(turned)
 
     def _free_ghosts(self, names: Iterable[str]) -> None:
@@ -114,5 +114,5 @@ class Settling:
 
     def _neighbours(self, names: Iterable[str]) -> set[str]:
         """These bodies and all that touch them."""
-        stage, index = self._engine.stage(), self._engine.index
-        return {index.names[row] for name in names for row in stage.touched(index.row[name], _NEAR_M)}
+        obstacles, index = self._engine.obstacles(), self._engine.index
+        return {index.names[row] for name in names for row in obstacles.touched(index.row[name], _NEAR_M)}

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from semmap.nodes.sim_node.bodies import Floats
-from semmap.nodes.sim_node.vision.labels import projected, written
+from semmap.nodes.sim_node.vision.labels import draw_labels, project_points
 from semmap.nodes.sim_node.vision.offscreen import MAX_PIXELS, Offscreen, open_gl
 from semmap.nodes.sim_node.vision.raycast import raycast
 from semmap.nodes.sim_node.vision.view import View, camera_view
@@ -50,10 +50,10 @@ class Eye:
     ) -> Frame:
         """What the named camera sees. Raises BadRequest for a camera that the world does not have."""
         view = camera_view(model, data, camera, width, height)
-        rgb, depth = self.see(model, data, view)
+        rgb, depth = self.render(model, data, view)
         return Frame(rgb, depth, view.intrinsics, view.map_from_camera, float(data.time))
 
-    def see(
+    def render(
         self, model: mujoco.MjModel, data: mujoco.MjData, view: View
     ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         """Rgb (H, W, 3) and depth (H, W) [m] of any view."""
@@ -78,16 +78,18 @@ def picture_png(
 ) -> bytes:
     """A picture for people as PNG, with smooth edges: drawn at twice the size, where OpenGL allows that.
 
-    `labels` are written beside their points (3,) [m] of the map frame.
+    `labels` are draw_labels beside their points (3,) [m] of the map frame.
     """
     factor = min(2.0, MAX_PIXELS[0] / view.width, MAX_PIXELS[1] / view.height) if eye.has_graphics else 2.0
     scale = np.diag([factor, factor, 1.0])
     width, height = int(factor * view.width), int(factor * view.height)
     fine = View(width, height, scale @ view.intrinsics, view.map_from_camera)
-    rgb = eye.see(model, data, fine)[0] if eye.has_graphics else raycast(model, data, fine, shadows=True)[0]
+    rgb = (
+        eye.render(model, data, fine)[0] if eye.has_graphics else raycast(model, data, fine, shadows=True)[0]
+    )
     image = Image.fromarray(rgb).resize((view.width, view.height), Image.Resampling.BOX)
     if labels:
-        image = written(image, projected(view, labels))
+        image = draw_labels(image, project_points(view, labels))
     out = io.BytesIO()
     image.save(out, format="PNG")
     return out.getvalue()

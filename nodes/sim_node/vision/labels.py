@@ -1,4 +1,4 @@
-"""Names written on a picture, each beside the thing that it is of."""
+"""Names draw_labels on a picture, each beside the thing that it is of."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _AHEAD_M: Final = 0.05
 _INK, _PAPER, _LINE = (20, 20, 20), (255, 255, 255, 215), (255, 255, 255, 200)
 
 
-def projected(view: View, points: Mapping[str, Floats]) -> dict[str, tuple[float, float]]:
+def project_points(view: View, points: Mapping[str, Floats]) -> dict[str, tuple[float, float]]:
     """Where points (3,) of the map frame [m] are in a picture [pixel]; not those behind or beside it."""
     camera_from_map = np.linalg.inv(view.map_from_camera)
     found = {}
@@ -33,7 +33,7 @@ def projected(view: View, points: Mapping[str, Floats]) -> dict[str, tuple[float
     return found
 
 
-def written(image: Image.Image, points: Mapping[str, tuple[float, float]]) -> Image.Image:
+def draw_labels(image: Image.Image, points: Mapping[str, tuple[float, float]]) -> Image.Image:
     """The picture with a name at each point [pixel]. One that finds no free place beside it is left out."""
     size_px = min(_LARGEST_PX, max(_SMALLEST_PX, image.height // 45))
     font = ImageFont.load_default(size_px)

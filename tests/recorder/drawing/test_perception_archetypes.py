@@ -37,7 +37,7 @@ FRAME = CameraFrame(
 def recorded(tmp_path, path, *archetypes):
     file = tmp_path / "a.rrd"
     with open_recording(file, None) as recording:
-        recording.at(1, START_NS, None)
+        recording.set_time(1, START_NS, None)
         recording.show(path, *archetypes)
     return lambda component: column(file, f"/{path}", component)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from semmap.nodes.drawing.bending import Bends, bent
+from semmap.nodes.drawing.articulation import JointPositions, articulated
 from semmap.nodes.drawing.surfaces import Kind, SurfaceCache
 from semmap.nodes.extern.web.live import Live
 from semmap.nodes.extern.web.scene.meshes import glb
@@ -29,10 +29,10 @@ class Assets:
         self._fetched: Scene | None = None
         self.walls: Surface | None = None
 
-    def surface_of(self, model: str, size_m: Size, bends: Bends = ()) -> Surface | None:
+    def surface_of(self, model: str, size_m: Size, bends: JointPositions = ()) -> Surface | None:
         """What a model looks like at a size, with its joints moved, if that is known."""
         surface = None if model == BOX else self._surfaces.of_kind(model, size_m)
-        return surface if surface is None else bent(surface, bends)
+        return surface if surface is None else articulated(surface, bends)
 
     def glb(self, key: Key) -> bytes:
         """The glTF file of a model at a size and with a look; it must be known."""

@@ -9,10 +9,10 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from semmap.nodes.drawing.bending import Bends
+from semmap.nodes.drawing.articulation import JointPositions
 from semmap.nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of
 from semmap.nodes.drawing.palette import GREY, colour_of
-from semmap.nodes.drawing.surfaces import look_of
+from semmap.nodes.drawing.surfaces import appearance_of
 from semmap.nodes.extern.web.scene.meshes import Look, linear, srgb, veiled
 from semmap.schemas.entities import Entity, Pose, Size
 from semmap.schemas.joints import JOINT_POSITIONS, positions_of
@@ -35,7 +35,7 @@ class Shown(Struct, frozen=True, gc=False):
     size_m: Size
     rgb: tuple[int, int, int]
     pose: Pose
-    bends: Bends = ()
+    bends: JointPositions = ()
 
     @property
     def key(self) -> Key:
@@ -43,7 +43,7 @@ class Shown(Struct, frozen=True, gc=False):
         return (self.look, self.model, UNKNOWN_SIZE_M if self.model == BOX else self.size_m, self.bends)
 
 
-Key = tuple[Look, str, Size, Bends]
+Key = tuple[Look, str, Size, JointPositions]
 
 
 class Batch(Struct, frozen=True):
@@ -64,7 +64,7 @@ def shown(
     *,
     simulated: bool,
     past: bool = False,
-    bends: Bends | None = None,
+    bends: JointPositions | None = None,
 ) -> Shown | None:
     """How an entity, a body, or an entity with its body is drawn; None for what is a place or nowhere.
 
@@ -73,14 +73,14 @@ def shown(
     """
     figure = figure_of(entity, body, simulated=simulated and not past)
     pose = pose or pose_of(entity, body)
-    if figure is None or pose is None or figure.look == "place":
+    if figure is None or pose is None or figure.appearance == "place":
         return None
-    model = look_of(body) if body is not None else _model_of(entity)
+    model = appearance_of(body) if body is not None else _model_of(entity)
     size_m = figure.size_m
     if not model or surface_of(model, size_m) is None:
         model = BOX
     look: Look = "past" if past else _look_of(figure)
-    rgb = GREY if figure.look == "furniture" else colour_of(figure.class_)
+    rgb = GREY if figure.appearance == "furniture" else colour_of(figure.class_)
     if model == BOX:
         bends = ()
     elif bends is None:
@@ -88,7 +88,7 @@ def shown(
     return Shown(look, model, size_m, rgb, pose, bends)
 
 
-def _stated(entity: Entity | None) -> Bends:
+def _stated(entity: Entity | None) -> JointPositions:
     """How the map states that joints stand."""
     said = None if entity is None else entity.properties.get(JOINT_POSITIONS)
     if not isinstance(said, str):
@@ -97,7 +97,7 @@ def _stated(entity: Entity | None) -> Bends:
 
 
 def _look_of(figure: Figure) -> Look:
-    match figure.look:
+    match figure.appearance:
         case "ghost":
             return "ghost"
         case "believed":

@@ -1,4 +1,4 @@
-"""Courses: mobile bases on their way, steered by the velocity actuators of their models."""
+"""BaseController: mobile bases on their way, steered by the velocity actuators of their models."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _STUCK_S, _PROGRESS = 4.0, 0.01
 
 
 @dataclass
-class _Course:
+class _DriveCommand:
     points: list[tuple[float, float]]
     yaw_rad: float | None
     speed_m_s: float
@@ -43,12 +43,12 @@ def actuators(model: mujoco.MjModel, name: str) -> tuple[int, ...]:
     return found if min(found) >= 0 else ()
 
 
-class Courses:
+class BaseController:
     """Those under way, by robot; owned by the engine, which lets them `steer` every few steps."""
 
     def __init__(self) -> None:
         """Nobody drives."""
-        self._under_way: dict[str, _Course] = {}
+        self._under_way: dict[str, _DriveCommand] = {}
         self.ended: dict[str, Outcome] = {}
         """How the courses ended that nobody has asked about yet."""
 
@@ -63,32 +63,32 @@ class Courses:
     def begin(
         self, name: str, points: Sequence[tuple[float, float]], yaw_rad: float | None, speed_m_s: float
     ) -> None:
-        """Drive through these points [m], and face `yaw_rad` at the last; another course is given up."""
+        """Drive through these points [m], and face `yaw_rad` at the last; another command is given up."""
         if name in self._under_way:
             self.ended[name] = "stopped"
-        self._under_way[name] = _Course(list(points), yaw_rad, speed_m_s)
+        self._under_way[name] = _DriveCommand(list(points), yaw_rad, speed_m_s)
 
     def stop(self, model: mujoco.MjModel, data: mujoco.MjData, name: str, outcome: Outcome) -> None:
-        """End a course, if there is one; the base stands still."""
+        """End a command, if there is one; the base stands still."""
         if self._under_way.pop(name, None) is not None:
             data.ctrl[list(actuators(model, name))] = 0.0
             self.ended[name] = outcome
 
     def steer(self, model: mujoco.MjModel, data: mujoco.MjData, index: BodyIndex) -> None:
         """Work out the velocities of all that drive."""
-        for name, course in list(self._under_way.items()):
+        for name, command in list(self._under_way.items()):
             row = index.row.get(name)
             wheels = actuators(model, name)
             if row is None or index.qpos[row] < 0 or not wheels:
                 self._under_way.pop(name)
                 self.ended[name] = "blocked"
                 continue
-            outcome = self._steer(data, index, row, wheels, course)
+            outcome = self._steer(data, index, row, wheels, command)
             if outcome is not None:
                 self.stop(model, data, name, outcome)
 
     def _steer(
-        self, data: mujoco.MjData, index: BodyIndex, row: int, wheels: tuple[int, ...], course: _Course
+        self, data: mujoco.MjData, index: BodyIndex, row: int, wheels: tuple[int, ...], command: _DriveCommand
     ) -> Outcome | None:
         address = int(index.qpos[row])
         x, y, _, qw, qx, qy, qz = data.qpos[address : address + 7].tolist()
@@ -97,23 +97,23 @@ class Courses:
         yaw = math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
         ox, oy = float(index.origin_m[row][0]), float(index.origin_m[row][1])
         x, y = x + math.cos(yaw) * ox - math.sin(yaw) * oy, y + math.sin(yaw) * ox + math.cos(yaw) * oy
-        goal_x, goal_y = course.points[0]
+        goal_x, goal_y = command.points[0]
         away_m, heading = math.hypot(goal_x - x, goal_y - y), math.atan2(goal_y - y, goal_x - x)
-        is_last = len(course.points) == 1
+        is_last = len(command.points) == 1
         if not is_last and away_m < _PASSED_M:
-            course.points.pop(0)
-            course.left = math.inf
+            command.points.pop(0)
+            command.left = math.inf
             return None
         is_far = away_m > _FAR_M
-        wanted = heading if is_far else course.yaw_rad if is_last and course.yaw_rad is not None else yaw
+        wanted = heading if is_far else command.yaw_rad if is_last and command.yaw_rad is not None else yaw
         turn = _wrapped(wanted - yaw)
         if is_last and away_m < _NEAR_M and abs(turn) < _TURNED_RAD:
             return "there"
-        if (left := away_m + abs(turn)) < course.left - _PROGRESS:
-            course.left, course.better_s = left, data.time
-        elif data.time - course.better_s > _STUCK_S:
+        if (left := away_m + abs(turn)) < command.left - _PROGRESS:
+            command.left, command.better_s = left, data.time
+        elif data.time - command.better_s > _STUCK_S:
             return "blocked"
-        speed = 0.0 if is_far and abs(turn) > _AHEAD_RAD else min(course.speed_m_s, _GAIN * away_m)
+        speed = 0.0 if is_far and abs(turn) > _AHEAD_RAD else min(command.speed_m_s, _GAIN * away_m)
         along = heading - yaw
         data.ctrl[list(wheels)] = (
             speed * math.cos(along),

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from semmap.nodes.sim_node import orders
+from semmap.nodes.sim_node import order_validation
 from semmap.nodes.sim_node.bodies import Floats
 from semmap.nodes.sim_node.models.sources import Models
 from semmap.nodes.sim_node.physics import base_scene
 from semmap.nodes.sim_node.physics.engine import Engine
 from semmap.nodes.sim_node.vision.camera import Eye
-from semmap.nodes.sim_node.vision.labels import projected, written
+from semmap.nodes.sim_node.vision.labels import draw_labels, project_points
 from semmap.nodes.sim_node.vision.view import FROM_ABOVE, View, bulk, camera_view, overview
 from semmap.nodes.sim_node.world_file import is_scene
 from semmap.schemas.entities import Pose, Vector
@@ -25,7 +25,7 @@ from semmap.schemas.scenes import BodyOrder
 Rgb = NDArray[np.uint8]
 
 
-class FilmSet:
+class OffscreenScene:
     """The world of a file, with bodies that come, go and are put elsewhere. Bound to one thread."""
 
     def __init__(
@@ -58,7 +58,7 @@ class FilmSet:
 
     def add(self, ordered: Iterable[BodyOrder]) -> Mapping[str, str]:
         """Make bodies, each where it is ordered to be; why some cannot be made, by name."""
-        made, failed = orders.newcomers(list(ordered), self._models, self._engine.has)
+        made, failed = order_validation.validate_spawn(list(ordered), self._models, self._engine.has)
         if made:
             self._engine.add(list(made.values()))
         return failed
@@ -78,9 +78,9 @@ class FilmSet:
 
     def extent(self) -> tuple[Floats, Floats]:
         """Lowest and highest corner, each (3,) [m], of the box around all bodies but those far off."""
-        stage = self._engine.stage()
-        felt = np.isfinite(stage.body_low).all(axis=1)
-        return bulk(stage.body_low[felt], stage.body_high[felt])
+        obstacles = self._engine.obstacles()
+        felt = np.isfinite(obstacles.body_low).all(axis=1)
+        return bulk(obstacles.body_low[felt], obstacles.body_high[felt])
 
     def view(
         self, width: int, height: int, *, camera: str = "", box: tuple[Vector, Vector] | None = None
@@ -96,7 +96,7 @@ class FilmSet:
         return overview(*self.extent(), width, height)
 
     def picture(self, view: View, labels: Mapping[str, str]) -> Rgb:
-        """(H, W, 3) what the view sees; `labels` are written beside the bodies of these names."""
+        """(H, W, 3) what the view sees; `labels` are draw_labels beside the bodies of these names."""
         model, data = self._engine.model, self._engine.data
         mujoco.mj_kinematics(model, data)
         mujoco.mj_camlight(model, data)
@@ -107,21 +107,21 @@ class FilmSet:
             np.diag([float(scale), float(scale), 1.0]) @ view.intrinsics,
             view.map_from_camera,
         )
-        rgb, _ = self._eye.see(model, data, fine)
+        rgb, _ = self._eye.render(model, data, fine)
         image = Image.fromarray(rgb)
         if scale > 1:
             image = image.resize((view.width, view.height), Image.Resampling.BOX)
         if labels:
             tops = {labels[name]: top for name, top in self._tops(labels).items()}
-            image = written(image, projected(view, tops))
+            image = draw_labels(image, project_points(view, tops))
         return np.asarray(image)
 
     def _tops(self, names: Iterable[str]) -> dict[str, Floats]:
         """The middle of the top (3,) [m] of each of these bodies."""
-        stage, found = self._engine.stage(), {}
+        obstacles, found = self._engine.obstacles(), {}
         for name in names:
             if (row := self._engine.index.row.get(name)) is not None:
-                low, high = stage.body_low[row], stage.body_high[row]
+                low, high = obstacles.body_low[row], obstacles.body_high[row]
                 if np.isfinite(low).all() and np.isfinite(high).all():
                     middle = (low + high) / 2.0
                     found[name] = np.array([middle[0], middle[1], high[2]])

@@ -27,12 +27,12 @@ def is_relation(triple: Triple) -> bool:
     return triple[1] not in _OF_THE_STAR and triple[2].startswith("<")
 
 
-def missed(seq: int, snapshot_seq: int, heard: Iterable[Commit]) -> list[int]:
+def missed_commits(seq: int, snapshot_seq: int, heard: Iterable[Commit]) -> list[int]:
     """The commits after `seq`, up to a snapshot's, that were not heard."""
     return sorted(set(range(seq + 1, snapshot_seq + 1)) - {commit.seq for commit in heard})
 
 
-def subjects(places: PlaceChanges | None) -> list[str]:
+def changed_subjects(places: PlaceChanges | None) -> list[str]:
     """The names of what came to be somewhere else, or is there no longer."""
     if places is None:
         return []

@@ -1,6 +1,6 @@
 from msgspec import structs
 
-from semmap.nodes.recorder.state.map_relations import Relations, is_relation, missed
+from semmap.nodes.recorder.map_relations import Relations, is_relation, missed_commits
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commits import PlaceChanges
 from tests.recorder.messages import commit, entity, relation, star
@@ -67,5 +67,5 @@ def test_stars_that_are_newer_than_a_commit_do_no_harm():
 
 
 def test_what_was_missed_is_what_nobody_heard():
-    assert missed(4, 8, [commit(6), commit(9)]) == [5, 7, 8]
-    assert missed(4, 4, []) == []
+    assert missed_commits(4, 8, [commit(6), commit(9)]) == [5, 7, 8]
+    assert missed_commits(4, 4, []) == []

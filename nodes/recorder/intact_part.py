@@ -26,14 +26,14 @@ _MESSAGE_HEADER: Final = struct.Struct("<QQ")
 """The kind and the length of a message, before it."""
 
 
-class Whole(NamedTuple):
+class IntactPart(NamedTuple):
     """The file of what is whole; how many bytes at the end of the recording are left out of it, and why."""
 
     path: Path
     left_out: int = 0
     why: str = ""
 
-    def told(self, recording: Path) -> str:
+    def describe(self, recording: Path) -> str:
         """What is left out, in a sentence without its end; nothing where that is nothing."""
         return f"{recording} {self.why}; its last {self.left_out} bytes are ignored" if self.left_out else ""
 
@@ -52,11 +52,11 @@ def require_recording(path: Path) -> None:
 
 
 @contextmanager
-def whole_part(path: Path) -> Iterator[Whole]:
+def open_intact_part(path: Path) -> Iterator[IntactPart]:
     """The recording, or a copy of as much of it as can be read. Raises BadFile where that is nothing."""
     require_recording(path)
     if (fault := _fault(path)) is None:
-        yield Whole(path)
+        yield IntactPart(path)
         return
     ends, size = _message_ends(path), path.stat().st_size
     if not ends:
@@ -73,7 +73,7 @@ def whole_part(path: Path) -> Iterator[Whole]:
             shutil.copyfile(path, copy)
             os.truncate(copy, ends[number - 1])
             why = f"is damaged after {ends[number - 1]} bytes"
-        yield Whole(copy, size - copy.stat().st_size, why)
+        yield IntactPart(copy, size - copy.stat().st_size, why)
 
 
 def chunks(path: Path) -> Iterator[Any]:

@@ -2,9 +2,9 @@
 
 import pytest
 
+from semmap.nodes.recorder.intact_part import open_intact_part
 from semmap.nodes.recorder.recorded_commits import commits_of, read_commits
 from semmap.nodes.recorder.recording import open_recording
-from semmap.nodes.recorder.whole_part import whole_part
 from semmap.schemas import errors
 from tests.recorder.messages import START_NS, commit
 
@@ -15,14 +15,14 @@ def recording(tmp_path):
     path = tmp_path / "a.rrd"
     with open_recording(path, None) as recording:
         for seq in range(1, 6):
-            recording.at(seq, START_NS, None)
+            recording.set_time(seq, START_NS, None)
             recording.commit(commit(seq))
             recording._stream.flush()
     return path
 
 
 def test_a_whole_one_is_read_where_it_is(recording):
-    with whole_part(recording) as whole:
+    with open_intact_part(recording) as whole:
         assert whole == (recording, 0, "")
         assert [c.seq for c in commits_of(whole.path)] == [1, 2, 3, 4, 5]
 
@@ -34,7 +34,7 @@ def test_of_a_damaged_one_what_comes_before_the_damage_is_whole(recording, tmp_p
         bad.write_bytes(
             content[:start] + bytes(b ^ 0x5A for b in content[start : start + 64]) + content[start + 64 :]
         )
-        with whole_part(bad) as whole:
+        with open_intact_part(bad) as whole:
             seqs = [c.seq for c in commits_of(whole.path)]
             assert seqs == [1, 2, 3, 4, 5][: len(seqs)] or not whole.left_out  # damage in what is not read
             assert (whole.path == bad) == (not whole.left_out)
@@ -46,18 +46,18 @@ def test_of_a_damaged_one_what_comes_before_the_damage_is_whole(recording, tmp_p
 def test_the_end_of_one_that_was_cut_is_left_out_and_named(recording, tmp_path, caplog):
     cut = tmp_path / "cut.rrd"
     cut.write_bytes(recording.read_bytes()[: recording.stat().st_size // 3])
-    with whole_part(cut) as whole:
+    with open_intact_part(cut) as whole:
         assert whole.left_out == cut.stat().st_size - whole.path.stat().st_size > 0
-        assert whole.told(cut) == (
+        assert whole.describe(cut) == (
             f"{cut} ends in the middle of a message; its last {whole.left_out} bytes are ignored"
         )
     assert not whole.path.exists()
     read_commits(cut)
-    assert whole.told(cut) in caplog.text
+    assert whole.describe(cut) in caplog.text
 
 
 def test_what_is_no_recording_is_refused(tmp_path):
     (tmp_path / "a.rrd").write_text("no recording")
     for path, said in (("a.rrd", "is not a recording"), ("b.rrd", "no such file"), (".", "cannot read")):
-        with pytest.raises(errors.BadFile, match=said), whole_part(tmp_path / path):
+        with pytest.raises(errors.BadFile, match=said), open_intact_part(tmp_path / path):
             pass

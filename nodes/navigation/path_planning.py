@@ -14,7 +14,7 @@ import numpy as np
 from semmap.nodes.geometry.polygons import Point
 from semmap.nodes.navigation import grid as grids
 from semmap.nodes.navigation.grid import Frame, Mask
-from semmap.nodes.navigation.search import Cell, shortest, straightened
+from semmap.nodes.navigation.search import Cell, shortest_path, without_detours
 from semmap.schemas import errors
 from semmap.schemas.plans import HeightRange, Plan, PlannedPlace, PlannedThing, Way
 
@@ -30,7 +30,7 @@ _ASIDE_M: Final = 0.5
 _POSITION = re.compile(r"\(?\s*(-?[\d.]+(?:e-?\d+)?)\s*[,\s]\s*(-?[\d.]+(?:e-?\d+)?)\s*\)?", re.IGNORECASE)
 
 
-def position(word: str) -> Point | None:
+def parse_position(word: str) -> Point | None:
     """The position that is written `2.5,1`; None for what is a name."""
     match = _POSITION.fullmatch(word.strip())
     if match is None:
@@ -42,14 +42,14 @@ def position(word: str) -> Point | None:
 
 
 @dataclass(frozen=True)
-class End:
+class PathEnd:
     """An end of a way: the cells that count as being there, and what it is called."""
 
     name: str
     cells: tuple[Cell, ...]
 
 
-class Ground:
+class TraversabilityMap:
     """Where a robot of a radius can be on a plan: as it is, and if less were in its way."""
 
     def __init__(self, plan: Plan, radius_m: float, heights: HeightRange) -> None:
@@ -58,21 +58,21 @@ class Ground:
         self.frame = _frame(plan)
         solid = ~grids.floor_mask(plan, self.frame) | grids.wall_mask(plan, self.frame, heights)
         built = [thing for thing in plan.things if thing.class_ in ("Wall", "Window", "Stairs")]
-        self._walls = self._wide(solid | grids.things_mask(plan, self.frame, heights, built))
+        self._walls = self._inflated(solid | grids.things_mask(plan, self.frame, heights, built))
         others = [t for t in plan.things if not t.door and t not in built]
-        self._things = self._wide(grids.things_mask(plan, self.frame, heights, others))
-        self._forbidden = self._wide(grids.forbidden(plan, self.frame))
+        self._things = self._inflated(grids.things_mask(plan, self.frame, heights, others))
+        self._forbidden = self._inflated(grids.forbidden_mask(plan, self.frame))
         self.closed = [thing for thing in plan.things if thing.door and thing.open is False]
         self._doors = self.frame.mask()
         for door in self.closed:
             self.frame.add_convex(self._doors, grids.doorway(door))
         self.rooms = grids.rooms_by_cell(plan, self.frame)
 
-    def _wide(self, mask: Mask) -> Mask:
+    def _inflated(self, mask: Mask) -> Mask:
         """What the middle of the robot keeps out of; half a cell less, since a cell counts as a whole."""
-        return grids.widened(mask, self.radius_m, self.frame.resolution)
+        return grids.inflated(mask, self.radius_m, self.frame.resolution)
 
-    def passable(
+    def free_mask(
         self, *, through_closed: bool = False, through_forbidden: bool = False, through_things: bool = False
     ) -> Mask:
         """Where its middle may be."""
@@ -85,15 +85,17 @@ class Ground:
             free &= ~self._things
         return free
 
-    def at_position(self, at: Point, free: Mask) -> End:
+    def end_at_position(self, at: Point, free: Mask) -> PathEnd:
         """A position, or the nearest one to it with room for the robot. Raises Refused."""
         name = f"({at[0]:g}, {at[1]:g})"
         found = self._nearest(free, at, _ASIDE_M)
         if found is None:
-            raise errors.Refused(f"there is no room for {self._robot()} at {name}: {self._why(at)}")
-        return End(name, (found,))
+            raise errors.Refused(
+                f"there is no room for {self._robot()} at {name}: {self._explain_no_room(at)}"
+            )
+        return PathEnd(name, (found,))
 
-    def at_place(self, place: PlannedPlace, free: Mask) -> End:
+    def end_at_place(self, place: PlannedPlace, free: Mask) -> PathEnd:
         """The free cell of a place that is nearest to its middle. Raises Refused."""
         mask = self.frame.mask()
         self.frame.add_rings(mask, place.rings)
@@ -102,9 +104,9 @@ class Ground:
         found = self._nearest(free & mask, middle, math.inf)
         if found is None:
             raise errors.Refused(f"there is no room for {self._robot()} in {place.name}")
-        return End(place.name, (found,))
+        return PathEnd(place.name, (found,))
 
-    def beside(self, thing: PlannedThing, free: Mask) -> End:
+    def end_beside(self, thing: PlannedThing, free: Mask) -> PathEnd:
         """All cells beside a thing, in its own room. Raises Refused."""
         near = self.frame.mask()
         outline = thing.footprint
@@ -112,13 +114,13 @@ class Ground:
             raise errors.Refused(f"{thing.name} has no size, so nobody can say what is beside it")
         self.frame.add_convex(near, outline)
         own_rooms = set(np.unique(self.rooms[near]).tolist()) - {-1}
-        near = grids.widened(near, self.radius_m + _BESIDE_M, self.frame.resolution)
+        near = grids.inflated(near, self.radius_m + _BESIDE_M, self.frame.resolution)
         if own_rooms and not thing.door:
             near &= np.isin(self.rooms, list(own_rooms))
         rows, columns = np.nonzero(near & free)
         if not len(rows):
             raise errors.Refused(f"there is no room for {self._robot()} beside {thing.name}")
-        return End(thing.name, tuple(zip(rows.tolist(), columns.tolist(), strict=True)))
+        return PathEnd(thing.name, tuple(zip(rows.tolist(), columns.tolist(), strict=True)))
 
     def _nearest(self, free: Mask, at: Point, most_m: float) -> Cell | None:
         rows, columns = np.nonzero(free)
@@ -130,20 +132,20 @@ class Ground:
         best = int(away.argmin())
         return (int(rows[best]), int(columns[best])) if away[best] <= most_m else None
 
-    def _why(self, at: Point) -> str:
+    def _explain_no_room(self, at: Point) -> str:
         cell = self.frame.cell(at)
         if cell is None or (self.plan.places and self.rooms[cell] < 0):
             return "it is in no place of the map"
-        if things := self.standing_at([cell]):
+        if things := self.obstacles_at([cell]):
             return f"{_listed(things)} {'is' if len(things) == 1 else 'are'} in the way"
         return "a wall is too near"
 
-    def standing_at(self, cells: Sequence[Cell]) -> list[str]:
+    def obstacles_at(self, cells: Sequence[Cell]) -> list[str]:
         """The things, but doors, that are in the way of a robot somewhere in these cells."""
         where = self.frame.mask()
         for row, column in cells:
             where[row, column] = True
-        where = self._wide(where)
+        where = self._inflated(where)
         found = []
         for thing in self.plan.things:
             if not thing.door:
@@ -155,13 +157,13 @@ class Ground:
     def _robot(self) -> str:
         return f"a robot {2.0 * self.radius_m:.2g} m wide"
 
-    def way(self, cells: Sequence[Cell], free: Mask) -> tuple[list[Point], float]:
+    def shorten(self, cells: Sequence[Cell], free: Mask) -> tuple[list[Point], float]:
         """The corners of a way, and its length [m]."""
-        corners = straightened(cells, free) if len(cells) > 1 else list(cells)
+        corners = without_detours(cells, free) if len(cells) > 1 else list(cells)
         points = [self.frame.middle(*cell) for cell in corners]
         return points, sum(math.dist(a, b) for a, b in pairwise(points))
 
-    def places_on(self, cells: Iterable[Cell]) -> list[str]:
+    def places_along(self, cells: Iterable[Cell]) -> list[str]:
         """The places that a way leads through, in order."""
         found: list[str] = []
         for cell in cells:
@@ -170,7 +172,7 @@ class Ground:
                 found.append(self.plan.places[room].name)
         return found
 
-    def doors_on(self, cells: Sequence[Cell]) -> list[str]:
+    def doors_along(self, cells: Sequence[Cell]) -> list[str]:
         """The doors that a way leads through, in order."""
         found: dict[str, int] = {}
         index = {cell: k for k, cell in reversed(list(enumerate(cells)))}
@@ -184,47 +186,47 @@ class Ground:
         return sorted(found, key=found.__getitem__)
 
 
-def find_way(plan: Plan, start: Point | str, end: Point | str, radius_m: float, heights: HeightRange) -> Way:
+def find_path(plan: Plan, start: Point | str, end: Point | str, radius_m: float, heights: HeightRange) -> Way:
     """The shortest way between two ends, each a position or the name of a place or thing of the plan.
 
     Through closed doors only if there is no other, which the answer then says. Raises Refused where there is
     none even so, with what stands in the way.
     """
-    ground = Ground(plan, radius_m, heights)
+    terrain = TraversabilityMap(plan, radius_m, heights)
     tries: tuple[dict[str, bool], ...] = ({}, {"through_closed": True})
     no_room: errors.Refused | None = None
     for allowed in tries:
-        free = ground.passable(**allowed)
+        free = terrain.free_mask(**allowed)
         try:
-            ends = [_end(ground, word, free) for word in (start, end)]
+            ends = [_resolve_end(terrain, word, free) for word in (start, end)]
         except errors.Refused as error:
             no_room = error
             continue
-        cells = shortest(free, ends[0].cells, ends[1].cells)
+        cells = shortest_path(free, ends[0].cells, ends[1].cells)
         if cells is not None:
-            return _way(ground, ends, cells, free)
-    reason = _why_none(ground, start, end)
+            return _to_message(terrain, ends, cells, free)
+    reason = _explain_no_path(terrain, start, end)
     if no_room is not None and "forbidden" not in reason:
         raise no_room
     raise errors.Refused(reason)
 
 
-def _end(ground: Ground, word: Point | str, free: Mask) -> End:
+def _resolve_end(terrain: TraversabilityMap, word: Point | str, free: Mask) -> PathEnd:
     if not isinstance(word, str):
-        return ground.at_position(word, free)
-    for place in ground.plan.places:
+        return terrain.end_at_position(word, free)
+    for place in terrain.plan.places:
         if place.name == word:
-            return ground.at_place(place, free)
-    for thing in ground.plan.things:
+            return terrain.end_at_place(place, free)
+    for thing in terrain.plan.things:
         if thing.name == word:
-            return ground.beside(thing, free)
+            return terrain.end_beside(thing, free)
     raise errors.Refused(f"{word} has no position or no size, so no way leads there")
 
 
-def _way(ground: Ground, ends: Sequence[End], cells: list[Cell], free: Mask) -> Way:
-    points, metres = ground.way(cells, free)
-    places, doors = ground.places_on(cells), ground.doors_on(cells)
-    shut = {door.name for door in ground.closed}
+def _to_message(terrain: TraversabilityMap, ends: Sequence[PathEnd], cells: list[Cell], free: Mask) -> Way:
+    points, metres = terrain.shorten(cells, free)
+    places, doors = terrain.places_along(cells), terrain.doors_along(cells)
+    shut = {door.name for door in terrain.closed}
     closed = tuple(name for name in doors if name in shut)
     over = " to ".join(places) if places else "over open floor"
     through = f", through {_listed(doors)}" if doors else ""
@@ -236,9 +238,9 @@ def _way(ground: Ground, ends: Sequence[End], cells: list[Cell], free: Mask) -> 
             f"no way is open from {ends[0].name} to {ends[1].name}: {_listed(closed)} {are} closed; {opened}:"
             f" {over}{through}"
         )
-    notes = [*ground.plan.notes]
-    if ground.frame.resolution > _RESOLUTION_M:
-        notes.append(f"the map is large, so the way is found on cells of {ground.frame.resolution:g} m")
+    notes = [*terrain.plan.notes]
+    if terrain.frame.resolution > _RESOLUTION_M:
+        notes.append(f"the map is large, so the way is found on cells of {terrain.frame.resolution:g} m")
     rounded = tuple((round(x, 3), round(y, 3)) for x, y in points)
     return Way(
         metres=round(metres, 3),
@@ -251,37 +253,37 @@ def _way(ground: Ground, ends: Sequence[End], cells: list[Cell], free: Mask) -> 
     )
 
 
-def _why_none(ground: Ground, start: Point | str, end: Point | str) -> str:
+def _explain_no_path(terrain: TraversabilityMap, start: Point | str, end: Point | str) -> str:
     """What is in the way: forbidden places, things, or walls."""
     said = [word if isinstance(word, str) else f"({word[0]:g}, {word[1]:g})" for word in (start, end)]
-    none = f"there is no way from {said[0]} to {said[1]} for a robot {2.0 * ground.radius_m:.2g} m wide"
+    none = f"there is no way from {said[0]} to {said[1]} for a robot {2.0 * terrain.radius_m:.2g} m wide"
     for allowed in (
         {"through_forbidden": True},
         {"through_things": True},
         {"through_things": True, "through_forbidden": True},
     ):
-        free = ground.passable(through_closed=True, **allowed)
+        free = terrain.free_mask(through_closed=True, **allowed)
         try:
-            ends = [_end(ground, word, free) for word in (start, end)]
+            ends = [_resolve_end(terrain, word, free) for word in (start, end)]
         except errors.Refused:
             continue
-        cells = shortest(free, ends[0].cells, ends[1].cells)
+        cells = shortest_path(free, ends[0].cells, ends[1].cells)
         if cells is None:
             continue
         reasons = []
         if "through_forbidden" in allowed:
-            names = [p.name for p in ground.plan.places if p.forbidden and _is_on(ground, p, cells)]
+            names = [p.name for p in terrain.plan.places if p.forbidden and _crosses(terrain, p, cells)]
             reasons.append(f"it would lead through {_listed(names)}, which {_is_are(names)} forbidden")
-        if "through_things" in allowed and (names := ground.standing_at(cells)):
+        if "through_things" in allowed and (names := terrain.obstacles_at(cells)):
             reasons.append(f"{_listed(names)} {_is_are(names)} in the way; without that there would be one")
         return f"{none}: {' and '.join(reasons)}"
     return f"{none}: there are walls all around, and no door or opening that is wide enough"
 
 
-def _is_on(ground: Ground, place: PlannedPlace, cells: Sequence[Cell]) -> bool:
-    mask = ground.frame.mask()
-    ground.frame.add_rings(mask, place.rings)
-    mask = grids.widened(mask, ground.radius_m, ground.frame.resolution)
+def _crosses(terrain: TraversabilityMap, place: PlannedPlace, cells: Sequence[Cell]) -> bool:
+    mask = terrain.frame.mask()
+    terrain.frame.add_rings(mask, place.rings)
+    mask = grids.inflated(mask, terrain.radius_m, terrain.frame.resolution)
     return any(mask[cell] for cell in cells)
 
 

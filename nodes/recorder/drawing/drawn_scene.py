@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from semmap.nodes.drawing.figures import Figure, figure_of, pose_of, still
+from semmap.nodes.drawing.figures import Figure, figure_of, is_still, pose_of
 from semmap.nodes.drawing.neighbourhood import Neighbourhood
 from semmap.nodes.drawing.surfaces import SurfaceCache
 from semmap.nodes.recorder.recording import Recording
@@ -14,7 +14,7 @@ from semmap.schemas.scenes import Body
 Drawn = tuple[Figure, Pose]
 
 
-class Stage:
+class DrawnScene:
     """The figures, their poses, and the knowledge graph as last recorded."""
 
     def __init__(self, recording: Recording) -> None:
@@ -70,7 +70,7 @@ class Stage:
             return
         if before is None or before[0] != now[0]:
             self._recording.draw(name, *now)
-        elif still(before[1], now[1]):
+        elif is_still(before[1], now[1]):
             return
         else:
             self._recording.move(name, *now)

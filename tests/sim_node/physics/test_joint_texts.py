@@ -5,7 +5,7 @@ import itertools
 import mujoco
 import pytest
 
-from semmap.nodes.sim_node.physics.ends import Ends
+from semmap.nodes.sim_node.physics.joint_texts import JointTexts
 from semmap.nodes.sim_node.world import World
 from semmap.schemas.scenes import JointOrder
 from tests.sim_node.orders import bodies
@@ -86,7 +86,7 @@ def test_words_that_mean_a_switch(joint, body, switch):
     model = mujoco.MjModel.from_xml_string(
         f'<mujoco><worldbody><body name="{body}"><joint {name}/><geom size=".1"/></body></worldbody></mujoco>'
     )
-    assert Ends({}, {}).is_switch(model, 0) is switch
+    assert JointTexts({}, {}).is_switch(model, 0) is switch
 
 
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicitfast"])

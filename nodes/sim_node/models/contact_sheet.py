@@ -1,4 +1,4 @@
-"""A contact sheet of all models: `python -m semmap.nodes.sim_node.models.sheet docs/models.png`."""
+"""A contact sheet of all models: `python -m semmap.nodes.sim_node.models.contact_sheet docs/models.png`."""
 
 from __future__ import annotations
 

@@ -18,20 +18,23 @@ _DOOR: Final = "door"
 _JOINT: Final = int(mujoco.mjtEq.mjEQ_JOINT)
 
 
-class Ends(NamedTuple):
+class JointTexts(NamedTuple):
     """What the texts of a file say of its joints, by the joint's name: `lower` or `upper`."""
 
     closed: dict[str, str]
     off: dict[str, str]
 
     @classmethod
-    def of(cls, spec: mujoco.MjSpec) -> Ends:
+    def of(cls, spec: mujoco.MjSpec) -> JointTexts:
         """What its texts say; what they say of other ends is passed over."""
         return cls(
-            *({name: end for name, end in said(spec, p) if end in ENDS} for p in (CLOSED_TEXT, OFF_TEXT))
+            *(
+                {name: end for name, end in read_texts(spec, p) if end in ENDS}
+                for p in (CLOSED_TEXT, OFF_TEXT)
+            )
         )
 
-    def said(self, joint: str) -> str | None:
+    def closed_end(self, joint: str) -> str | None:
         """The end at which a joint is said to be shut, or off."""
         return self.off.get(joint) or self.closed.get(joint)
 
@@ -48,7 +51,7 @@ class Ends(NamedTuple):
         return _DOOR not in words and any(_means_switch(word) for word in words)
 
 
-def tied(model: mujoco.MjModel, joints: set[int]) -> set[int]:
+def coupled_joints(model: mujoco.MjModel, joints: set[int]) -> set[int]:
     """The other joints that equality constraints tie to some of these: they stand as those do."""
     found = set(joints)
     pairs = [
@@ -61,7 +64,7 @@ def tied(model: mujoco.MjModel, joints: set[int]) -> set[int]:
     return found - joints
 
 
-def said(spec: mujoco.MjSpec, prefix: str) -> list[tuple[str, str]]:
+def read_texts(spec: mujoco.MjSpec, prefix: str) -> list[tuple[str, str]]:
     """The texts of a file whose names begin so: the rest of the name, and what they say."""
     texts = ((text.name, text.data) for text in spec.texts)
     return [(name.removeprefix(prefix), data) for name, data in texts if name.startswith(prefix)]

@@ -5,12 +5,12 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-LOOK_S = 2.0
+CHECK_S = 2.0
 """Between two looks: several times as long as what is recorded takes to reach the file."""
 _ROOM_BYTES = 1 << 20
 
 
-class Growth:
+class FileMonitor:
     """Of one file, which grows whenever something is recorded."""
 
     def __init__(self, path: Path) -> None:
@@ -19,10 +19,10 @@ class Growth:
         self._written = 0
         self._recorded = 0
 
-    def amiss(self, recorded: int) -> str:
+    def find_problem(self, recorded: int) -> str:
         """What is wrong, in a sentence; empty if nothing is. `recorded` counts all that was by now.
 
-        To be asked every `LOOK_S`.
+        To be asked every `CHECK_S`.
         """
         before, self._recorded = self._recorded, recorded
         try:

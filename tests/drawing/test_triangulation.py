@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from semmap.nodes.drawing.sheets import triangles_of
+from semmap.nodes.drawing.triangulation import triangles_of
 from semmap.schemas.polygons import read_wkt
 
 L = "POLYGON ((2 1, 6 1, 6 3, 4 3, 4 5, 2 5, 2 1))"

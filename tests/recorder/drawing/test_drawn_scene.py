@@ -4,9 +4,9 @@ import rerun as rr
 from msgspec import structs
 
 from semmap.nodes.drawing.figures import figure_of
-from semmap.nodes.drawing.neighbourhood import Knot, Neighbourhood
+from semmap.nodes.drawing.neighbourhood import GraphNode, Neighbourhood
+from semmap.nodes.recorder.drawing.drawn_scene import DrawnScene
 from semmap.nodes.recorder.drawing.geometry import shape_of
-from semmap.nodes.recorder.drawing.stage import Stage
 from semmap.schemas.entities import Pose
 from semmap.schemas.polygons import EXTENT, box_around, read_wkt
 from tests.recorder.messages import body, entity, pose
@@ -33,7 +33,7 @@ def told():
 
 @pytest.fixture
 def stage(told):
-    return Stage(told)
+    return DrawnScene(told)
 
 
 def test_what_appears_is_drawn_once(stage, told):
@@ -84,8 +84,8 @@ def test_moves_are_told_when_they_are_moves(stage, told):
 
 
 def test_a_graph_is_drawn_when_it_changes(stage, told):
-    stage.show_graph(Neighbourhood((Knot("cup1", "cup1", "centre", "Cup"),)))
-    stage.show_graph(Neighbourhood((Knot("cup1", "cup1", "centre", "Cup"),)))
+    stage.show_graph(Neighbourhood((GraphNode("cup1", "cup1", "centre", "Cup"),)))
+    stage.show_graph(Neighbourhood((GraphNode("cup1", "cup1", "centre", "Cup"),)))
     assert [verb for verb, _ in told.take()] == ["graph"]
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from semmap.nodes.drawing.bending import bends_of, bent
+from semmap.nodes.drawing.articulation import articulated, joint_positions_of
 from semmap.nodes.sim_node.models.facets import surface_of
 from semmap.nodes.sim_node.models.library import build
 from semmap.schemas.joints import Joint
@@ -22,7 +22,7 @@ def test_a_surface_tells_what_each_joint_moves():
 def test_an_open_door_reaches_out_and_the_rest_stays():
     surface = surface_of(build("fridge", None))
     door = next(leaf for leaf in surface.leaves if leaf.joint == "door")
-    moved = points(bent(surface, (("door", 1.5),))) - points(surface)
+    moved = points(articulated(surface, (("door", 1.5),))) - points(surface)
     rows = np.arange(len(moved))
     own = (rows >= door.first) & (rows < door.first + door.count)
     assert np.abs(moved[own]).max() > 0.3
@@ -34,7 +34,7 @@ def test_a_hinge_keeps_distances_from_its_axis_and_a_slide_shifts():
         for leaf in surface_of(build(name, None)).leaves:
             surface = surface_of(build(name, None))
             rows = slice(leaf.first, leaf.first + leaf.count)
-            before, after = points(surface)[rows], points(bent(surface, ((leaf.joint, 0.3),)))[rows]
+            before, after = points(surface)[rows], points(articulated(surface, ((leaf.joint, 0.3),)))[rows]
             if leaf.kind == "slide":
                 assert np.linalg.norm(after - before, axis=1) == pytest.approx(0.3, abs=1e-5)
             else:
@@ -44,8 +44,8 @@ def test_a_hinge_keeps_distances_from_its_axis_and_a_slide_shifts():
 
 def test_what_is_shut_is_the_surface_itself_and_an_unknown_joint_is_passed_over():
     surface = surface_of(build("fridge", None))
-    assert bent(surface, ()) is surface
-    assert bent(surface, (("lid", 1.0),)) is surface
+    assert articulated(surface, ()) is surface
+    assert articulated(surface, (("lid", 1.0),)) is surface
 
 
 def test_bends_come_in_steps_that_can_be_seen():
@@ -54,4 +54,4 @@ def test_bends_come_in_steps_that_can_be_seen():
         Joint(name="drawer", kind="slide", position=0.004),
         Joint(name="ball", kind="ball", position=1.0),
     )
-    assert bends_of(joints) == (("door", 0.5),)
+    assert joint_positions_of(joints) == (("door", 0.5),)

@@ -1,4 +1,4 @@
-"""Courses of a base: it turns first, passes through points, slows down, and says how it ended."""
+"""BaseController of a base: it turns first, passes through points, slows down, and says how it ended."""
 
 import math
 
@@ -8,7 +8,7 @@ import pytest
 
 from semmap.nodes.sim_node.bodies import BodyIndex
 from semmap.nodes.sim_node.models.parts import about
-from semmap.nodes.sim_node.robots.courses import Courses, actuators
+from semmap.nodes.sim_node.robots.base_controller import BaseController, actuators
 from tests.sim_node.test_bodies import record
 
 
@@ -32,7 +32,7 @@ class Base:
         self.index = BodyIndex.of(
             self.model, self.records, {name: self.model.body(name).id for name in self.records}
         )
-        self.courses = Courses()
+        self.courses = BaseController()
         self.put(at, yaw_rad)
 
     def put(self, at, yaw_rad=0.0, roll_rad=0.0):

@@ -3,7 +3,13 @@
 import pytest
 
 from semmap.nodes.sim_node.models.library import build as library_model
-from semmap.nodes.sim_node.orders import REACH_M, grips, joint_targets, moves, newcomers
+from semmap.nodes.sim_node.order_validation import (
+    REACH_M,
+    joint_targets,
+    validate_grips,
+    validate_moves,
+    validate_spawn,
+)
 from semmap.schemas.entities import Pose
 from semmap.schemas.joints import Joint
 from semmap.schemas.scenes import GripOrder, JointOrder, Placement
@@ -12,7 +18,7 @@ from tests.sim_node.test_bodies import record
 
 
 def test_each_order_is_accepted_or_has_a_reason():
-    accepted, failed = newcomers(
+    accepted, failed = validate_spawn(
         [
             order("cup1", "cup", pose(1, 2), commit=7),
             order("cup1", "cup", pose(3, 0)),
@@ -36,26 +42,28 @@ def test_each_order_is_accepted_or_has_a_reason():
 
 @pytest.mark.parametrize(("x", "is_accepted"), [(REACH_M, True), (REACH_M + 1.0, False)])
 def test_a_body_may_be_a_kilometre_away_and_no_farther(x, is_accepted):
-    accepted, failed = newcomers([order("cup1", "cup", pose(x, 0))], library_model, lambda _: False)
+    accepted, failed = validate_spawn([order("cup1", "cup", pose(x, 0))], library_model, lambda _: False)
     assert ("cup1" in accepted, "cup1" in failed) == (is_accepted, not is_accepted)
 
 
 @pytest.mark.parametrize(("commit", "entity"), [(0, False), (1, True)])
 def test_with_commit_0_a_body_is_the_worlds_own(commit, entity):
-    accepted, _ = newcomers([order("cup1", "cup", pose(0, 0), commit=commit)], library_model, lambda _: False)
+    accepted, _ = validate_spawn(
+        [order("cup1", "cup", pose(0, 0), commit=commit)], library_model, lambda _: False
+    )
     assert accepted["cup1"][0].entity is entity
     assert accepted["cup1"][0].joint_commit == commit
 
 
 def test_the_frame_of_a_body_is_its_centre_of_mass():
-    accepted, _ = newcomers([order("cup1", "cup", pose(0, 0))], library_model, lambda _: False)
+    accepted, _ = validate_spawn([order("cup1", "cup", pose(0, 0))], library_model, lambda _: False)
     made, model = accepted["cup1"]
     assert made.origin_m == pytest.approx([-value for value in model.inertial.centre_m])
     assert len(made.masks) == len(model.parts)
 
 
 def test_a_body_that_opens_has_its_joints_shut_unless_the_map_says_otherwise():
-    accepted, _ = newcomers([order("fridge1", "fridge", pose(0, 0))], library_model, lambda _: False)
+    accepted, _ = validate_spawn([order("fridge1", "fridge", pose(0, 0))], library_model, lambda _: False)
     made, model = accepted["fridge1"]
     assert [joint.name for joint in made.joints] == [leaf.joint.name for leaf in model.leaves]
     assert made.joint_names == ("fridge1/freezer", "fridge1/door") or made.joint_names == (
@@ -140,7 +148,7 @@ def test_what_cannot_be_moved_has_a_reason():
         "ring1": record("ring1", held_by="hand1"),
     }
     stays = [hand(name, pose(0, 0)) for name in ("x", "door1", "lid1", "ring1")]
-    accepted, failed = moves([first, *stays, hand("can1", pose(0, 2000)), last], there)
+    accepted, failed = validate_moves([first, *stays, hand("can1", pose(0, 2000)), last], there)
     assert accepted == [first, last]
     assert "no body named x" in failed["x"]
     assert "2000 m from the origin is too far; the limit is 1000 m" in failed["can1"]
@@ -176,7 +184,7 @@ THERE = {
     ids=str,
 )
 def test_what_cannot_be_held_has_a_reason(asked, why):
-    accepted, failed = grips([GripOrder(**asked)], THERE)
+    accepted, failed = validate_grips([GripOrder(**asked)], THERE)
     assert accepted == []
     assert why in failed[asked["name"]]
 
@@ -194,4 +202,4 @@ def test_what_cannot_be_held_has_a_reason(asked, why):
 )
 def test_these_may_be_held_or_let_go(asked):
     wanted = GripOrder(**asked)
-    assert grips([wanted], THERE) == ([wanted], {})
+    assert validate_grips([wanted], THERE) == ([wanted], {})

@@ -8,8 +8,8 @@ from collections import namedtuple
 
 import pytest
 
-from semmap.nodes.recorder import growth
-from semmap.nodes.recorder.growth import Growth
+from semmap.nodes.recorder import file_monitor
+from semmap.nodes.recorder.file_monitor import FileMonitor
 from semmap.nodes.recorder.recording import open_recording
 
 
@@ -26,42 +26,42 @@ def write(path):
 
 
 def test_a_file_that_grows_with_what_is_recorded_is_well(path):
-    one = Growth(path)
+    one = FileMonitor(path)
     for recorded in range(10):
         write(path)
-        assert one.amiss(recorded) == ""
+        assert one.find_problem(recorded) == ""
 
 
 def test_so_is_one_to_which_nothing_is_recorded(path):
-    one = Growth(path)
-    assert [one.amiss(5) for _ in range(10)] == [""] * 10
+    one = FileMonitor(path)
+    assert [one.find_problem(5) for _ in range(10)] == [""] * 10
 
 
 def test_what_was_recorded_just_now_has_time_to_be_written(path):
-    one = Growth(path)
-    assert one.amiss(1) == ""
-    assert one.amiss(2) == ""
+    one = FileMonitor(path)
+    assert one.find_problem(1) == ""
+    assert one.find_problem(2) == ""
     write(path)
-    assert one.amiss(2) == ""
-    assert one.amiss(2) == ""
+    assert one.find_problem(2) == ""
+    assert one.find_problem(2) == ""
 
 
 def test_one_that_does_not_grow_any_more_is_told_until_it_grows(path, monkeypatch):
-    one = Growth(path)
-    one.amiss(1)
-    one.amiss(2)
-    assert one.amiss(3) == f"the recording {path} is not written any more"
+    one = FileMonitor(path)
+    one.find_problem(1)
+    one.find_problem(2)
+    assert one.find_problem(3) == f"the recording {path} is not written any more"
     usage = namedtuple("Usage", "free")
-    monkeypatch.setattr(growth.shutil, "disk_usage", lambda _: usage(0))
-    assert one.amiss(3).endswith("not written any more: the disk is full")
+    monkeypatch.setattr(file_monitor.shutil, "disk_usage", lambda _: usage(0))
+    assert one.find_problem(3).endswith("not written any more: the disk is full")
     write(path)
-    assert one.amiss(3) == ""
+    assert one.find_problem(3) == ""
 
 
 def test_one_that_is_gone_is_told(path):
-    one = Growth(path)
+    one = FileMonitor(path)
     path.unlink()
-    assert one.amiss(0).endswith("cannot be written: No such file or directory")
+    assert one.find_problem(0).endswith("cannot be written: No such file or directory")
 
 
 def test_what_a_recording_notes_is_counted(tmp_path):
@@ -74,18 +74,18 @@ def test_what_a_recording_notes_is_counted(tmp_path):
 FULL = """
 import os, resource, signal, sys, time
 from pathlib import Path
-from semmap.nodes.recorder.growth import Growth
+from semmap.nodes.recorder.file_monitor import FileMonitor
 from semmap.nodes.recorder.recording import open_recording
 
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 with open_recording(Path(sys.argv[1]), None) as recording:
-    growth = Growth(recording.path)
+    growth = FileMonitor(recording.path)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, resource.RLIM_INFINITY))
     for _ in range(60):
         recording.note(os.urandom(100_000).hex())
         time.sleep(0.75)  # longer than what is recorded takes to reach a file
-        if amiss := growth.amiss(recording.logged):
-            print(amiss, flush=True)
+        if find_problem := file_monitor.find_problem(recording.logged):
+            print(find_problem, flush=True)
             break
 """
 

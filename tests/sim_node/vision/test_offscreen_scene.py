@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from semmap.nodes.sim_node.vision.film_set import FilmSet
+from semmap.nodes.sim_node.vision.offscreen_scene import OffscreenScene
 from semmap.schemas.errors import BadRequest
 from tests.sim_node.orders import order, pose
 
@@ -15,7 +15,7 @@ KITCHEN = """<mujoco><worldbody><geom type="plane" size="9 9 1"/>
 
 @pytest.fixture
 def film():
-    return FilmSet(None, graphics=False)
+    return OffscreenScene(None, graphics=False)
 
 
 def boxes(*x, fixed=False):
@@ -48,14 +48,14 @@ def test_bodies_stand_where_they_are_put_in_the_air_and_in_one_another(film, fix
 def test_a_world_s_own_bodies_and_cameras_are_there_and_entities_of_a_json_scene_are_not(tmp_path):
     path = tmp_path / "kitchen.xml"
     path.write_text(KITCHEN)
-    film = FilmSet(path, graphics=False)
+    film = OffscreenScene(path, graphics=False)
     assert "shelf_1" in film
     assert film.view(40, 30, camera="above").map_from_camera[:3, 3] == pytest.approx((0, 0, 4))
     with pytest.raises(BadRequest):
         film.view(40, 30, camera="below")
     scene = tmp_path / "scene.json"
     scene.write_text('{"entities": [{"class": "Table"}]}')
-    assert "table1" not in FilmSet(scene, graphics=False)
+    assert "table1" not in OffscreenScene(scene, graphics=False)
 
 
 def test_a_view_may_be_of_a_box_from_above_or_of_all(film):

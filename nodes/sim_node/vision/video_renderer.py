@@ -24,7 +24,7 @@ Plane = tuple[CameraFrame, NDArray[np.generic]]
 
 
 @dataclass(frozen=True)
-class Still:
+class SceneSnapshot:
     """The world at one moment, all of it copies. `names` (ngeom,) is the body of each geom, "" for none."""
 
     model: mujoco.MjModel
@@ -33,7 +33,7 @@ class Still:
     stamp_ns: int = field(default_factory=time.time_ns)
 
 
-class Studio:
+class VideoRenderer:
     """Owns the thread, and on it the only OpenGL context."""
 
     def __init__(self, config: CameraConfig, segments_wanted: Callable[[], bool] = lambda: True) -> None:
@@ -43,32 +43,32 @@ class Studio:
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="studio")
         self._eye: Eye | None = None
         self._rng = np.random.default_rng(0)
-        self._filming: Future[None] | None = None
+        self._rendering: Future[None] | None = None
 
     def close(self) -> None:
         """Let the picture in hand be finished, and no other be begun."""
         self._thread.shutdown(wait=True, cancel_futures=True)
 
-    def paint(
-        self, still: Still, view: View, labels: Mapping[str, Floats] = MappingProxyType({})
+    def render_picture(
+        self, snapshot: SceneSnapshot, view: View, labels: Mapping[str, Floats] = MappingProxyType({})
     ) -> Future[Picture]:
         """A picture for people, with `labels` beside their points (3,) [m] of the map frame."""
         return self._thread.submit(
-            lambda: Picture(png=picture_png(self._open_eye(), still.model, still.data, view, labels))
+            lambda: Picture(png=picture_png(self._open_eye(), snapshot.model, snapshot.data, view, labels))
         )
 
-    def film(self, still: Callable[[], Still], publish: Callable[[Plane], None]) -> None:
+    def render_cameras(self, snapshot: Callable[[], SceneSnapshot], publish: Callable[[Plane], None]) -> None:
         """Publish the planes of all cameras, unless the last ones are still being made."""
-        if self._filming is not None:
-            if not self._filming.done():
+        if self._rendering is not None:
+            if not self._rendering.done():
                 return
-            self._filming.result()
-        moment = still()
-        self._filming = self._thread.submit(self._film, moment, publish)
+            self._rendering.result()
+        moment = snapshot()
+        self._rendering = self._thread.submit(self._render, moment, publish)
 
-    def _film(self, still: Still, publish: Callable[[Plane], None]) -> None:
-        for camera in camera_names(still.model):
-            for plane in self.planes(still, camera):
+    def _render(self, snapshot: SceneSnapshot, publish: Callable[[Plane], None]) -> None:
+        for camera in camera_names(snapshot.model):
+            for plane in self.planes(snapshot, camera):
                 publish(plane)
 
     def _open_eye(self) -> Eye:
@@ -76,21 +76,21 @@ class Studio:
         self._eye = self._eye or Eye(graphics=self._config.graphics)
         return self._eye
 
-    def planes(self, still: Still, camera: str) -> list[Plane]:
+    def planes(self, snapshot: SceneSnapshot, camera: str) -> list[Plane]:
         """What one camera sees: rgb, depth, and whose each pixel is if that is wanted."""
         config = self._config
         eye = self._open_eye()
-        view = camera_view(still.model, still.data, camera, config.width, config.height)
-        rgb, depth = eye.see(still.model, still.data, view)
+        view = camera_view(snapshot.model, snapshot.data, camera, config.width, config.height)
+        rgb, depth = eye.render(snapshot.model, snapshot.data, view)
         if config.noise:
             depth = kinect_noise(depth, self._rng)
         planes: list[Plane] = [
-            (_frame(still, camera, view, "rgb8"), rgb),
-            (_frame(still, camera, view, "depth32f"), depth),
+            (_frame(snapshot, camera, view, "rgb8"), rgb),
+            (_frame(snapshot, camera, view, "depth32f"), depth),
         ]
         if config.segments and self._segments_wanted():
-            names, segments = segment_bodies(eye.segment(still.model, still.data, view), still.names)
-            planes.append((_frame(still, camera, view, "segments16", names), segments))
+            names, segments = segment_bodies(eye.segment(snapshot.model, snapshot.data, view), snapshot.names)
+            planes.append((_frame(snapshot, camera, view, "segments16", names), segments))
         return planes
 
 
@@ -103,7 +103,7 @@ def segment_bodies(geoms: NDArray[np.int32], owners: list[str]) -> tuple[tuple[s
 
 
 def _frame(
-    still: Still,
+    snapshot: SceneSnapshot,
     camera: str,
     view: View,
     encoding: Literal["rgb8", "depth32f", "segments16"],
@@ -114,8 +114,8 @@ def _frame(
         encoding=encoding,
         width=view.width,
         height=view.height,
-        stamp_ns=still.stamp_ns,
-        sim_time_s=float(still.data.time),
+        stamp_ns=snapshot.stamp_ns,
+        sim_time_s=float(snapshot.data.time),
         intrinsics=tuple(view.intrinsics.ravel().tolist()),
         map_from_camera=tuple(view.map_from_camera.ravel().tolist()),
         names=names,

@@ -3,14 +3,14 @@ import math
 import pytest
 from msgspec import structs
 
-from semmap.nodes.navigation.ways import find_way, position
+from semmap.nodes.navigation.path_planning import find_path, parse_position
 from semmap.schemas.errors import Refused
 from semmap.schemas.plans import HEIGHTS_M
 from tests.navigation.made import DOOR, PLACES, box, door, place, plan, thing
 
 
 def way(made, start, end, radius=0.25, heights=HEIGHTS_M):
-    return find_way(made, start, end, radius, heights)
+    return find_path(made, start, end, radius, heights)
 
 
 def test_a_way_leads_through_the_door_and_is_as_long_as_a_taut_string():
@@ -126,4 +126,4 @@ def test_a_map_that_is_too_large_is_refused():
     ],
 )
 def test_positions_as_words(word, found):
-    assert position(word) == found
+    assert parse_position(word) == found

@@ -12,20 +12,20 @@ from numpy.typing import NDArray
 from semmap.schemas.joints import Joint
 from semmap.schemas.scenes import Surface
 
-Bends = tuple[tuple[str, float], ...]
+JointPositions = tuple[tuple[str, float], ...]
 """Joints that are not where a model is drawn with them, at 0: names and positions [rad, m]."""
 
 _STEP: Final = {"hinge": 0.05, "slide": 0.01}
 """What moves by less looks the same [rad, m]; so a door that opens is drawn some thirty times."""
 
 
-def bends_of(joints: Iterable[Joint]) -> Bends:
+def joint_positions_of(joints: Iterable[Joint]) -> JointPositions:
     """How joints stand, in steps that can be seen; empty where all are as the model is drawn."""
     found = ((joint.name, _stepped(joint)) for joint in joints if joint.kind in _STEP)
     return tuple((name, position) for name, position in found if position)
 
 
-def bent(surface: Surface, bends: Bends) -> Surface:
+def articulated(surface: Surface, bends: JointPositions) -> Surface:
     """A surface with these joints moved; names that it does not have are passed over."""
     positions = dict(bends)
     leaves = [leaf for leaf in surface.leaves if positions.get(leaf.joint)]

@@ -11,7 +11,7 @@ from semmap.nodes.sim_node.bodies import BodyRecord
 from semmap.nodes.sim_node.models.library import Model, ModelError
 from semmap.nodes.sim_node.models.parts import Vec3
 from semmap.nodes.sim_node.physics import build
-from semmap.nodes.sim_node.physics.grips import chain
+from semmap.nodes.sim_node.physics.attachments import holders_of
 from semmap.schemas.entities import Pose
 from semmap.schemas.joints import Joint, stated
 from semmap.schemas.scenes import BodyOrder, GripOrder, JointOrder, Placement
@@ -25,7 +25,7 @@ ModelSource = Callable[[str, Vec3 | None], Model]
 Newcomer = tuple[BodyRecord, Model]
 
 
-def newcomers(
+def validate_spawn(
     orders: Iterable[BodyOrder], models: ModelSource, taken: Callable[[str], bool]
 ) -> tuple[dict[str, Newcomer], dict[str, str]]:
     """What is to be made, by name, and why the rest cannot be; models read from files may take their time."""
@@ -128,7 +128,7 @@ def _targets(order: JointOrder, joints: Sequence[Joint]) -> dict[str, float]:
     return {joint.name: joint.position_at(share) for joint in opening}
 
 
-def moves(
+def validate_moves(
     placements: Iterable[Placement], there: Mapping[str, BodyRecord]
 ) -> tuple[list[Placement], dict[str, str]]:
     """What is to be moved, and why the rest, by name, cannot be."""
@@ -153,7 +153,7 @@ def moves(
     return accepted, failed
 
 
-def grips(
+def validate_grips(
     orders: Iterable[GripOrder], there: Mapping[str, BodyRecord]
 ) -> tuple[list[GripOrder], dict[str, str]]:
     """Which bodies are to be held or let go, and why the rest, by name, cannot be."""
@@ -176,7 +176,7 @@ def _check_grip(order: GripOrder, there: Mapping[str, BodyRecord]) -> None:
     record = there[order.name]
     if order.name == order.holder:
         raise ModelError(f"{order.name} cannot hold itself")
-    if order.name in chain(order.holder, there):
+    if order.name in holders_of(order.holder, there):
         raise ModelError(
             f"{order.holder} is held by {order.name} or part of it, so it cannot hold {order.name}"
         )

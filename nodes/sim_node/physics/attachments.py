@@ -18,9 +18,9 @@ _HARD = (0.99, 0.999, 0.001, 0.5, 2.0)
 """How near it comes to being rigid (`solimp`)."""
 
 
-def add_grips(spec: mujoco.MjSpec, records: Mapping[str, BodyRecord]) -> None:
+def add_welds(spec: mujoco.MjSpec, records: Mapping[str, BodyRecord]) -> None:
     """Weld what is held to its holder; the two do not collide, nor does it with the holder's other parts."""
-    for record in held(records):
+    for record in attached_records(records):
         holder = records[record.held_by]
         body = spec.body(holder.name)
         spec.body(
@@ -39,16 +39,16 @@ def add_grips(spec: mujoco.MjSpec, records: Mapping[str, BodyRecord]) -> None:
             spec.add_exclude(bodyname1=name, bodyname2=record.name)
 
 
-def held(records: Mapping[str, BodyRecord]) -> list[BodyRecord]:
+def attached_records(records: Mapping[str, BodyRecord]) -> list[BodyRecord]:
     """Those that are held, who holds before who is held."""
     found: dict[str, BodyRecord] = {}
     waiting = [record for record in records.values() if record.held_by in records]
-    for record in sorted(waiting, key=lambda record: len(chain(record.name, records))):
+    for record in sorted(waiting, key=lambda record: len(holders_of(record.name, records))):
         found[record.name] = record
     return list(found.values())
 
 
-def chain(name: str, records: Mapping[str, BodyRecord]) -> list[str]:
+def holders_of(name: str, records: Mapping[str, BodyRecord]) -> list[str]:
     """What a body is held by or part of, and what that is, and so on; never twice."""
     found: list[str] = []
     waiting = [name]
@@ -61,7 +61,7 @@ def chain(name: str, records: Mapping[str, BodyRecord]) -> list[str]:
     return found
 
 
-def concerned(names: Iterable[str], records: Mapping[str, BodyRecord]) -> bool:
+def involves_attachment(names: Iterable[str], records: Mapping[str, BodyRecord]) -> bool:
     """Is one of these held, or does it hold something?"""
     names = set(names)
     return any(r.held_by and not names.isdisjoint((r.name, r.held_by)) for r in records.values())
