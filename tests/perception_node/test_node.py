@@ -11,7 +11,7 @@ from semmap.nodes import bus
 from semmap.nodes.perception_node.config import PerceptionConfig
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.node import Perception, summary
-from semmap.nodes.perception_node.pipeline import Look
+from semmap.nodes.perception_node.pipeline import FrameResult
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import codec, errors, keys
 from semmap.schemas.bridge import SnapshotQuery
@@ -49,7 +49,7 @@ def everything_is_a_cup(clouds, masks):
     shape = clouds[0].points_camera.shape[:2]
     observations = Observations(stamp_ns=clouds[0].stamp_ns, views=(), observations=(CUP,))
     said = {one.label for found in masks if found is not None for one in found.said if one}
-    return Look(observations, tuple(np.ones(shape, np.int32) for _ in clouds), tuple(sorted(said)))
+    return FrameResult(observations, tuple(np.ones(shape, np.int32) for _ in clouds), tuple(sorted(said)))
 
 
 class World:
@@ -242,7 +242,7 @@ def test_what_is_no_frame_is_told(world):
 @pytest.mark.parametrize(
     ("depth_m", "said"),
     [
-        (1.5, "1 camera, 2 things seen, 80 ms a look"),
+        (1.5, "1 camera, 2 things seen, 80 ms per frame"),
         (8.0, "; the nearest surface is 8.0 m away, use at most 2 m"),
     ],
 )

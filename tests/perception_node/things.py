@@ -18,7 +18,7 @@ from semmap.schemas.entities import Entity, Pose, Provenance, Size, Source, orie
 from semmap.schemas.perception import Observation
 
 CONFIG = TrackingConfig(
-    confirm_looks=3, clear_looks=3, rest_looks=2, nudge_looks=5, gone_looks=4, odd_looks=6
+    confirm_frames=3, clear_frames=3, rest_frames=2, nudge_frames=5, gone_frames=4, odd_frames=6
 )
 SIZES: dict[str, Size] = {
     "Cup": (0.08, 0.08, 0.1),
@@ -100,7 +100,7 @@ class Table:
             self._obey(command)
         return result.commands
 
-    def looks(self, count: int) -> list[Command]:
+    def observe(self, count: int) -> list[Command]:
         return [command for _ in range(count) for command in self.look()]
 
     def told(self, entities: Iterable[Entity]) -> Table:

@@ -19,7 +19,7 @@ _BLOCK_PX = 6.0
 _NEAREST_M = 0.05
 
 
-def borne_out(points: Numbers, model: ModelSurface, pose: Numbers, within_m: float) -> float:
+def verified_share(points: Numbers, model: ModelSurface, pose: Numbers, within_m: float) -> float:
     """The share of what was seen, (N, 3) map frame, that is on the model's surface; soft at the edge."""
     own = (points - pose[:3, 3]) @ pose[:3, :3]
     away, near = cKDTree(model.points).query(own)
@@ -35,7 +35,7 @@ def spacing_m(model: ModelSurface) -> float:
     return float(np.sqrt(2.0 * (a * b + b * c + c * a) / len(model.points)))
 
 
-def not_seen_through(
+def visible_share(
     model: ModelSurface, pose: Numbers, clouds: Sequence[Cloud], within_m: float
 ) -> float | None:
     """The share of the model's surface before the cameras at which something is; None where none can tell.

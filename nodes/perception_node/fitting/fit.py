@@ -9,10 +9,15 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from semmap.nodes.perception_node.fitting.evidence import borne_out, not_seen_through
+from semmap.nodes.perception_node.fitting.evidence import verified_share, visible_share
+from semmap.nodes.perception_node.fitting.initial_poses import (
+    InitialPose,
+    choice_distance,
+    initial_poses,
+    stretch,
+)
 from semmap.nodes.perception_node.fitting.model_surfaces import ModelSurface
 from semmap.nodes.perception_node.fitting.registration import registered
-from semmap.nodes.perception_node.fitting.starts import Start, off_by, starts, stretch
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.views.boxes import Numbers
 from semmap.schemas.entities import Pose, Quaternion, Size
@@ -54,14 +59,14 @@ class Fit:
     fold: int
 
     @property
-    def bears_out(self) -> bool:
+    def is_verified(self) -> bool:
         """Whether it may be of the class at all: others of a class may look quite unlike our model."""
         return self.score >= _UNFIT
 
     @property
-    def turned(self) -> bool:
+    def has_orientation(self) -> bool:
         """Whether its orientation says something: it is known, and not the same from all sides."""
-        return self.clear and self.bears_out and (self.fold != 0 or self.lying)
+        return self.clear and self.is_verified and (self.fold != 0 or self.lying)
 
     @property
     def lying(self) -> bool:
@@ -75,7 +80,7 @@ def available() -> bool:
     return find_spec("open3d") is not None
 
 
-def fitted(
+def fit_models(
     class_: str,
     models: Sequence[ModelSurface],
     points: Numbers,
@@ -94,13 +99,16 @@ def fitted(
     if len(points) < FEWEST_POINTS:
         return None
     rough = [
-        _tried(start, start.pose, model.fold, points, clouds, fine=False)
-        for model in sorted(models, key=lambda model: off_by(model.size_m, np.array(size_m)))[:_FORMS]
-        for start in starts(model, pose, size_m)
+        _run_trial(start, start.pose, model.fold, points, clouds, fine=False)
+        for model in sorted(models, key=lambda model: choice_distance(model.size_m, np.array(size_m)))[
+            :_FORMS
+        ]
+        for start in initial_poses(model, pose, size_m)
     ]
     rough.sort(key=lambda trial: -trial.score)
     found = [
-        _tried(trial.start, trial.pose, trial.fold, points, clouds, fine=True) for trial in _apart(rough)
+        _run_trial(trial.start, trial.pose, trial.fold, points, clouds, fine=True)
+        for trial in _select_trials(rough)
     ]
     best = max(found, key=lambda trial: trial.score)
     others = (trial.score for trial in found if best.turned_from(trial) > _OTHER_RAD)
@@ -108,7 +116,7 @@ def fitted(
         class_=class_,
         pose=_pose(best),
         size_m=_size(best.start),
-        score=best.borne_out,
+        score=best.verified_share,
         clear=best.score - max(others, default=0.0) > _CLEAR,
         fold=best.fold,
     )
@@ -123,10 +131,10 @@ def thinned(points: Numbers) -> Numbers:
 class _Trial:
     """A start, where registration has taken it, and how well that fits."""
 
-    start: Start
+    start: InitialPose
     pose: Numbers
     fold: int
-    borne_out: float
+    verified_share: float
     score: float
 
     @property
@@ -141,17 +149,17 @@ class _Trial:
         return angle_between(self.rotation, other.rotation, self.fold)
 
 
-def _tried(
-    start: Start, pose: Numbers, fold: int, points: Numbers, clouds: Sequence[Cloud], *, fine: bool
+def _run_trial(
+    start: InitialPose, pose: Numbers, fold: int, points: Numbers, clouds: Sequence[Cloud], *, fine: bool
 ) -> _Trial:
     pose = registered(points, start, pose, _WITHIN_M, fine=fine)
-    seen = borne_out(points, start.model, pose, _WITHIN_M)
-    there = not_seen_through(start.model, pose, clouds, _THROUGH_M)
+    seen = verified_share(points, start.model, pose, _WITHIN_M)
+    there = visible_share(start.model, pose, clouds, _THROUGH_M)
     both = seen * (1.0 if there is None else there)
     return _Trial(start, pose, fold, both, both * math.exp(-_STRETCHED * stretch(start) ** 2))
 
 
-def _apart(trials: Sequence[_Trial]) -> list[_Trial]:
+def _select_trials(trials: Sequence[_Trial]) -> list[_Trial]:
     """The best few, and the best of those that are the other way round."""
     kept = list(trials[:_REFINED])
     other = next((t for t in trials[_REFINED:] if kept[0].turned_from(t) > _OTHER_RAD), None)
@@ -174,7 +182,7 @@ def _about_z(angle_rad: float) -> Numbers:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def _size(start: Start) -> Size:
+def _size(start: InitialPose) -> Size:
     """What a model measures along its own axes at the size of a start [m]."""
     x, y, z = np.abs(start.turn.T @ start.model.size_m).tolist()
     return (x, y, z)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from semmap.nodes.perception_node.fitting.starts import Start
+from semmap.nodes.perception_node.fitting.initial_poses import InitialPose
 from semmap.nodes.perception_node.views.boxes import Numbers
 
 _RINGS = (0.9, 1.4)
@@ -16,7 +16,7 @@ _REACH_M = (0.02, 0.08)
 _FINE = 0.4
 
 
-def registered(points: Numbers, start: Start, pose: Numbers, within_m: float, *, fine: bool) -> Numbers:
+def registered(points: Numbers, start: InitialPose, pose: Numbers, within_m: float, *, fine: bool) -> Numbers:
     """(4, 4) where the model's frame is in the map, nearer to the points (N, 3) than at `pose`.
 
     From points to planes, and from the view to the model: the model is whole, the view is not. Points

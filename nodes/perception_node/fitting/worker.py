@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from semmap.nodes.perception_node.fitting.fit import Fit
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.pipeline import Look
+from semmap.nodes.perception_node.pipeline import FrameResult
 from semmap.schemas import errors
 from semmap.schemas.entities import Pose
 from semmap.schemas.perception import Observation
@@ -29,7 +29,7 @@ class Request:
     seen: Observation
     number: int
     clouds: Sequence[Cloud]
-    found: Look
+    found: FrameResult
 
 
 FitTo = Callable[[Request], Fit | None]

@@ -11,7 +11,7 @@ from semmap.nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, 
 from semmap.nodes.perception_node.input.frames import Frames, Pair, read_cloud, read_masks
 from semmap.nodes.perception_node.input.masks import Masks
 from semmap.nodes.perception_node.input.projection import thinning
-from semmap.nodes.perception_node.pipeline import Look
+from semmap.nodes.perception_node.pipeline import FrameResult
 from semmap.schemas.errors import BadRequest
 from semmap.schemas.perception import DetectedMasks
 from semmap.schemas.scenes import CameraFrame
@@ -20,7 +20,7 @@ log = logging.getLogger(__name__)
 
 _TAKE_S = 0.5
 
-Seen = Callable[[Sequence[Cloud], Look, float], None]
+Seen = Callable[[Sequence[Cloud], FrameResult, float], None]
 """Told of clouds of one moment, what they show, and how long the look took [s]."""
 
 
@@ -29,7 +29,7 @@ class FrameWorker:
 
     def __init__(
         self,
-        look: Callable[[Sequence[Cloud], Sequence[Masks | None]], Look],
+        look: Callable[[Sequence[Cloud], Sequence[Masks | None]], FrameResult],
         on_look: Seen,
         complain: Callable[[str], None],
     ) -> None:

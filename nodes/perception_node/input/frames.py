@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Cloud, Transform
-from semmap.nodes.perception_node.input.masks import Masks, of_image, of_runs
+from semmap.nodes.perception_node.input.masks import Masks, masks_from_image, masks_from_runs
 from semmap.nodes.perception_node.input.projection import cloud_of, fits, is_pose, thinned, thinning
 from semmap.schemas.errors import BadRequest
 from semmap.schemas.perception import DetectedMasks
@@ -221,9 +221,9 @@ def read_masks(pair: Pair) -> Masks | None:
                 f" the picture of {frame.width} x {frame.height}"
             )
         if found.image is not None:
-            masks = of_image(found.image, frame.height, frame.width)
+            masks = masks_from_image(found.image, frame.height, frame.width)
         else:
-            masks = of_runs(found.masks, frame.height, frame.width)
+            masks = masks_from_runs(found.masks, frame.height, frame.width)
     except ValueError as error:
         raise BadRequest(f"camera {frame.camera}: masks ignored: {error}") from None
     return replace(masks.thinned(thinning(frame.width, frame.height)), alone=found.alone)

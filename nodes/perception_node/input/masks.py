@@ -15,7 +15,7 @@ _MOST = 65_535
 
 
 @dataclass(frozen=True)
-class Said:
+class DetectorLabel:
     """What a detector takes a thing for, in its own words, and how sure it is, 0 to 1."""
 
     label: str
@@ -30,7 +30,7 @@ class Masks:
     """
 
     labels: NDArray[np.int32]
-    said: tuple[Said | None, ...]
+    said: tuple[DetectorLabel | None, ...]
     alone: bool = False
 
     def thinned(self, step: int) -> Masks:
@@ -38,7 +38,7 @@ class Masks:
         return replace(self, labels=np.ascontiguousarray(self.labels[::step, ::step]))
 
 
-def of_runs(masks: Sequence[MaskRun], height: int, width: int) -> Masks:
+def masks_from_runs(masks: Sequence[MaskRun], height: int, width: int) -> Masks:
     """Masks as COCO writes them; where several overlap, the surer one is before the others.
 
     Raises ValueError where one is of another size or is damaged.
@@ -46,10 +46,12 @@ def of_runs(masks: Sequence[MaskRun], height: int, width: int) -> Masks:
     labels = np.zeros((height, width), np.int32)
     for n in sorted(range(len(masks)), key=lambda n: masks[n].score):
         labels[_decoded(masks[n], height, width)] = n + 1
-    return Masks(labels, tuple(Said(mask.label, mask.score) if mask.label else None for mask in masks))
+    return Masks(
+        labels, tuple(DetectorLabel(mask.label, mask.score) if mask.label else None for mask in masks)
+    )
 
 
-def of_image(image: MaskImage, height: int, width: int) -> Masks:
+def masks_from_image(image: MaskImage, height: int, width: int) -> Masks:
     """Masks as one image of 16-bit numbers. Raises ValueError where it does not fit the picture."""
     if len(image.labels) != 2 * height * width:
         raise ValueError(
@@ -57,10 +59,10 @@ def of_image(image: MaskImage, height: int, width: int) -> Masks:
             f" {2 * height * width}"
         )
     numbers = np.frombuffer(image.labels, "<u2").reshape(height, width)
-    return of_numbers(numbers, image.names, image.scores)
+    return masks_from_numbers(numbers, image.names, image.scores)
 
 
-def of_numbers(
+def masks_from_numbers(
     numbers: NDArray[np.integer], names: Sequence[str] = (), scores: Sequence[float] = ()
 ) -> Masks:
     """Masks from a label image (H, W): 0 for none, n for the thing that is called `names[n - 1]`.
@@ -77,7 +79,7 @@ def of_numbers(
     if scores and len(scores) != len(names):
         raise ValueError(f"there are {len(names)} names and {len(scores)} scores; each name needs one")
     sure = scores or [1.0] * len(names)
-    said = [Said(name, score) if name else None for name, score in zip(names, sure, strict=True)]
+    said = [DetectorLabel(name, score) if name else None for name, score in zip(names, sure, strict=True)]
     return Masks(numbers.astype(np.int32), (*said, *[None] * (count - len(said))))
 
 

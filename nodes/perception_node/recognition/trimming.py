@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from semmap.nodes.perception_node.recognition.features import features_of
-from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
-from semmap.nodes.perception_node.recognition.vote import leaves
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, RecognitionModel
+from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
 from semmap.nodes.perception_node.views.boxes import Numbers, best_yaw, box_around, in_frame
 from semmap.nodes.perception_node.views.merged_thing import Thing
 
@@ -22,7 +22,7 @@ _LEFT = 0.6
 _FEWEST = 60
 
 
-def looked_at_again(things: Sequence[Thing], chances: Numbers, learnt: Learnt) -> Numbers:
+def reclassify_trimmed(things: Sequence[Thing], chances: Numbers, learnt: RecognitionModel) -> Numbers:
     """(N, K) probabilities of the leaves, those of a trimmed thing where that is recognised far better.
 
     What is new to us is not to become something known by being cut to size, so the gain has to be large.
@@ -37,7 +37,7 @@ def looked_at_again(things: Sequence[Thing], chances: Numbers, learnt: Learnt) -
     rows = [n for n, part in trimmed.items() if part.box.size_m.prod() < _LEFT * things[n].box.size_m.prod()]
     if not rows:
         return chances
-    again = leaves(learnt, features_of([trimmed[n] for n in rows]))
+    again = leaf_probabilities(learnt, features_of([trimmed[n] for n in rows]))
     better = again[:, nameable].max(axis=1) > known[rows] + _GAIN
     chances = chances.copy()
     chances[np.array(rows)[better]] = again[better]

@@ -8,7 +8,12 @@ import numpy as np
 
 from semmap.nodes.perception_node.recognition.features import SORTS
 from semmap.nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
-from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS, Learnt
+from semmap.nodes.perception_node.recognition.recognition_model import (
+    CLUTTER,
+    UNKNOWN,
+    VOTERS,
+    RecognitionModel,
+)
 from semmap.nodes.perception_node.views.boxes import Numbers
 
 _CLEAR = 0.85
@@ -22,10 +27,10 @@ def vote(voters: Sequence[Perceptron], weights: Numbers, features: Sequence[Numb
     The votes are evidence, so their logarithms add up, each with the weight that calibration on scenes apart
     gave it.
     """
-    return np.exp(pool(ballots(voters, features), weights))
+    return np.exp(pool_votes(log_votes(voters, features), weights))
 
 
-def shown_to_voters(features: Sequence[Numbers]) -> list[Numbers]:
+def voter_inputs(features: Sequence[Numbers]) -> list[Numbers]:
     """What each of `VOTERS` looks at, of `features`: of each sort (N, its own number)."""
     of_sort = dict(zip(SORTS, features, strict=True))
     shown = {
@@ -34,25 +39,25 @@ def shown_to_voters(features: Sequence[Numbers]) -> list[Numbers]:
     return [shown[sorts] for sorts in VOTERS.values()]
 
 
-def ballots(voters: Sequence[Perceptron], features: Sequence[Numbers]) -> Numbers:
+def log_votes(voters: Sequence[Perceptron], features: Sequence[Numbers]) -> Numbers:
     """(voters, N, K) logarithms of the probabilities that each voter gives."""
-    shown = shown_to_voters(features)
+    shown = voter_inputs(features)
     return np.array([log_softmax(voter(seen)) for voter, seen in zip(voters, shown, strict=True)])
 
 
-def pool(votes: Numbers, weights: Numbers) -> Numbers:
+def pool_votes(votes: Numbers, weights: Numbers) -> Numbers:
     """(N, K) logarithms of the probabilities that the votes (voters, N, K) together give."""
     return log_softmax(np.tensordot(weights, votes, axes=1))
 
 
-def leaves(learnt: Learnt, features: Sequence[Numbers]) -> Numbers:
+def leaf_probabilities(learnt: RecognitionModel, features: Sequence[Numbers]) -> Numbers:
     """(N, K) probabilities of the leaves, in which what is like nothing known counts as `UNKNOWN`.
 
     What has the very form of one of our models is known by that, and the votes name the rest. What people
     have shown is a leaf each, and is told apart from both.
     """
-    votes = ballots(learnt.voters, features)
-    pooled = pool(votes, learnt.weights)
+    votes = log_votes(learnt.voters, features)
+    pooled = pool_votes(votes, learnt.weights)
     new = learnt.novelty(features, votes, pooled)
     probabilities = np.exp(pooled)
     nameable = np.array([name not in (UNKNOWN, CLUTTER) for name in learnt.classes[: pooled.shape[1]]])
@@ -63,7 +68,11 @@ def leaves(learnt: Learnt, features: Sequence[Numbers]) -> Numbers:
     scores[:, :-1] += _SAY * pooled
     familiar = np.exp(log_softmax(scores))
     probabilities = familiar[:, :-1] + familiar[:, -1:] * probabilities
-    return probabilities if learnt.shown is None else learnt.shown.mixed(features, probabilities)
+    return (
+        probabilities
+        if learnt.exemplars is None
+        else learnt.exemplars.add_probabilities(features, probabilities)
+    )
 
 
 def expected_sizes(probabilities: Numbers, sizes_m: Numbers) -> Numbers:
@@ -71,7 +80,7 @@ def expected_sizes(probabilities: Numbers, sizes_m: Numbers) -> Numbers:
     return np.asarray(np.exp(probabilities @ np.log(sizes_m)))
 
 
-def answer(
+def choose_class(
     probabilities: Mapping[str, float],
     ancestors: Mapping[str, Sequence[str]],
     sure: float,

@@ -6,7 +6,7 @@ import numpy as np
 
 from semmap.nodes.perception_node.input.cloud import Transform
 from semmap.nodes.perception_node.segmentation.planes import Plane, find_planes
-from semmap.nodes.perception_node.segmentation.working_picture import Floats
+from semmap.nodes.perception_node.segmentation.working_image import Floats
 
 _UP = 0.2
 _DOWN = 0.9

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from semmap.nodes.perception_node.segmentation.working_picture import Floats, Mask
+from semmap.nodes.perception_node.segmentation.working_image import Floats, Mask
 
 RADIUS = 2
 """Cells to each side of the middle: a window of 5 x 5."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import ndimage
 
-from semmap.nodes.perception_node.segmentation.working_picture import Floats, Labels, Mask, shifted
+from semmap.nodes.perception_node.segmentation.working_image import Floats, Labels, Mask, shifted
 
 _CONCAVE = np.sin(np.radians(15))
 _CONVEX = np.sin(np.radians(30))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import ndimage
 
-from semmap.nodes.perception_node.segmentation.working_picture import Floats, Mask
+from semmap.nodes.perception_node.segmentation.working_image import Floats, Mask
 
 _AROUND = np.ones((3, 3))
 _STEEP = 0.5

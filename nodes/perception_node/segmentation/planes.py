@@ -17,7 +17,7 @@ from scipy import ndimage
 
 from semmap.nodes.perception_node.input.cloud import Transform
 from semmap.nodes.perception_node.segmentation.plane_pieces import pieces_of
-from semmap.nodes.perception_node.segmentation.working_picture import Floats, Labels, Mask
+from semmap.nodes.perception_node.segmentation.working_image import Floats, Labels, Mask
 
 Kind = Literal["floor", "wall", "support", "plane"]
 

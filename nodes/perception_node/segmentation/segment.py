@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.segmentation.merge_model import shipped
 from semmap.nodes.perception_node.segmentation.merging import Judge, merge
 from semmap.nodes.perception_node.segmentation.normals import normals
 from semmap.nodes.perception_node.segmentation.patches import patches
-from semmap.nodes.perception_node.segmentation.picture import as_picture
 from semmap.nodes.perception_node.segmentation.planes import Plane, find_planes
-from semmap.nodes.perception_node.segmentation.shipped_trees import shipped
 from semmap.nodes.perception_node.segmentation.statistics import Statistics, Upright, statistics
 from semmap.nodes.perception_node.segmentation.thin_things import thin_things
-from semmap.nodes.perception_node.segmentation.working_picture import (
+from semmap.nodes.perception_node.segmentation.unorganised_cloud import as_image
+from semmap.nodes.perception_node.segmentation.working_image import (
     Floats,
     Grid,
     Labels,
@@ -64,20 +64,20 @@ def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
         nothing = np.zeros(cloud.points_camera.shape[:2], np.int32)
         return Segmentation(nothing, (), nothing, np.zeros((0, 0), np.float32))
     if not cloud.organised:
-        picture, pixel = as_picture(cloud)
+        picture, pixel = as_image(cloud)
         seen = segment(picture, learnt)
         labels, plane_labels = (
             np.append(of.ravel(), np.int32(0))[pixel][None, :] for of in (seen.labels, seen.plane_labels)
         )
         return Segmentation(labels, seen.planes, plane_labels, seen.same)
-    parts = taken_apart(cloud)
+    parts = split_into_patches(cloud)
     merged = merge(parts.statistics, learnt or shipped())
     objects = np.append(np.int32(0), merged.number)[parts.of_patch]
     both = spread(parts.grid, np.where(objects > 0, objects, -parts.of_plane))
     return Segmentation(np.maximum(both, 0), parts.planes, np.maximum(-both, 0), merged.same)
 
 
-def taken_apart(cloud: Cloud) -> Parts:
+def split_into_patches(cloud: Cloud) -> Parts:
     """The planes of an organised cloud, and small patches of the rest."""
     grid = grid_of(cloud)
     rng = np.random.default_rng(0)  # the same cloud, the same answer

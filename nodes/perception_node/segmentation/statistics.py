@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.perception_node.segmentation.working_picture import Floats, Labels
+from semmap.nodes.perception_node.segmentation.working_image import Floats, Labels
 
 Sums = NDArray[np.float64]
 Indices = NDArray[np.int64]

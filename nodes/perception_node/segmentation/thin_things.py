@@ -13,7 +13,7 @@ import numpy as np
 from scipy import ndimage
 
 from semmap.nodes.perception_node.segmentation.planes import Plane, thickness_m
-from semmap.nodes.perception_node.segmentation.working_picture import Floats, Labels, Mask
+from semmap.nodes.perception_node.segmentation.working_image import Floats, Labels, Mask
 
 _SMOOTHED = 3  # cells across that a mean is taken of
 _BLOCK = 10  # cells across of a block; the plane around is the mean of three by three of them

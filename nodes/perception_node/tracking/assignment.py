@@ -19,7 +19,7 @@ from semmap.nodes.perception_node.tracking.costs import (
     size_difference,
 )
 from semmap.nodes.perception_node.tracking.occupancy import Occupancy, OccupancyOf
-from semmap.nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, share
+from semmap.nodes.perception_node.tracking.overlap import OrientedBox, may_be_same_thing, share
 from semmap.nodes.perception_node.tracking.tracks import Track
 from semmap.schemas.entities import distance_m
 from semmap.schemas.perception import Observation
@@ -78,7 +78,7 @@ def match(
     def in_place(of: Mapping[K, Candidate]) -> Callable[[K, int], float]:
         return lambda key, j: cost_in_place(of[key].target, observations[j], classes)
 
-    there = {name: c for name, c in known.items() if c.track.unseen < config.vanished_looks}
+    there = {name: c for name, c in known.items() if c.track.unseen < config.vanished_frames}
     single = {j for j, o in enumerate(observations) if not _is_of_several(o, there.values())}
     seen = pairs(there, single, in_place(there))
     rest = single.difference(seen.values())
@@ -110,10 +110,10 @@ def match(
     vanished = {
         name: known[name]
         for name, seen_there in occupancy.items()
-        if name in gone or known[name].track.unseen + (seen_there == "free") >= config.vanished_looks
+        if name in gone or known[name].track.unseen + (seen_there == "free") >= config.vanished_frames
     }
     others = dict(enumerate(tentative))
-    looks = {j: others[i].track.looks for i, j in pairs(others, rest, in_place(others)).items()}
+    looks = {j: others[i].track.frames for i, j in pairs(others, rest, in_place(others)).items()}
 
     def elsewhere(name: str, j: int) -> float:
         was_there_before = looks.get(j, 0) > known[name].track.absent
@@ -181,4 +181,4 @@ def _shows_a_part(target: Target, seen: Observation, classes: ClassHierarchy) ->
 
 
 def _may_be_of(target: Target, seen: Observation) -> bool:
-    return target.box is not None and are_of_one(target.box, OrientedBox(seen.pose, seen.size_m))
+    return target.box is not None and may_be_same_thing(target.box, OrientedBox(seen.pose, seen.size_m))

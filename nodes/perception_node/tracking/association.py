@@ -31,7 +31,12 @@ from semmap.nodes.perception_node.tracking.map_updates import (
     with_load,
 )
 from semmap.nodes.perception_node.tracking.occupancy import OccupancyOf
-from semmap.nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, left_behind, share
+from semmap.nodes.perception_node.tracking.overlap import (
+    OrientedBox,
+    may_be_same_thing,
+    share,
+    uncovered_slabs,
+)
 from semmap.nodes.perception_node.tracking.tracks import Track, Tracks, slack_m
 from semmap.nodes.perception_node.tracking.votes import Votes
 from semmap.schemas import errors
@@ -69,7 +74,7 @@ def associate(
     others = [Candidate(track, _target(track, classes)) for track in tracks.tentative]
     matching = match(candidates, others, observations, occupancy_of, classes, config)
     known = {
-        name: _watched(
+        name: _check_old_place(
             _after(entities[name], candidate, matching, observations, classes, config),
             entities[name],
             occupancy_of,
@@ -104,7 +109,7 @@ def associate(
         for track in tentative
         if is_sure(track, classes, config) and _leg_of(OrientedBox(track.pose, track.size_m), boxes) is None
     )
-    proposed = _apart_from_one_another(sure)
+    proposed = _without_overlaps(sure)
     added = additions(proposed, {*tracks.names, *entities}, classes)
     names = {j: name for name, j in matching.known.items()}
     new = (replace(track, part=not track.whole) for track in proposed)
@@ -119,7 +124,7 @@ def associate(
     )
 
 
-def renamed(tracks: Tracks, add: Add, entities: Iterable[str]) -> tuple[Tracks, Add]:
+def rename_new_entity(tracks: Tracks, add: Add, entities: Iterable[str]) -> tuple[Tracks, Add]:
     """Another name for a new thing, whose name turns out to have been given before this memory began."""
     if add.name is None:
         raise errors.InternalError("a new thing has no name")
@@ -143,13 +148,13 @@ def _candidate(
     if track is None:
         sureness = entity.shape_provenance.confidence if own else None
         votes = Votes() if sureness is None else Votes.remembered(entity.class_, sureness)
-        track = Track(entity.pose, entity.size_m or usual_m or _ANY_SIZE_M, votes, told=entity.pose)
+        track = Track(entity.pose, entity.size_m or usual_m or _ANY_SIZE_M, votes, map_pose=entity.pose)
     elsewhere = distance_m(track.pose, entity.pose) > slack_m(track.size_m, config.still_m)
-    if track.told != entity.pose and elsewhere:
-        track = replace(track, pose=entity.pose, looks=0, unseen=0, odd=0, fit=None)
-    if track.told != entity.pose:  # the map has been told
+    if track.map_pose != entity.pose and elsewhere:
+        track = replace(track, pose=entity.pose, frames=0, unseen=0, odd=0, fit=None)
+    if track.map_pose != entity.pose:  # the map has been told
         track = replace(track, part=track.part and not track.whole, outsized=False)
-    track = replace(track, told=entity.pose, left=track.left and track.told == entity.pose)
+    track = replace(track, map_pose=entity.pose, left=track.left and track.map_pose == entity.pose)
     target = _target(track, classes)
     return Candidate(
         track,
@@ -187,14 +192,16 @@ def _after(
     return track.see(seen, config)
 
 
-def _watched(track: Track, entity: Entity, occupancy_of: OccupancyOf, config: TrackingConfig) -> Track:
+def _check_old_place(
+    track: Track, entity: Entity, occupancy_of: OccupancyOf, config: TrackingConfig
+) -> Track:
     """With a look at the place that the map has of it: is that left, or does it only seem so?"""
     if entity.pose is None or track.unseen or not has_moved(entity, track, config):
         return replace(track, left=False, kept=False)
     before, now = OrientedBox(entity.pose, track.size_m), OrientedBox(track.pose, track.size_m)
     left = track.left or share(now, before) == 0.0 or occupancy_of(*before) == "free"
     whole = OrientedBox(entity.pose, entity.size_m or track.size_m)
-    kept = not left and any(occupancy_of(*slab) == "occupied" for slab in left_behind(whole, now))
+    kept = not left and any(occupancy_of(*slab) == "occupied" for slab in uncovered_slabs(whole, now))
     return replace(track, left=left, kept=kept)
 
 
@@ -220,10 +227,10 @@ def _leg_of(piece: OrientedBox, things: Mapping[str, OrientedBox]) -> str | None
     return next((name for name, thing in things.items() if is_leg(piece, thing)), None)
 
 
-def _apart_from_one_another(tracks: Iterable[Track]) -> list[Track]:
+def _without_overlaps(tracks: Iterable[Track]) -> list[Track]:
     apart: list[Track] = []
     for track in tracks:
         box = OrientedBox(track.pose, track.size_m)
-        if not any(are_of_one(box, OrientedBox(other.pose, other.size_m)) for other in apart):
+        if not any(may_be_same_thing(box, OrientedBox(other.pose, other.size_m)) for other in apart):
             apart.append(track)
     return apart

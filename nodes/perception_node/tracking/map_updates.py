@@ -41,10 +41,10 @@ def subject_of(command: Command) -> str:
 def is_sure(track: Track, classes: ClassHierarchy, config: TrackingConfig) -> bool:
     """Whether a thing was seen at rest often enough to become an entity."""
     if not track.whole:
-        return track.looks >= config.part_looks and not track.unseen
+        return track.frames >= config.part_frames and not track.unseen
     clear = track.votes.share(track.votes.belief(classes), classes) >= config.clear
-    enough = config.clear_looks if clear else config.confirm_looks
-    return track.looks >= enough and not track.unseen
+    enough = config.clear_frames if clear else config.confirm_frames
+    return track.frames >= enough and not track.unseen
 
 
 def additions(tracks: Iterable[Track], taken: Set[str], classes: ClassHierarchy) -> dict[str, Add]:
@@ -76,17 +76,17 @@ def update_of(
     own = is_own(entity)
     if track.is_gone(config):
         return _gone(entity, track, own, config)
-    if not track.rests(config.rest_looks):
+    if not track.rests(config.rest_frames):
         return None
     changes: dict[str, Any] = {}
     moved = has_moved(entity, track, config)
     if moved or _is_turned(entity, track):
         corrected = (track.part and track.whole) or track.outsized or _was_front(entity, track)
-        enough = config.kept_looks if track.kept else config.nudge_looks
-        looks = track.borne_out if moved else track.looks
+        enough = config.kept_frames if track.kept else config.nudge_frames
+        looks = track.whole_frames if moved else track.frames
         if not track.left and not corrected and looks < enough:
             return None
-        pose = rounded(track.told_pose)
+        pose = rounded(track.reported_pose)
         changes |= {"at": pose.position_m, "orientation": pose.orientation_wxyz}
     class_name = _other_class(entity, track, classes, config)
     if own:
@@ -141,9 +141,11 @@ def removal_of_leg(name: str, of: str) -> Remove:
 
 def _gone(entity: Entity, track: Track, own: bool, config: TrackingConfig) -> Update | Remove | None:
     if own and config.when_gone == "remove":
-        looks = f"{track.odd or track.unseen} looks in a row"
+        frames = f"{track.odd or track.unseen} frames in a row"
         found = (
-            f"something else was in its place in {looks}" if track.odd else f"its place was empty in {looks}"
+            f"something else was in its place in {frames}"
+            if track.odd
+            else f"its place was empty in {frames}"
         )
         reason = f"{entity.name} is gone: {found}"
         return Remove(source="perception", agent=AGENT, reason=reason, names=(entity.name,))
@@ -178,7 +180,7 @@ def _was_front(entity: Entity, track: Track) -> bool:
 def _other_class(entity: Entity, track: Track, classes: ClassHierarchy, config: TrackingConfig) -> str:
     """The class that a thing turns out to be, if that is more special than the map's, or contradicts it."""
     believed = track.votes.belief(classes)
-    if track.looks < config.confirm_looks or classes.is_a(entity.class_, believed):
+    if track.frames < config.confirm_frames or classes.is_a(entity.class_, believed):
         return ""
     if classes.is_a(believed, entity.class_):
         return believed
@@ -197,7 +199,7 @@ def _vaguer_class(entity: Entity, track: Track, classes: ClassHierarchy, config:
     tells = believed == ANYTHING or believed in classes.usual_m
     if believed == entity.class_ or not tells or not classes.is_a(entity.class_, believed):
         return ""
-    doubted = track.looks >= config.confirm_looks and track.votes.share(entity.class_, classes) < _UNSURE
+    doubted = track.frames >= config.confirm_frames and track.votes.share(entity.class_, classes) < _UNSURE
     return believed if doubted else ""
 
 
@@ -212,7 +214,7 @@ def _described(
             changes["ref"] = classes.label(class_name)
     if (
         track.whole
-        and (track.part or track.outsized or _was_front(entity, track) or track.looks >= config.nudge_looks)
+        and (track.part or track.outsized or _was_front(entity, track) or track.frames >= config.nudge_frames)
         and _is_resized(entity, track, config)
     ):
         changes["size"] = _to_millimetres(track.size_m)
@@ -230,10 +232,10 @@ def _conflict(entity: Entity, track: Track, class_name: str, classes: ClassHiera
     """What is seen against an operator's word; what was seen before stays until the word is borne out."""
     if class_name and not classes.is_a(class_name, entity.class_):
         return f"looks like a {class_name}"
-    borne_out = entity.conflict in (MISSING, DISPLACED) or classes.is_a(
+    confirmed = entity.conflict in (MISSING, DISPLACED) or classes.is_a(
         track.votes.belief(classes), entity.class_
     )
-    return "" if borne_out else entity.conflict
+    return "" if confirmed else entity.conflict
 
 
 def _confidence(track: Track, class_name: str, classes: ClassHierarchy) -> float:

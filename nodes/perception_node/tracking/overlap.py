@@ -41,7 +41,7 @@ def share(inner: OrientedBox, outer: OrientedBox) -> float:
     )
 
 
-def are_of_one(one: OrientedBox, other: OrientedBox) -> bool:
+def may_be_same_thing(one: OrientedBox, other: OrientedBox) -> bool:
     """Whether one box may hold a part of the other's thing: they overlap, and neither is tiny."""
     ratio = one.volume_m3 / other.volume_m3
     return (ratio > _NO_PART and share(one, other) > _A_PART) or (
@@ -49,7 +49,7 @@ def are_of_one(one: OrientedBox, other: OrientedBox) -> bool:
     )
 
 
-def left_behind(before: OrientedBox, now: OrientedBox) -> list[OrientedBox]:
+def uncovered_slabs(before: OrientedBox, now: OrientedBox) -> list[OrientedBox]:
     """What of one box is beyond the other, along its own axes: slabs that are not too thin to look into."""
     turn = _turn(before.pose.yaw_rad)
     half, now_half = np.array(before.size_m) / 2.0, np.array(now.size_m) / 2.0

@@ -33,7 +33,7 @@ class Track:
     """Observations tied to one thing: `pose` is their mean since it came to rest, `size_m` of their sizes.
 
     `placed` and `sized`: what the looks are worth of which these are the means; `sized_as`: what it was taken
-    for in the last that told of its size. `looks` is how often it was seen since it rests, `borne_out` how
+    for in the last that told of its size. `looks` is how often it was seen since it rests, `whole_frames` how
     often of these as a whole, `occupied` how often its place was so since then although the thing was not
     told apart, `unseen` how often in a row it should have been seen since and was not, `odd` how often in a
     row something of another size was in its place. `whole`: it was seen unhidden, uncut. `absent`: looks
@@ -49,13 +49,13 @@ class Track:
     sized: float = 0.0
     sized_as: str = ""
     placed: float = 0.0
-    looks: int = 0
-    borne_out: int = 0
+    frames: int = 0
+    whole_frames: int = 0
     occupied: int = 0
     unseen: int = 0
     odd: int = 0
     whole: bool = False
-    told: Pose | None = None
+    map_pose: Pose | None = None
     left: bool = False
     kept: bool = False
     absent: int = 0
@@ -65,7 +65,7 @@ class Track:
     unlike: str = ""
 
     @property
-    def told_pose(self) -> Pose:
+    def reported_pose(self) -> Pose:
         """What the map is to be told: where it is, turned as its model, or else its box, is."""
         if self.fit is None or self.fit.orientation_wxyz is None:
             return self.pose
@@ -79,11 +79,11 @@ class Track:
 
     def is_gone(self, config: TrackingConfig) -> bool:
         """Whether it is sure that it is no longer where it was."""
-        return self.unseen >= config.gone_looks or self.odd >= config.odd_looks
+        return self.unseen >= config.gone_frames or self.odd >= config.odd_frames
 
     def is_nearly_odd(self, config: TrackingConfig) -> bool:
         """Whether one look more makes sure that what is in its place is not of the size it had."""
-        return bool(self.sized) and self.odd + 1 >= config.odd_looks
+        return bool(self.sized) and self.odd + 1 >= config.odd_frames
 
     def see(self, seen: Observation, config: TrackingConfig) -> Track:
         """One more observation of it."""
@@ -91,23 +91,23 @@ class Track:
         said = ANYTHING if seen.class_ == self.unlike else seen.class_
         votes = self.votes.cast(said, seen.probability, worth)
         before, now = OrientedBox(self.pose, self.size_m), OrientedBox(seen.pose, seen.size_m)
-        if self.whole and self.looks and is_front(before, now):
+        if self.whole and self.frames and is_front(before, now):
             return self._all_of_it(seen, votes)
         hidden = (not seen.whole and _is_part(seen, self, config.still_m)) or is_front(now, before)
         if self.whole and hidden:
             return replace(
-                self, votes=votes, looks=self.looks + 1, unseen=0, odd=0, absent=0
+                self, votes=votes, frames=self.frames + 1, unseen=0, odd=0, absent=0
             )  # a part, where it was
         pose, size_m = turned_like(seen.pose, seen.size_m, self)
-        near = self.looks > 0 and distance_m(pose, self.pose) <= slack_m(self.size_m, config.still_m)
+        near = self.frames > 0 and distance_m(pose, self.pose) <= slack_m(self.size_m, config.still_m)
         still = near and turn_between(self, pose) <= config.turned_rad
         return replace(
             self._sized(size_m, worth, seen),
             pose=_between_poses(self.pose, pose, worth / self._placed(worth)) if still else pose,
             placed=self._placed(worth) if still else worth,
             votes=votes,
-            looks=self.looks + 1 if still else 1,
-            borne_out=self.borne_out + 1 if still else 1,
+            frames=self.frames + 1 if still else 1,
+            whole_frames=self.whole_frames + 1 if still else 1,
             occupied=self.occupied if still else self.occupied + 1 if near else 0,
             unseen=0,
             odd=0,
@@ -117,7 +117,7 @@ class Track:
 
     def see_all(self, seen: Observation, config: TrackingConfig) -> Track:
         """One more observation, of all of it, though a picture's edge cuts it: what was believed was more."""
-        forgotten = replace(self, sized=0.0, placed=0.0, looks=0, whole=False, outsized=True)
+        forgotten = replace(self, sized=0.0, placed=0.0, frames=0, whole=False, outsized=True)
         return forgotten.see(structs.replace(seen, whole=True), config)
 
     def miss(self, occupancy: Occupancy, *, odd: bool) -> Track:
@@ -126,12 +126,12 @@ class Track:
             return replace(self, absent=self.absent + 1)
         if occupancy == "free":
             return replace(self, unseen=self.unseen + 1, odd=0, absent=self.absent + 1)
-        odd_looks = self.odd + 1 if odd else 0
-        return replace(self, occupied=self.occupied + 1, unseen=0, odd=odd_looks, absent=0)
+        odd_frames = self.odd + 1 if odd else 0
+        return replace(self, occupied=self.occupied + 1, unseen=0, odd=odd_frames, absent=0)
 
-    def rests(self, looks: int) -> bool:
+    def rests(self, frames: int) -> bool:
         """Whether it was seen where it is, and is there since so many looks."""
-        return self.looks > 0 and self.looks + self.occupied >= looks and not self.unseen and not self.odd
+        return self.frames > 0 and self.frames + self.occupied >= frames and not self.unseen and not self.odd
 
     def _sized(self, size_m: Size, worth: float, seen: Observation) -> Track:
         """With one more look at its size; one at the whole of it is worth more than any at a part."""
@@ -150,9 +150,14 @@ class Track:
     def _all_of_it(self, seen: Observation, votes: Votes) -> Track:
         """When more is seen of it than its front."""
         worth = _weight(seen)
-        again = Track(seen.pose, seen.size_m, votes, sized=worth, placed=worth, looks=1, borne_out=1)
+        again = Track(seen.pose, seen.size_m, votes, sized=worth, placed=worth, frames=1, whole_frames=1)
         return replace(
-            again, sized_as=seen.class_, whole=True, told=self.told, part=self.part, unlike=self.unlike
+            again,
+            sized_as=seen.class_,
+            whole=True,
+            map_pose=self.map_pose,
+            part=self.part,
+            unlike=self.unlike,
         )
 
 

@@ -18,7 +18,7 @@ class Votes:
     """What was said of one thing, look by look: class to probability, older looks counting less."""
 
     weights: Mapping[str, float] = field(default_factory=dict)
-    looks: float = 0.0
+    frames: float = 0.0
 
     @staticmethod
     def remembered(class_name: str, probability: float) -> Votes:
@@ -30,18 +30,18 @@ class Votes:
         """One more look, that is worth so many."""
         weights = {name: weight * _FORGET for name, weight in self.weights.items()}
         weights[class_name] = weights.get(class_name, 0.0) + probability * worth
-        return Votes(weights, self.looks * _FORGET + worth)
+        return Votes(weights, self.frames * _FORGET + worth)
 
     def moved(self, class_name: str, to: str) -> Votes:
         """The same, but what was said of one class is said of another."""
         weights = dict(self.weights)
         weights[to] = weights.get(to, 0.0) + weights.pop(class_name, 0.0)
-        return Votes(weights, self.looks)
+        return Votes(weights, self.frames)
 
     def share(self, class_name: str, classes: ClassHierarchy) -> float:
         """The mean probability that it is of this class."""
         support = sum(w for voted, w in self.weights.items() if classes.is_a(voted, class_name))
-        return support / self.looks if self.looks else 0.0
+        return support / self.frames if self.frames else 0.0
 
     def belief(self, classes: ClassHierarchy) -> str:
         """The most special class that is sure enough."""

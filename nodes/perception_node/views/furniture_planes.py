@@ -74,7 +74,7 @@ def _under(
     return np.asarray((whole > 0) & (whole == labels))
 
 
-def with_what_hangs_below(groups: Sequence[Sequence[Segment]]) -> list[list[int]]:
+def join_legs(groups: Sequence[Sequence[Segment]]) -> list[list[int]]:
     """Which groups of segments are one thing: a top, and what is below it and reaches up to near it."""
     clouds = [np.concatenate([segment.points for segment in group]) for group in groups]
     highest = [float(np.quantile(points[:, 2], _HIGHEST)) for points in clouds]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from semmap.nodes.perception_node.views.segmented_view import Sight
+from semmap.nodes.perception_node.views.segmented_view import SegmentedView
 
 _PROBES = 300
 _SAME_SHARE = 0.5
@@ -20,13 +20,15 @@ Member = tuple[int, int]
 """The number of a sight, and that of a segment in its `segments`."""
 
 
-def fuse(sights: Sequence[Sight]) -> list[list[Member]]:
+def group_segments(sights: Sequence[SegmentedView]) -> list[list[Member]]:
     """Group segments by the thing they show."""
-    members, same = shown_by_others(sights)
+    members, same = matching_segments(sights)
     return _groups(same | same.T, members)
 
 
-def held_for_one(sights: Sequence[Sight], groups: Sequence[Sequence[Member]]) -> NDArray[np.float64]:
+def same_thing_logits(
+    sights: Sequence[SegmentedView], groups: Sequence[Sequence[Member]]
+) -> NDArray[np.float64]:
     """(2, G, G) how likely cameras hold two groups for one: the one that does so least, and most.
 
     Logits; 0 where no camera was asked.
@@ -49,7 +51,7 @@ def held_for_one(sights: Sequence[Sight], groups: Sequence[Sequence[Member]]) ->
     return np.where(np.isfinite(both), both, 0.0)
 
 
-def shown_by_others(sights: Sequence[Sight]) -> tuple[list[Member], NDArray[np.bool_]]:
+def matching_segments(sights: Sequence[SegmentedView]) -> tuple[list[Member], NDArray[np.bool_]]:
     """All segments, and (M, M) whether another camera takes one for another there.
 
     Most of its points that the other sees are of that segment there, and either these are a large share of
@@ -76,7 +78,7 @@ def shown_by_others(sights: Sequence[Sight]) -> tuple[list[Member], NDArray[np.b
     return members, same & (carrier == carrier[:, None])  # what is flat looks like its table to another
 
 
-def _labels_of(points: NDArray[np.float32], sight: Sight) -> NDArray[np.int32]:
+def _labels_of(points: NDArray[np.float32], sight: SegmentedView) -> NDArray[np.int32]:
     """The labels of those map points (N, 3) that a camera sees, and not merely what is before them."""
     cloud, pose = sight.cloud, sight.map_from_camera
     if cloud.intrinsics is None or cloud.map_from_camera is None:

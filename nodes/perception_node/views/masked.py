@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from semmap.nodes.perception_node.input.masks import Masks, Said
-from semmap.nodes.perception_node.views.segmented_view import Sight, labelled
+from semmap.nodes.perception_node.input.masks import DetectorLabel, Masks
+from semmap.nodes.perception_node.views.segmented_view import SegmentedView, with_labels
 
 _GAP_M, _GAP_SHARE = 0.015, 0.012
 """Neighbouring pixels are of one surface if their depths differ by less: metres, and a share of the depth."""
@@ -18,7 +18,7 @@ _LEFT = 0.5
 """What is covered more than this is covered: a segment of our own by masks, a mask by planes of the room."""
 
 
-def with_masks(sight: Sight, masks: Masks) -> Sight:
+def with_masks(sight: SegmentedView, masks: Masks) -> SegmentedView:
     """The same cloud cut up by masks; elsewhere our own segments remain, unless they are to stand `alone`.
 
     Raises ValueError for masks of another size.
@@ -28,7 +28,7 @@ def with_masks(sight: Sight, masks: Masks) -> Sight:
         raise ValueError(f"the masks are of {w} x {h} pixels, the picture of {width} x {height}")
     depth_m = sight.cloud.points_camera[..., 2]
     labels, count = np.zeros_like(sight.labels), 0
-    said: dict[int, Said] = {}
+    said: dict[int, DetectorLabel] = {}
     for number, told in enumerate(masks.said, 1):
         mask = masks.labels == number
         clear = mask & (sight.planes == 0)
@@ -52,7 +52,7 @@ def with_masks(sight: Sight, masks: Masks) -> Sight:
                 if old in sight.carriers:
                     carriers.add(count)
     undisputed = np.zeros((0, 0), np.float32)
-    cut = labelled(replace(sight, same=undisputed), labels, frozenset(carriers))
+    cut = with_labels(replace(sight, same=undisputed), labels, frozenset(carriers))
     named = tuple(
         replace(segment, masked=segment.label <= masked, said=said.get(segment.label))
         for segment in cut.segments

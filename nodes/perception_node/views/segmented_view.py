@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 from semmap.nodes.perception_node.input.cloud import Cloud, Floats
 from semmap.nodes.perception_node.segmentation import Plane, Segmentation, segment
 from semmap.nodes.perception_node.segmentation.gravity import level_plane, room_pose, standing_on
-from semmap.nodes.perception_node.segmentation.picture import as_picture
-from semmap.nodes.perception_node.segmentation.working_picture import grid_of
+from semmap.nodes.perception_node.segmentation.unorganised_cloud import as_image
+from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from semmap.nodes.perception_node.views.furniture_planes import EVERY, with_furniture
 from semmap.nodes.perception_node.views.segments import Segment, cut_out, in_map
 from semmap.nodes.perception_node.views.supports import Support, support_of
 
 
 @dataclass(frozen=True)
-class Sight:
+class SegmentedView:
     """A cloud in the map, with its segments.
 
     `map_from_camera`: (4, 4); where nobody knows it, the floor that is seen is z = 0,
@@ -38,7 +38,7 @@ class Sight:
     segments: tuple[Segment, ...] = ()
 
 
-def see(cloud: Cloud) -> Sight:
+def segment_cloud(cloud: Cloud) -> SegmentedView:
     """Take a cloud apart; one without order as the picture that a camera at its origin has of it."""
     if not cloud.organised:
         return _without_order(cloud)
@@ -52,21 +52,23 @@ def see(cloud: Cloud) -> Sight:
     if placed.map_from_camera is not None:  # else the largest plane is taken for the floor, whatever it is
         labels, carriers = with_furniture(segmentation, thin)
     supports = _supports(segmentation, thin)
-    bare = Sight(cloud, pose, labels, carriers, segmentation.plane_labels, supports, segmentation.same)
-    return labelled(bare, labels, carriers)
+    bare = SegmentedView(
+        cloud, pose, labels, carriers, segmentation.plane_labels, supports, segmentation.same
+    )
+    return with_labels(bare, labels, carriers)
 
 
-def labelled(sight: Sight, labels: NDArray[np.int32], carriers: frozenset[int]) -> Sight:
+def with_labels(sight: SegmentedView, labels: NDArray[np.int32], carriers: frozenset[int]) -> SegmentedView:
     """The same cloud cut up by other labels (H, W)."""
     segments = cut_out(sight.cloud, sight.map_from_camera, labels, carriers)
     return replace(sight, labels=labels, carriers=carriers, segments=tuple(segments))
 
 
-def _without_order(cloud: Cloud) -> Sight:
-    picture, pixel = as_picture(cloud)
-    seen = see(picture)
+def _without_order(cloud: Cloud) -> SegmentedView:
+    picture, pixel = as_image(cloud)
+    seen = segment_cloud(picture)
     labels, planes = (np.append(of.ravel(), np.int32(0))[pixel][None, :] for of in (seen.labels, seen.planes))
-    return labelled(replace(seen, cloud=cloud, planes=planes), labels, seen.carriers)
+    return with_labels(replace(seen, cloud=cloud, planes=planes), labels, seen.carriers)
 
 
 def _placed(cloud: Cloud) -> Cloud:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Cloud, Floats, Transform
-from semmap.nodes.perception_node.input.masks import Said
+from semmap.nodes.perception_node.input.masks import DetectorLabel
 
 MOST_POINTS = 3000
 """A segment of more points is thinned: what is learnt from it does not get better with more."""
@@ -40,7 +40,7 @@ class Segment:
     count: int
     carrier: bool = False
     masked: bool = False
-    said: Said | None = None
+    said: DetectorLabel | None = None
     ends: Floats = field(default_factory=lambda: np.empty((0, 3), np.float32))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from semmap.nodes.perception_node.segmentation.segment import Parts, taken_apart
+from semmap.nodes.perception_node.segmentation.segment import Parts, split_into_patches
 from tests.perception_node.segmentation.scenes import Seen
 
 
@@ -18,5 +18,5 @@ def owners(parts: Parts, seen: Seen) -> np.ndarray:
 
 def apart(seen: Seen) -> tuple[Parts, np.ndarray]:
     """The patches, and whose each is."""
-    parts = taken_apart(seen.cloud)
+    parts = split_into_patches(seen.cloud)
     return parts, owners(parts, seen)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from semmap.nodes.perception_node.segmentation.normals import normals
-from semmap.nodes.perception_node.segmentation.working_picture import grid_of
+from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 
 BOX = ((-0.15, -0.1, 0.0), (0.15, 0.1, 0.2))

@@ -7,7 +7,7 @@ import pytest
 
 from semmap.nodes.perception_node.segmentation.plane_pieces import pieces_of
 from semmap.nodes.perception_node.segmentation.planes import find_planes
-from semmap.nodes.perception_node.segmentation.working_picture import grid_of
+from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 
 FLOOR = ((-3, -3, -0.1), (3, 3, 0.0))

@@ -9,7 +9,7 @@ import pytest
 
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.segmentation import segment
-from semmap.nodes.perception_node.segmentation.shipped_trees import load, save, shipped
+from semmap.nodes.perception_node.segmentation.merge_model import load, save, shipped
 from semmap.schemas.errors import BadFile
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.test_patches import SCENES

@@ -72,7 +72,7 @@ def test_perception_removes_what_is_gone_only_where_it_can_look(door, removed):
     swing(world, door)
     table = LooksAt().told([entity("milk1", "Bottle", milk, MILK_M, source="perception")])
     table.occupancy = occupancy(world)
-    commands = table.looks(3 * CONFIG.gone_looks)
+    commands = table.observe(3 * CONFIG.gone_frames)
     assert [type(command) for command in commands] == ([Remove] if removed else [])
     assert ("milk1" in table.entities) is not removed
 
@@ -127,11 +127,11 @@ def test_perception_keeps_what_is_in_a_drawer_that_is_shut(drawer):
     world.delete(["toy1"])
     table = LooksAt().told([entity("toy1", "Bottle", shut_in, TOY_M, source="perception")])
     table.occupancy = seen_from_above(world)
-    assert table.looks(3 * CONFIG.gone_looks) == []
+    assert table.observe(3 * CONFIG.gone_frames) == []
     if drawer:  # it goes once it can be seen to be gone from where the open drawer has taken it
         pull(world, drawer)
         x, y, z = shut_in.position_m
         out = Pose(position_m=(x + bodies(world)["chest1"].joints[-1].position, y, z))
         table = LooksAt().told([entity("toy1", "Bottle", out, TOY_M, source="perception")])
         table.occupancy = seen_from_above(world)
-        assert [type(command) for command in table.looks(3 * CONFIG.gone_looks)] == [Remove]
+        assert [type(command) for command in table.observe(3 * CONFIG.gone_frames)] == [Remove]

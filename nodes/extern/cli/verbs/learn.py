@@ -28,8 +28,8 @@ from semmap.schemas.wording import counted
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
-    from semmap.nodes.perception_node.lesson_book import LessonBook
-    from semmap.nodes.perception_node.showing import View
+    from semmap.nodes.perception_node.exemplar_store import ExemplarStore
+    from semmap.nodes.perception_node.exemplar_views import ExemplarView
 
 _path = click.Path(path_type=Path)
 
@@ -88,7 +88,7 @@ def learn(
         raise errors.BadRequest("--box goes with --frames")
     if data is not None and frames is None:
         raise errors.BadRequest("--entity is seen by a running system; with --data show --frames DIR")
-    views: list[View] = []
+    views: list[ExemplarView] = []
     notes: tuple[str, ...] = ()
     shown = ""
     if data is not None:
@@ -97,7 +97,7 @@ def learn(
         views, notes = _seen(frames, box)
         shown = f"{counted(len(views), 'frame')} in {frames}"
     if data is not None:
-        from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+        from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
         told = book.add(class_, shipped().ancestors[class_], views, shown)
     else:
@@ -117,7 +117,7 @@ def learn(
 def learned(data: Path | None, format: str, **system: Any) -> None:
     """List what perception was shown."""
     if data is not None:
-        told = _book(data).lessons
+        told = _book(data).exemplars
     else:
         with _client(**system) as client:
             told = client.learned()
@@ -158,36 +158,38 @@ def _client(where: str | None, identity: str | None, namespace: str | None) -> I
         yield client
 
 
-def _learnt(client: Client, class_: str, entity: str | None, views: list[View], shown: str) -> LessonTold:
+def _learnt(
+    client: Client, class_: str, entity: str | None, views: list[ExemplarView], shown: str
+) -> LessonTold:
     if entity is not None:
         return client.learn(class_, entity=entity)
-    from semmap.nodes.perception_node.teaching import view_told
+    from semmap.nodes.perception_node.exemplar_commands import view_message
 
-    return client.learn(class_, views=tuple(map(view_told, views)), shown=shown[:1000])
+    return client.learn(class_, views=tuple(map(view_message, views)), shown=shown[:1000])
 
 
-def _book(data: Path) -> LessonBook:
+def _book(data: Path) -> ExemplarStore:
     """The lessons of a data folder whose system does not run."""
     extras.require("semmap learn --data", "perception")
-    from semmap.nodes.perception_node.lesson_book import FILENAME, LessonBook
-    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+    from semmap.nodes.perception_node.exemplar_store import FILENAME, ExemplarStore
+    from semmap.nodes.perception_node.recognition.recognition_model import shipped
     from semmap.nodes.supervisor import registry
 
     if any(Path(system.data) == data.resolve() for system in registry.systems()):
         raise errors.Refused(f"a system runs on {data}, which learns by itself: leave out --data")
-    return LessonBook(data / FILENAME, shipped())
+    return ExemplarStore(data / FILENAME, shipped())
 
 
 def _known(class_: str) -> str:
-    from semmap.nodes.perception_node.lesson_book import known_class
-    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+    from semmap.nodes.perception_node.exemplar_store import known_class
+    from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
     return known_class(class_, shipped().ancestors)
 
 
-def _seen(frames: Path, box: tuple[int, int, int, int] | None) -> tuple[list[View], tuple[str, ...]]:
+def _seen(frames: Path, box: tuple[int, int, int, int] | None) -> tuple[list[ExemplarView], tuple[str, ...]]:
     extras.require("semmap learn --frames", "perception")
-    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
-    from semmap.nodes.perception_node.showing import shown_in_frames
+    from semmap.nodes.perception_node.exemplar_views import views_in_frames
+    from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
-    return shown_in_frames(frames, shipped(), box)
+    return views_in_frames(frames, shipped(), box)

@@ -11,7 +11,7 @@ import numpy as np
 
 from semmap.nodes.perception_node.input.files.image_files import opened
 from semmap.nodes.perception_node.input.files.mask_polygons import counts_of
-from semmap.nodes.perception_node.input.masks import Masks, of_numbers, of_runs
+from semmap.nodes.perception_node.input.masks import Masks, masks_from_numbers, masks_from_runs
 from semmap.schemas.errors import BadFile
 from semmap.schemas.perception import MaskRun
 from semmap.schemas.wording import sentence
@@ -26,7 +26,7 @@ def read_masks(path: Path, height: int, width: int) -> Masks:
     try:
         match path.suffix.lower():
             case ".json":
-                return of_runs(_runs(path.read_bytes(), height, width), height, width)
+                return masks_from_runs(_runs(path.read_bytes(), height, width), height, width)
             case ".png":
                 with opened(path) as image:
                     numbers = np.asarray(image)
@@ -40,7 +40,7 @@ def read_masks(path: Path, height: int, width: int) -> Masks:
                 f"a label image for this picture has {width} x {height} whole numbers; this one has"
                 f" {' x '.join(map(str, across_first))} of {numbers.dtype}"
             )
-        return of_numbers(numbers)
+        return masks_from_numbers(numbers)
     except OSError as error:
         raise BadFile(f"{path} cannot be read: {error.strerror}") from None
     except ValueError as error:
