@@ -1,4 +1,4 @@
-"""Surfaces with their joints where they stand: open doors, drawn-out drawers."""
+"""Surfaces with joints at their current positions: open doors, pulled-out drawers."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from semmap.schemas.joints import Joint
 from semmap.schemas.scenes import Surface
 
 JointPositions = tuple[tuple[str, float], ...]
-"""Joints that are not where a model is drawn with them, at 0: names and positions [rad, m]."""
+"""Names and positions [rad, m] of the joints that are not at 0, as which a model is drawn."""
 
 _STEP: Final = {"hinge": 0.05, "slide": 0.01}
-"""What moves by less looks the same [rad, m]; so a door that opens is drawn some thirty times."""
+"""Positions are rounded to this step [rad, m], so an opening door is drawn about thirty times."""
 
 
 def joint_positions_of(joints: Iterable[Joint]) -> JointPositions:
-    """How joints stand, in steps that can be seen; empty where all are as the model is drawn."""
+    """Return the rounded positions of joints; empty if all are at 0."""
     found = ((joint.name, _stepped(joint)) for joint in joints if joint.kind in _STEP)
     return tuple((name, position) for name, position in found if position)
 
 
-def articulated(surface: Surface, bends: JointPositions) -> Surface:
-    """A surface with these joints moved; names that it does not have are passed over."""
-    positions = dict(bends)
+def articulated(surface: Surface, joints: JointPositions) -> Surface:
+    """Return a surface with these joints moved; unknown names are ignored."""
+    positions = dict(joints)
     leaves = [leaf for leaf in surface.leaves if positions.get(leaf.joint)]
     if not leaves:
         return surface
@@ -51,7 +51,7 @@ def _stepped(joint: Joint) -> float:
 
 
 def _about(axis: NDArray[Any], angle_rad: float) -> NDArray[Any]:
-    """(3, 3): the turn by an angle about a unit axis."""
+    """Return the rotation (3, 3) by an angle about a unit axis."""
     x, y, z = axis
     cross = np.array([(0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)])
     return np.asarray(np.eye(3) + np.sin(angle_rad) * cross + (1.0 - np.cos(angle_rad)) * cross @ cross)

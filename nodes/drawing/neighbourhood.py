@@ -1,6 +1,6 @@
-"""Readable parts of the knowledge graph: what is next to some things, and all of it by places or classes.
+"""Readable parts of the knowledge graph: the neighbourhood of entities, or all of it by places or classes.
 
-All of a graph of a home is a hairball, so none of it is ever drawn whole.
+The full graph of a home is not readable, so it is never drawn.
 """
 
 from __future__ import annotations
@@ -12,21 +12,21 @@ from typing import Final, Literal, NamedTuple
 from semmap.schemas.entities import Entity
 
 Relations = Mapping[str, Iterable[tuple[str, str]]]
-"""By the name of an entity: a property and the name of the entity that it leads to."""
+"""By the name of an entity: a property and the name of the object entity."""
 Kind = Literal["centre", "entity", "place", "class", "more"]
 
 LOCATED_IN: Final = "isLocatedIn"
 _CENTRES: Final = 12
-"""Entities whose neighbourhood is drawn at once; of more, the whole is drawn by places."""
+"""Maximum number of entities whose neighbourhood is drawn; for more, the graph is drawn by places."""
 _FEW: Final = 14
-"""Neighbours of one entity in one direction; the others are counted."""
+"""Maximum number of neighbours of an entity in one direction; others are counted."""
 _MOST: Final = 60
 
 
 class GraphNode(NamedTuple):
-    """A node of the drawn graph. The `id` of an entity is its name; other ids hold a colon, as no name does.
+    """A node of the drawn graph. The `id` of an entity is its name; other ids contain a colon.
 
-    `hidden` is how many entities it stands for, beside or instead of itself.
+    `hidden` is how many further entities it stands for.
     """
 
     id: str
@@ -37,7 +37,7 @@ class GraphNode(NamedTuple):
 
 
 class GraphEdge(NamedTuple):
-    """What leads from one node to another; `label` has the properties, with commas."""
+    """An edge between two nodes; `label` holds the properties, separated by commas."""
 
     source: str
     target: str
@@ -59,10 +59,10 @@ def around(
     unfolded: Iterable[str] = (),
     few: int = _FEW,
 ) -> Neighbourhood:
-    """These entities with their classes, and what they lead to and what leads to them.
+    """Return these entities with their classes and neighbours.
 
-    `unfolded` entities are shown with their own neighbours, too, if they are shown at all. Where one has more
-    than `few` of a kind, the others are one node that says how many.
+    `unfolded` entities, if shown, are shown with their own neighbours. More than `few` neighbours of a kind
+    are replaced by one node with their number.
     """
     shown = [name for name in dict.fromkeys(centres) if name in entities][:_CENTRES]
     drawing = _Drawing(entities)
@@ -80,9 +80,9 @@ def around(
 
 
 def by_place(entities: Mapping[str, Entity], relations: Relations) -> Neighbourhood:
-    """The places, with how many things are in each, and how they are connected.
+    """Return the places, the number of things in each, and how they are connected.
 
-    Where there are no places, the classes with their numbers.
+    Without places, returns the classes with their numbers.
     """
     places = {name: entity for name, entity in entities.items() if entity.place}
     if not places:
@@ -105,7 +105,7 @@ def by_place(entities: Mapping[str, Entity], relations: Relations) -> Neighbourh
 
 
 def by_class(entities: Mapping[str, Entity], unfolded: Iterable[str] = ()) -> Neighbourhood:
-    """The classes of the map with the number of their entities; those of `unfolded` classes one by one."""
+    """Return the classes of the map with their number of entities; `unfolded` classes list these."""
     number = Counter(entity.class_ for entity in entities.values())
     shown = [class_ for class_, _ in sorted(number.items(), key=lambda item: (-item[1], item[0]))[:_MOST]]
     knots = [GraphNode(_class_id(c), f"{c} ({number[c]})", "class", c, number[c]) for c in shown]
@@ -127,7 +127,7 @@ def by_class(entities: Mapping[str, Entity], unfolded: Iterable[str] = ()) -> Ne
 def _between_places(
     shown: Sequence[str], places: Mapping[str, Entity], relations: Relations
 ) -> dict[tuple[str, str], set[str]]:
-    """Each place in the smallest around it; and, once, what else is said of two that are side by side."""
+    """Return each place's smallest enclosing place, and other relations between adjacent places once."""
     pairs: dict[tuple[str, str], set[str]] = {}
     within = {
         frozenset((name, other))
@@ -157,7 +157,7 @@ def _place_knot(place: Entity, number: int) -> GraphNode:
 
 
 class _Drawing:
-    """A neighbourhood as it is put together, each node and link once."""
+    """A neighbourhood under construction, with each node and edge once."""
 
     def __init__(self, entities: Mapping[str, Entity]) -> None:
         self._entities = entities

@@ -1,4 +1,4 @@
-"""Polygons on the floor as triangles, for whoever draws in three dimensions."""
+"""Triangulation of polygons on the floor, for 3-D renderers."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from semmap.schemas.polygons import Polygon
 
 
 def triangles_of(polygon: Polygon) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
-    """Corners (N, 2) [m] and counterclockwise triangles (M, 3) that cover a polygon, its holes left out.
+    """Return corners (N, 2) [m] and counterclockwise triangles (M, 3) that cover a polygon without its holes.
 
-    The corners are around the middle of its bounds, where the position of a place with this extent is.
+    The corners are relative to the centre of its bounds, which is the position of a place with this extent.
     """
     x0, y0, x1, y1 = polygon.bounds
     points: list[tuple[float, float]] = []

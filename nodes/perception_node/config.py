@@ -23,7 +23,7 @@ class TrackingConfig:
     part_frames: int = 3
     """The same for a thing that is cut by an image edge."""
     vanished_frames: int = 1
-    """Consecutive frames in which the place of a thing must be empty before it is searched elsewhere."""
+    """Consecutive frames in which a thing's place must be empty before it is searched elsewhere."""
     rest_frames: int = 2
     """Frames in which a known entity must be seen elsewhere, at rest, before it counts as moved."""
     nudge_frames: int = 8

@@ -78,9 +78,7 @@ class ExemplarStore:
             )
         features = np.array([view.features for view in views], np.float32).astype(float)
         if features.ndim != 2 or features.shape[1] != WIDTH or not np.isfinite(features).all():
-            raise BadRequest(
-                f"a view must have {WIDTH} features; create it with the same version of semmap"
-            )
+            raise BadRequest(f"a view must have {WIDTH} features; create it with the same version of semmap")
         long, short, height = np.median([view.size_m for view in views], axis=0).tolist()
         exemplar = Exemplar(
             number=max((one.number for one in self._exemplars), default=0) + 1,

@@ -1,4 +1,4 @@
-"""Tells when a recording is no longer written. Rerun itself only logs it, on a thread of its own."""
+"""Detects that a recording is no longer written. Rerun itself only logs this, on its own thread."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import shutil
 from pathlib import Path
 
 CHECK_S = 2.0
-"""Between two looks: several times as long as what is recorded takes to reach the file."""
+"""Interval of the checks: several times the delay until recorded data reaches the file."""
 _ROOM_BYTES = 1 << 20
 
 
 class FileMonitor:
-    """Of one file, which grows whenever something is recorded."""
+    """Monitors a file that grows whenever something is recorded."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -20,23 +20,23 @@ class FileMonitor:
         self._recorded = 0
 
     def find_problem(self, recorded: int) -> str:
-        """What is wrong, in a sentence; empty if nothing is. `recorded` counts all that was by now.
+        """Describe what is wrong, or return an empty text.
 
-        To be asked every `CHECK_S`.
+        Must be called every `CHECK_S`. `recorded` is the total number of records so far.
         """
         before, self._recorded = self._recorded, recorded
         try:
             size = self._path.stat().st_size
         except OSError as error:
-            return f"the recording {self._path} cannot be written: {error.strerror}"
+            return f"cannot write recording {self._path}: {error.strerror}"
         if size != self._size:
             self._size, self._written = size, recorded
             return ""
         if before <= self._written:
             return ""
-        return f"the recording {self._path} is not written any more{self._why()}"
+        return f"recording {self._path} is no longer written{self._cause()}"
 
-    def _why(self) -> str:
+    def _cause(self) -> str:
         try:
             full = shutil.disk_usage(self._path.parent).free < _ROOM_BYTES
         except OSError:

@@ -1,6 +1,6 @@
-"""What is whole of a recording.
+"""Reads the intact part of a recording.
 
-Its file may be cut off, because it grows or its writer was killed, or be damaged.
+The file may be truncated, because it grows or its writer was killed, or it may be damaged.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ from semmap.schemas import errors
 _SIGNATURE: Final = b"RRF"
 _FILE_HEADER_BYTES: Final = 12
 _MESSAGE_HEADER: Final = struct.Struct("<QQ")
-"""The kind and the length of a message, before it."""
+"""Kind and length of a message, stored before it."""
 
 
 class IntactPart(NamedTuple):
-    """The file of what is whole; how many bytes at the end of the recording are left out of it, and why."""
+    """The file of the intact part, how many bytes at the end of the recording it lacks, and why."""
 
     path: Path
     left_out: int = 0
     why: str = ""
 
     def describe(self, recording: Path) -> str:
-        """What is left out, in a sentence without its end; nothing where that is nothing."""
+        """Describe what is ignored; empty if nothing is."""
         return f"{recording} {self.why}; its last {self.left_out} bytes are ignored" if self.left_out else ""
 
 
 def require_recording(path: Path) -> None:
-    """Raises BadFile, saying why, when `path` is not the file of a recording."""
+    """Raise BadFile, with the reason, if `path` is not a recording."""
     try:
         with path.open("rb") as file:
             signature = file.read(len(_SIGNATURE))
@@ -53,7 +53,7 @@ def require_recording(path: Path) -> None:
 
 @contextmanager
 def open_intact_part(path: Path) -> Iterator[IntactPart]:
-    """The recording, or a copy of as much of it as can be read. Raises BadFile where that is nothing."""
+    """Yield the recording, or a copy of its readable part. Raises BadFile if nothing is readable."""
     require_recording(path)
     if (fault := _fault(path)) is None:
         yield IntactPart(path)
@@ -77,7 +77,7 @@ def open_intact_part(path: Path) -> Iterator[IntactPart]:
 
 
 def chunks(path: Path) -> Iterator[Any]:
-    """The chunks of a recording. Raises RuntimeError or ValueError where it cannot be read."""
+    """Yield the chunks of a recording. Raises RuntimeError or ValueError at a damaged chunk."""
     with warnings.catch_warnings():
         # A recording that is not closed, because it grows or its writer was killed, has no footer.
         warnings.filterwarnings("ignore", message=".*no footer")
@@ -85,14 +85,14 @@ def chunks(path: Path) -> Iterator[Any]:
 
 
 def _is_damaged(path: Path, copy: Path, end: int) -> bool:
-    """Is there damage among the first `end` bytes?"""
+    """Return whether the first `end` bytes contain damage."""
     shutil.copyfile(path, copy)
     os.truncate(copy, end)
     return _fault(copy) is not None
 
 
 def _fault(path: Path) -> str | None:
-    """Why the file cannot be read to its end; None where it can be."""
+    """Return why the file cannot be read to its end; None if it can be."""
     try:
         for _ in chunks(path):
             pass
@@ -102,7 +102,7 @@ def _fault(path: Path) -> str | None:
 
 
 def _message_ends(path: Path) -> list[int]:
-    """Where each whole message ends."""
+    """Return the end of each complete message."""
     ends = []
     with path.open("rb") as file:
         size, end = file.seek(0, os.SEEK_END), _FILE_HEADER_BYTES

@@ -1,4 +1,4 @@
-"""The relations between individuals, asserted and computed, as stars and the commits since tell them."""
+"""The relations between individuals, asserted and computed, maintained from entity triples and commits."""
 
 from __future__ import annotations
 
@@ -10,37 +10,37 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Term, Triple
 
 Relation = tuple[str, str]
-"""A property and the name of the entity that it leads to."""
+"""A property and the name of the object entity."""
 
-_OF_THE_STAR = {
+_DESCRIBING = {
     v.RDF_TYPE,
     v.HAS_POSITION,
     v.HAS_SIZE,
     v.HAS_PREFERRED_REFERENCE,
     v.HAS_ALTERNATIVE_REFERENCE,
 }
-"""Predicates that describe one entity; all others between two individuals are relations."""
+"""Predicates that describe one entity. All others between two individuals are relations."""
 
 
 def is_relation(triple: Triple) -> bool:
-    """Whether a triple relates one individual to another, rather than describing it."""
-    return triple[1] not in _OF_THE_STAR and triple[2].startswith("<")
+    """Return whether a triple relates two individuals."""
+    return triple[1] not in _DESCRIBING and triple[2].startswith("<")
 
 
 def missed_commits(seq: int, snapshot_seq: int, heard: Iterable[Commit]) -> list[int]:
-    """The commits after `seq`, up to a snapshot's, that were not heard."""
+    """Return the commits after `seq`, up to the snapshot's, that were not received."""
     return sorted(set(range(seq + 1, snapshot_seq + 1)) - {commit.seq for commit in heard})
 
 
 def changed_subjects(places: PlaceChanges | None) -> list[str]:
-    """The names of what came to be somewhere else, or is there no longer."""
+    """Return the names of entities whose computed spatial facts changed."""
     if places is None:
         return []
     return sorted({v.entity_name(subject) for subject, _, _ in (*places.came, *places.went)})
 
 
 class Relations:
-    """The relations that hold between individuals: asserted and not denied, or computed."""
+    """The valid relations between individuals: asserted and not suppressed, or computed."""
 
     def __init__(self) -> None:
         self._asserted = _Triples()
@@ -48,7 +48,10 @@ class Relations:
         self._denied: set[Triple] = set()
 
     def begin(self, stars: Iterable[Star]) -> None:
-        """Take the relations from stars; commits that these know already may be taken again, in order."""
+        """Initialise the relations from entity triples.
+
+        Commits that these already include may be applied again, in order.
+        """
         stars = tuple(stars)
         self._asserted, self._computed = _Triples(), _Triples()
         self._asserted.add(triple for star in stars for triple in star.own)
@@ -56,7 +59,7 @@ class Relations:
         self._denied = {triple for star in stars for triple in star.denied}
 
     def take(self, commit: Commit) -> None:
-        """Take over a commit."""
+        """Apply a commit."""
         self._asserted.remove(commit.retracted)
         self._denied.difference_update(commit.retracted)
         self._asserted.add(commit.inserted)
@@ -67,7 +70,7 @@ class Relations:
             self._denied.update(places.denied)
 
     def between(self, entities: Mapping[str, Entity]) -> dict[str, tuple[Relation, ...]]:
-        """What each of these entities has to do with others of them, sorted."""
+        """Return the relations of each of these entities to others of them, sorted."""
         names = {v.iri(entity.iri): name for name, entity in entities.items()}
         return {
             name: tuple(sorted({(v.local_name(p), names[o]) for _, p, o in self._of(iri) if o in names}))
@@ -80,7 +83,7 @@ class Relations:
 
 
 class _Triples:
-    """Those that relate two individuals, by subject."""
+    """The relation triples, by subject."""
 
     def __init__(self) -> None:
         self._by_subject: dict[Term, set[Triple]] = {}

@@ -1,4 +1,4 @@
-"""The recorder on the wire: it follows the map, the poses, and what is seen."""
+"""The recorder node: it subscribes to the map, the poses and perception."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ log = logging.getLogger(__name__)
 
 _RETENTION_S = 10.0
 _SCENE_LOST_S = 10.0
-"""A simulator that says nothing for so long is gone; making thousands of bodies takes seconds."""
+"""A simulator that sends no poses for this long is gone. Creating thousands of bodies takes seconds."""
 _COMMITS_A_REQUEST = 20
 _SURFACES_A_REQUEST = 50
 
 
 class Recorder:
-    """Binds the recording to the wire."""
+    """Connects the recording to the network."""
 
     def __init__(
         self,
@@ -46,7 +46,10 @@ class Recorder:
         keep: Retention = KEEP_ALL,
         after: int | None = None,
     ) -> None:
-        """`live` says in words where it is seen live; `keep` and `after` are those of the configuration."""
+        """Register the subscribers.
+
+        `live` describes the live view; `keep` and `after` are as in the configuration.
+        """
         self._node = node
         self._recording = recording
         self._live = live
@@ -75,7 +78,7 @@ class Recorder:
     # The map
 
     def _on_commit(self, commit: Commit, known: bool) -> None:
-        """Record it at once, whatever is known of the map; the map follows in order."""
+        """Record a commit immediately. The map is updated in order."""
         self._set_time(commit.stamp_ns, commit.seq)
         self._recording.commit(commit)
         self._relations.take(commit)
@@ -105,26 +108,26 @@ class Recorder:
         self._request_relations()
 
     def _request_relations(self) -> None:
-        """Ask for the relations; commits that come meanwhile may be newer than they."""
+        """Request the entity triples. Commits that arrive before the reply may be newer."""
         if self._requesting_relations:
             return
-        if len(self._map.entities) > MANY_ENTITIES:  # more stars than a message holds
+        if len(self._map.entities) > MANY_ENTITIES:  # more triples than a message holds
             self._has_relations = True
             self._relations.begin(())
-            self._recording.note(f"of more than {MANY_ENTITIES} entities the relations are not drawn")
+            self._recording.note(f"relations are not drawn for more than {MANY_ENTITIES} entities")
             self._show_all()
             self._show_graph()
             return
         self._requesting_relations = True
 
-        def on_stars(future: Future[tuple[Star, ...]]) -> None:
+        def on_triples(future: Future[tuple[Star, ...]]) -> None:
             since, self._commits_since_request, self._requesting_relations = (
                 self._commits_since_request,
                 [],
                 False,
             )
             if future.exception() is not None:
-                return  # it is asked again at the next tick
+                return  # retried at the next tick
             self._has_relations = True
             self._relations.begin(future.result())
             for commit in since:
@@ -134,10 +137,10 @@ class Recorder:
             self._show_graph()
 
         query = StarQuery(names=tuple(self._map.entities))
-        self._node.ask_later(keys.BRIDGE, query).add_done_callback(on_stars)
+        self._node.ask_later(keys.BRIDGE, query).add_done_callback(on_triples)
 
     def _fetch_commits(self, seqs: list[int]) -> None:
-        """Record what was committed while nobody listened, and the commit that the recording starts with."""
+        """Record commits that were missed, and the one that the recording starts with."""
         for start in range(0, len(seqs), _COMMITS_A_REQUEST):
             some = tuple(seqs[start : start + _COMMITS_A_REQUEST])
             self._node.ask_later(keys.BRIDGE, Recall(seqs=some)).add_done_callback(self._on_commits)
@@ -166,7 +169,7 @@ class Recorder:
         self._drawn.show(jointed, self._map.entities, self._scene.bodies, simulated=True)
 
     def _on_live(self, live: LivePoses) -> None:
-        """Of what is tracked from elsewhere; the simulator's own poses come by themselves."""
+        """Move entities that are tracked from a stream. The simulator publishes its own poses."""
         self._set_time(live.stamp_ns)
         for name, seen in live.entities.items():
             if seen.source == "stream":
@@ -189,7 +192,7 @@ class Recorder:
         self._node.ask_later(keys.SIM, SceneQuery()).add_done_callback(on_scene)
 
     def _fetch_surfaces(self) -> None:
-        """Ask what the bodies look like, as far as that was never told."""
+        """Request surfaces of bodies that were not requested yet."""
         wanted = list(self._drawn.surfaces.wanted(self._scene.bodies.values()).items())
         for start in range(0, len(wanted), _SURFACES_A_REQUEST):
             self._fetch_some_surfaces(dict(wanted[start : start + _SURFACES_A_REQUEST]))
@@ -197,7 +200,7 @@ class Recorder:
     def _fetch_some_surfaces(self, kinds: dict[str, Kind]) -> None:
         def on_surfaces(future: Future[Surfaces]) -> None:
             if future.exception() is not None:
-                self._drawn.surfaces.give_up(kinds.values())
+                self._drawn.surfaces.reset_requests(kinds.values())
                 return
             for name, surface in future.result().surfaces.items():
                 self._drawn.surfaces.take(kinds[name], surface)
@@ -216,7 +219,7 @@ class Recorder:
             self._show_all()
 
     def _check_file(self) -> None:
-        """Whoever looks at the status is told of a recording that is not written, for as long as it is so."""
+        """Report in the status that the recording is not written, for as long as this lasts."""
         before, self._problem = self._problem, self._file_monitor.find_problem(self._recording.logged)
         if self._problem and not before:
             self._node.report(self._problem)
@@ -224,27 +227,27 @@ class Recorder:
             self._describe()
 
     def _apply_retention(self) -> None:
-        """Delete what need not be kept, and let another file be begun when this one is large or old."""
+        """Delete old recordings, and request a new file if this one is too large or old."""
         path, now_s = self._recording.path, time.time()
         by_path = {file.path: file for file in recordings(path.parent)}
         if (current := by_path.pop(path, None)) is None:
             return
         for file in self._keep.surplus(by_path.values(), current, now_s):
             file.path.unlink(missing_ok=True)
-            log.info("deleted %s, as --record-keep says", file.path)
+            log.info("deleted %s (--record-keep)", file.path)
         if self._map.seq >= 0 and self._keep.is_full(current, self._begun_s, now_s):
             self.is_full = True
             self._node.stop()
 
     @property
     def recorded(self) -> int:
-        """The last commit that is in the recording."""
+        """Return the last recorded commit."""
         return self._map.seq
 
     # Both
 
     def _set_time(self, stamp_ns: int, seq: int | None = None) -> None:
-        """What is recorded from now on is of this time."""
+        """Set the time of the following records."""
         self._recording.set_time(
             max(0, self._map.seq) if seq is None else seq, stamp_ns, self._scene.sim_time_s
         )
@@ -266,9 +269,9 @@ class Recorder:
 
 
 def run(config: RecorderConfig) -> int | None:
-    """Record until stopped, which is answered with None, or until another file is to be begun.
+    """Record until stopped, and return None, or until a new file must be started.
 
-    Then the answer is the last commit that this one has. Raises BadFile when the file cannot be written.
+    In the second case, returns the last recorded commit. Raises BadFile if the file cannot be written.
     """
     serve = config.serve if config.serve is not None and free_to_serve(config.serve) else None
     live = f"live at {serve}" if serve else "no live view"

@@ -13,10 +13,10 @@ from semmap.schemas import errors
 
 
 def replay(path: Path, tell: Callable[[str], None] = lambda text: None) -> None:
-    """Open a recording in a viewer of its own, on loopback, and wait until it is closed.
+    """Open a recording in a separate viewer on loopback, and wait until it is closed.
 
-    Of one that is cut off or damaged, what is whole is shown, and `tell` is told of the rest. Raises BadFile
-    when `path` is no recording or nothing of it can be read, and Refused when the viewer cannot be opened.
+    If the file is truncated or damaged, its intact part is shown, and `tell` receives a note on the rest.
+    Raises BadFile if `path` is not a readable recording, and Refused if the viewer cannot be opened.
     """
     with open_intact_part(path) as whole:
         if text := whole.describe(path):
@@ -26,11 +26,11 @@ def replay(path: Path, tell: Callable[[str], None] = lambda text: None) -> None:
         status = subprocess.run(command, env=viewer_environment()).returncode
     if status not in (0, 130):
         raise errors.Refused(
-            f"the viewer exited with status {status}; it needs a display and a graphics driver "
-            f"(in a browser instead: rerun --web-viewer --bind 127.0.0.1 {path})"
+            f"the viewer exited with status {status}; it needs a display and a graphics driver; "
+            f"to use a browser: rerun --web-viewer --bind 127.0.0.1 {path}"
         )
 
 
 def viewer_environment() -> dict[str, str]:
-    """The environment for a viewer: it sends no usage data where it believes to be in a CI job."""
+    """Return the environment for a viewer. In a CI job it sends no usage data."""
     return {**os.environ, "CI": "1"}

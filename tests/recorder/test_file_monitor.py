@@ -1,4 +1,4 @@
-"""A recording that is not written any more is noticed, one that has nothing to write is not taken for it."""
+"""A recording that is no longer written is reported; one without new data is not."""
 
 from __future__ import annotations
 
@@ -50,10 +50,10 @@ def test_one_that_does_not_grow_any_more_is_told_until_it_grows(path, monkeypatc
     one = FileMonitor(path)
     one.find_problem(1)
     one.find_problem(2)
-    assert one.find_problem(3) == f"the recording {path} is not written any more"
+    assert one.find_problem(3) == f"recording {path} is no longer written"
     usage = namedtuple("Usage", "free")
     monkeypatch.setattr(file_monitor.shutil, "disk_usage", lambda _: usage(0))
-    assert one.find_problem(3).endswith("not written any more: the disk is full")
+    assert one.find_problem(3).endswith("no longer written: the disk is full")
     write(path)
     assert one.find_problem(3) == ""
 
@@ -61,7 +61,7 @@ def test_one_that_does_not_grow_any_more_is_told_until_it_grows(path, monkeypatc
 def test_one_that_is_gone_is_told(path):
     one = FileMonitor(path)
     path.unlink()
-    assert one.find_problem(0).endswith("cannot be written: No such file or directory")
+    assert one.find_problem(0) == f"cannot write recording {path}: No such file or directory"
 
 
 def test_what_a_recording_notes_is_counted(tmp_path):
@@ -94,4 +94,4 @@ def test_a_real_recording_that_finds_no_room_is_told(tmp_path):
     run = subprocess.run(
         [sys.executable, "-c", FULL, tmp_path / "full.rrd"], capture_output=True, text=True, timeout=60
     )
-    assert "is not written any more" in run.stdout, run.stderr
+    assert "is no longer written" in run.stdout, run.stderr

@@ -103,7 +103,7 @@ def test_a_file_is_never_written_over(tmp_path):
 def test_a_folder_that_is_a_file_is_told(tmp_path):
     (tmp_path / "a").write_text("")
     with (
-        pytest.raises(errors.BadFile, match="cannot write the recording"),
+        pytest.raises(errors.BadFile, match="cannot write recording"),
         open_recording(tmp_path / "a" / "b.rrd", None),
     ):
         pass

@@ -1,4 +1,4 @@
-"""The stage: what is currently drawn; only differences are recorded."""
+"""The drawn scene: only changes are recorded."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class DrawnScene:
         *,
         simulated: bool,
     ) -> None:
-        """Draw these names as the map and the scene have them, and erase those that are in neither."""
+        """Draw these names as they are in map and scene, and erase those in neither."""
         for name in names:
             entity, body = entities.get(name), bodies.get(name)
             pose = pose_of(entity, body)
@@ -46,19 +46,19 @@ class DrawnScene:
         self.show(sorted(names), entities, bodies, simulated=simulated)
 
     def move(self, name: str, pose: Pose) -> None:
-        """Put what is drawn somewhere else, if it is not there already."""
+        """Move a figure, if it is drawn and its pose differs."""
         if name in self._drawn:
             self._set(name, (self._drawn[name][0], pose))
 
     def show_graph(self, graph: Neighbourhood) -> None:
-        """Draw the knowledge graph, if it is another."""
+        """Draw the knowledge graph, if it changed."""
         if graph != self._graph:
             self._graph = graph
             self._recording.graph(graph)
 
     @property
     def poses(self) -> Iterable[Pose]:
-        """Where everything that is drawn stands."""
+        """Return the poses of all figures."""
         return [pose for _, pose in self._drawn.values()]
 
     def _set(self, name: str, now: Drawn | None) -> None:

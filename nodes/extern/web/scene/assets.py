@@ -73,7 +73,7 @@ class Assets:
         try:
             told = await self._live.query(keys.SIM, SurfaceQuery(names=tuple(kinds)))
         except errors.SemmapError:
-            self._surfaces.give_up(kinds.values())
+            self._surfaces.reset_requests(kinds.values())
             return
         for name, surface in told.surfaces.items():
             self._surfaces.take(kinds[name], surface)
