@@ -97,10 +97,10 @@ def _difference(recorded: RecordedCommit, commit: Commit) -> str:
             return "" if _is_large(commit) else "the recording lacks its changes"
         return ""
     return (
-        _of_sets("inserted triples", recorded.inserted, commit.inserted)
-        or _of_sets("retracted triples", recorded.retracted, commit.retracted)
-        or _of_sets("changed entities", recorded.changed, [entity.name for entity in commit.changed])
-        or _of_sets("removed entities", recorded.removed, [gone.name for gone in commit.removed])
+        _of_sets("inserted triple", recorded.inserted, commit.inserted)
+        or _of_sets("retracted triple", recorded.retracted, commit.retracted)
+        or _of_sets("changed entity", recorded.changed, [entity.name for entity in commit.changed])
+        or _of_sets("removed entity", recorded.removed, [gone.name for gone in commit.removed])
     )
 
 
@@ -112,9 +112,9 @@ def _of_sets(what: str, recorded: Sequence[Any], journalled: Sequence[Any]) -> s
     if {*recorded} == {*journalled}:
         return ""
     if only := sorted({*recorded} - {*journalled}):
-        return f"{_short(only[0])} of its {what} is not in the journal"
+        return f"{what} {_short(only[0])} is not in the journal"
     lacking = sorted({*journalled} - {*recorded})
-    return f"{_short(lacking[0])} of its {what} is not in the recording"
+    return f"{what} {_short(lacking[0])} is not in the recording"
 
 
 def _short(value: Any) -> str:
