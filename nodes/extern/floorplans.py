@@ -80,7 +80,7 @@ def _svg(client: Client, file: Path, as_of: When | None) -> Path:
 
     entities = client.list(as_of=as_of)
     if not entities:
-        raise errors.Refused("there is nothing to plan on: no place has an extent, and no thing a size")
+        raise errors.Refused("the map has no place with an extent and no thing with a size")
     commits = client.history(until=as_of, limit=1)
     last = commits[-1]
     text = drawing(floor_of(entities), title="Floor plan", commit=last.seq, stamp_ns=last.stamp_ns)

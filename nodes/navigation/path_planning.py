@@ -1,4 +1,4 @@
-"""Ways over places and through doors, and why there is none."""
+"""Path planning over places and through doors, with the reason if there is no path."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from semmap.schemas.plans import HeightRange, Plan, PlannedPlace, PlannedThing, 
 
 _RESOLUTION_M: Final = 0.05
 _MOST_CELLS: Final = 400_000
-"""More would take seconds, so a large map has larger cells."""
+"""A larger grid would take seconds, so a large map has larger cells."""
 _COARSEST_M: Final = 0.2
-"""Doors do not fit between larger cells."""
+"""Doors are narrower than larger cells."""
 _BESIDE_M: Final = 0.4
-"""How near to a thing a robot gets that is sent to it, but for its own radius."""
+"""Maximum distance to a thing at the end of a path, in addition to the robot's radius."""
 _ASIDE_M: Final = 0.5
-"""How far from a position that has no room for it a robot may stop."""
+"""Maximum distance from a requested position without room for the robot."""
 _POSITION = re.compile(r"\(?\s*(-?[\d.]+(?:e-?\d+)?)\s*[,\s]\s*(-?[\d.]+(?:e-?\d+)?)\s*\)?", re.IGNORECASE)
 
 
 def parse_position(word: str) -> Point | None:
-    """The position that is written `2.5,1`; None for what is a name."""
+    """Parse a position such as `2.5,1`; return None for a name."""
     match = _POSITION.fullmatch(word.strip())
     if match is None:
         return None
@@ -43,17 +43,17 @@ def parse_position(word: str) -> Point | None:
 
 @dataclass(frozen=True)
 class PathEnd:
-    """An end of a way: the cells that count as being there, and what it is called."""
+    """An end of a path: the cells that count as reached, and its name."""
 
     name: str
     cells: tuple[Cell, ...]
 
 
 class TraversabilityMap:
-    """Where a robot of a radius can be on a plan: as it is, and if less were in its way."""
+    """The free space of a plan for a robot of a radius, optionally without some kinds of obstacles."""
 
     def __init__(self, plan: Plan, radius_m: float, heights: HeightRange) -> None:
-        """Raises Refused for a plan with nothing on it, or that is too large."""
+        """Compute the masks. Raises Refused for an empty or too large plan."""
         self.plan, self.radius_m, self.heights = plan, radius_m, heights
         self.frame = _frame(plan)
         solid = ~grids.floor_mask(plan, self.frame) | grids.wall_mask(plan, self.frame, heights)
@@ -69,13 +69,13 @@ class TraversabilityMap:
         self.rooms = grids.rooms_by_cell(plan, self.frame)
 
     def _inflated(self, mask: Mask) -> Mask:
-        """What the middle of the robot keeps out of; half a cell less, since a cell counts as a whole."""
+        """Inflate a mask by the robot's radius."""
         return grids.inflated(mask, self.radius_m, self.frame.resolution)
 
     def free_mask(
         self, *, through_closed: bool = False, through_forbidden: bool = False, through_things: bool = False
     ) -> Mask:
-        """Where its middle may be."""
+        """Return where the centre of the robot may be."""
         free = ~self._walls
         if not through_closed:
             free &= ~self._doors
@@ -86,7 +86,7 @@ class TraversabilityMap:
         return free
 
     def end_at_position(self, at: Point, free: Mask) -> PathEnd:
-        """A position, or the nearest one to it with room for the robot. Raises Refused."""
+        """Return a position, or the nearest one with room for the robot. Raises Refused."""
         name = f"({at[0]:g}, {at[1]:g})"
         found = self._nearest(free, at, _ASIDE_M)
         if found is None:
@@ -96,7 +96,7 @@ class TraversabilityMap:
         return PathEnd(name, (found,))
 
     def end_at_place(self, place: PlannedPlace, free: Mask) -> PathEnd:
-        """The free cell of a place that is nearest to its middle. Raises Refused."""
+        """Return the free cell of a place that is nearest to its centre. Raises Refused."""
         mask = self.frame.mask()
         self.frame.add_rings(mask, place.rings)
         xs, ys = zip(*place.rings[0], strict=True)
@@ -107,11 +107,11 @@ class TraversabilityMap:
         return PathEnd(place.name, (found,))
 
     def end_beside(self, thing: PlannedThing, free: Mask) -> PathEnd:
-        """All cells beside a thing, in its own room. Raises Refused."""
+        """Return all free cells next to a thing, in its room. Raises Refused."""
         near = self.frame.mask()
         outline = thing.footprint
         if len(outline) < 3:
-            raise errors.Refused(f"{thing.name} has no size, so nobody can say what is beside it")
+            raise errors.Refused(f"{thing.name} has no size; cannot compute a route next to it")
         self.frame.add_convex(near, outline)
         own_rooms = set(np.unique(self.rooms[near]).tolist()) - {-1}
         near = grids.inflated(near, self.radius_m + _BESIDE_M, self.frame.resolution)
@@ -135,13 +135,13 @@ class TraversabilityMap:
     def _explain_no_room(self, at: Point) -> str:
         cell = self.frame.cell(at)
         if cell is None or (self.plan.places and self.rooms[cell] < 0):
-            return "it is in no place of the map"
+            return "it is outside every place of the map"
         if things := self.obstacles_at([cell]):
             return f"{_listed(things)} {'is' if len(things) == 1 else 'are'} in the way"
         return "a wall is too near"
 
     def obstacles_at(self, cells: Sequence[Cell]) -> list[str]:
-        """The things, but doors, that are in the way of a robot somewhere in these cells."""
+        """Return the things, except doors, that block a robot in these cells."""
         where = self.frame.mask()
         for row, column in cells:
             where[row, column] = True
@@ -158,13 +158,13 @@ class TraversabilityMap:
         return f"a robot {2.0 * self.radius_m:.2g} m wide"
 
     def shorten(self, cells: Sequence[Cell], free: Mask) -> tuple[list[Point], float]:
-        """The corners of a way, and its length [m]."""
+        """Return the corners of a path after shortcuts, and its length [m]."""
         corners = without_detours(cells, free) if len(cells) > 1 else list(cells)
         points = [self.frame.middle(*cell) for cell in corners]
         return points, sum(math.dist(a, b) for a, b in pairwise(points))
 
     def places_along(self, cells: Iterable[Cell]) -> list[str]:
-        """The places that a way leads through, in order."""
+        """Return the places along a path, in order."""
         found: list[str] = []
         for cell in cells:
             room = int(self.rooms[cell])
@@ -173,7 +173,7 @@ class TraversabilityMap:
         return found
 
     def doors_along(self, cells: Sequence[Cell]) -> list[str]:
-        """The doors that a way leads through, in order."""
+        """Return the doors along a path, in order."""
         found: dict[str, int] = {}
         index = {cell: k for k, cell in reversed(list(enumerate(cells)))}
         for door in self.plan.things:
@@ -187,10 +187,10 @@ class TraversabilityMap:
 
 
 def find_path(plan: Plan, start: Point | str, end: Point | str, radius_m: float, heights: HeightRange) -> Way:
-    """The shortest way between two ends, each a position or the name of a place or thing of the plan.
+    """Return the shortest path between two ends, each a position or the name of a place or thing.
 
-    Through closed doors only if there is no other, which the answer then says. Raises Refused where there is
-    none even so, with what stands in the way.
+    A path through closed doors is returned only if there is no other, and its text says so. Raises Refused
+    with the obstacles if there is no path.
     """
     terrain = TraversabilityMap(plan, radius_m, heights)
     tries: tuple[dict[str, bool], ...] = ({}, {"through_closed": True})
@@ -220,7 +220,7 @@ def _resolve_end(terrain: TraversabilityMap, word: Point | str, free: Mask) -> P
     for thing in terrain.plan.things:
         if thing.name == word:
             return terrain.end_beside(thing, free)
-    raise errors.Refused(f"{word} has no position or no size, so no way leads there")
+    raise errors.Refused(f"{word} has no position or size; cannot compute a route to it")
 
 
 def _to_message(terrain: TraversabilityMap, ends: Sequence[PathEnd], cells: list[Cell], free: Mask) -> Way:
@@ -233,14 +233,14 @@ def _to_message(terrain: TraversabilityMap, ends: Sequence[PathEnd], cells: list
     text = f"{metres:.2f} m from {ends[0].name} to {ends[1].name}: {over}{through}"
     if closed:
         are = "is" if len(closed) == 1 else "are"
-        opened = f"opening {'it' if len(closed) == 1 else 'them'} makes one of {metres:.2f} m"
+        opened = f"with {'it' if len(closed) == 1 else 'them'} open, the route is {metres:.2f} m"
         text = (
-            f"no way is open from {ends[0].name} to {ends[1].name}: {_listed(closed)} {are} closed; {opened}:"
-            f" {over}{through}"
+            f"no route is open from {ends[0].name} to {ends[1].name}: {_listed(closed)} {are} closed;"
+            f" {opened}: {over}{through}"
         )
     notes = [*terrain.plan.notes]
     if terrain.frame.resolution > _RESOLUTION_M:
-        notes.append(f"the map is large, so the way is found on cells of {terrain.frame.resolution:g} m")
+        notes.append(f"the map is large; the route uses cells of {terrain.frame.resolution:g} m")
     rounded = tuple((round(x, 3), round(y, 3)) for x, y in points)
     return Way(
         metres=round(metres, 3),
@@ -254,9 +254,9 @@ def _to_message(terrain: TraversabilityMap, ends: Sequence[PathEnd], cells: list
 
 
 def _explain_no_path(terrain: TraversabilityMap, start: Point | str, end: Point | str) -> str:
-    """What is in the way: forbidden places, things, or walls."""
-    said = [word if isinstance(word, str) else f"({word[0]:g}, {word[1]:g})" for word in (start, end)]
-    none = f"there is no way from {said[0]} to {said[1]} for a robot {2.0 * terrain.radius_m:.2g} m wide"
+    """Describe what blocks the path: forbidden places, things, or walls."""
+    names = [word if isinstance(word, str) else f"({word[0]:g}, {word[1]:g})" for word in (start, end)]
+    none = f"there is no route from {names[0]} to {names[1]} for a robot {2.0 * terrain.radius_m:.2g} m wide"
     for allowed in (
         {"through_forbidden": True},
         {"through_things": True},
@@ -272,12 +272,15 @@ def _explain_no_path(terrain: TraversabilityMap, start: Point | str, end: Point 
             continue
         reasons = []
         if "through_forbidden" in allowed:
-            names = [p.name for p in terrain.plan.places if p.forbidden and _crosses(terrain, p, cells)]
-            reasons.append(f"it would lead through {_listed(names)}, which {_is_are(names)} forbidden")
-        if "through_things" in allowed and (names := terrain.obstacles_at(cells)):
-            reasons.append(f"{_listed(names)} {_is_are(names)} in the way; without that there would be one")
+            blocked = [p.name for p in terrain.plan.places if p.forbidden and _crosses(terrain, p, cells)]
+            reasons.append(
+                f"every route leads through {_listed(blocked)}, which {_is_are(blocked)} forbidden"
+            )
+        if "through_things" in allowed and (things := terrain.obstacles_at(cells)):
+            them = "it" if len(things) == 1 else "them"
+            reasons.append(f"{_listed(things)} {_is_are(things)} in the way; move {them} to open a route")
         return f"{none}: {' and '.join(reasons)}"
-    return f"{none}: there are walls all around, and no door or opening that is wide enough"
+    return f"{none}: no door or opening is wide enough"
 
 
 def _crosses(terrain: TraversabilityMap, place: PlannedPlace, cells: Sequence[Cell]) -> bool:
@@ -288,7 +291,7 @@ def _crosses(terrain: TraversabilityMap, place: PlannedPlace, cells: Sequence[Ce
 
 
 def _frame(plan: Plan) -> Frame:
-    """The finest grid, from 5 cm on, that is searched in moments."""
+    """Return the finest grid, from 5 cm, that can be searched quickly."""
     resolution = _RESOLUTION_M
     while True:
         try:
@@ -296,8 +299,8 @@ def _frame(plan: Plan) -> Frame:
         except errors.Refused:
             if resolution >= _COARSEST_M:
                 raise errors.Refused(
-                    "the map is too large to find ways on: they are found on a grid of"
-                    f" {_MOST_CELLS:,} cells of at most {_COARSEST_M:g} m"
+                    "the map is too large for route planning; the maximum is"
+                    f" {_MOST_CELLS:,} cells of {_COARSEST_M:g} m"
                 ) from None
             resolution = min(_COARSEST_M, resolution * 2.0)
 

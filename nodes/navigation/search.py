@@ -1,4 +1,4 @@
-"""The shortest way over the free cells of a grid: A* to eight neighbours, then straight where one can see."""
+"""Shortest paths over the free cells of a grid: A* with eight neighbours, then shortcuts in line of sight."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _DIAGONALLY: Final = math.sqrt(2.0) - 1.0
 
 
 def shortest_path(free: Mask, starts: Iterable[Cell], goals: Iterable[Cell]) -> list[Cell] | None:
-    """The cells of a shortest way from one of the starts to one of the goals; None without any.
+    """Return the cells of a shortest path from a start to a goal; None if there is no path.
 
-    It squeezes past no corner: to go diagonally, both cells beside the step must be free. Of ways of one
-    length it is always the same.
+    A diagonal step requires both adjacent cells to be free. Among paths of equal length, the result is
+    deterministic.
     """
     height, width = free.shape
     across = width + 2
@@ -41,7 +41,7 @@ def shortest_path(free: Mask, starts: Iterable[Cell], goals: Iterable[Cell]) -> 
     steps = [(dy * across + dx, dy * across, dx, cost) for dy, dx, cost in _STEPS]
 
     def rest(cell: int) -> float:
-        """At least so far from the goals: octile distance to the rectangle around them."""
+        """Return a lower bound of the distance to the goals: octile distance to their bounding rectangle."""
         row, column = divmod(cell, across)
         dy = max(low - row, row - high, 0)
         dx = max(left - column, column - right, 0)
@@ -88,7 +88,7 @@ def _back(cell: int, before: dict[int, int], across: int) -> list[Cell]:
 
 
 def without_detours(cells: Sequence[Cell], free: Mask) -> list[Cell]:
-    """The corners that are left of a way when each is joined to the furthest that can be seen from it."""
+    """Return the corners of a path after connecting each to the farthest one in line of sight."""
     kept = [cells[0]]
     at = 0
     while at < len(cells) - 1:
@@ -109,7 +109,7 @@ def without_detours(cells: Sequence[Cell], free: Mask) -> list[Cell]:
 
 
 def in_line_of_sight(one: Cell, other: Cell, free: Mask) -> bool:
-    """Whether all cells that the line between two cells' middles passes through are free."""
+    """Return whether all cells on the line between the centres of two cells are free."""
     (y0, x0), (y1, x1) = one, other
     count = 2 * max(abs(y1 - y0), abs(x1 - x0)) + 1
     shares = np.linspace(0.0, 1.0, max(count * 2, 2))

@@ -18,12 +18,12 @@ class TrackingConfig:
     confirm_frames: int = 3
     """Frames in which a thing must be seen at rest before it becomes an entity."""
     clear_frames: int = 2
-    """The same for a thing that is not cut by an image edge and whose class has the probability `clear`."""
+    """The same for a thing that no image edge cuts, and whose class has the probability `clear`."""
     clear: float = 0.8
     part_frames: int = 3
     """The same for a thing that is cut by an image edge."""
     vanished_frames: int = 1
-    """Consecutive frames in which a thing's place must be empty before it is searched elsewhere."""
+    """Consecutive frames in which a place must be empty before the thing is searched elsewhere."""
     rest_frames: int = 2
     """Frames in which a known entity must be seen elsewhere, at rest, before it counts as moved."""
     nudge_frames: int = 8

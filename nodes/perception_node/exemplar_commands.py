@@ -71,7 +71,7 @@ class ExemplarCommands:
         return exemplar
 
     def _ancestors(self, class_: str) -> tuple[str, ...]:
-        """Return the ancestors of a class, most specific first, as of training or else from the current TBox."""
+        """Return a class's ancestors, most specific first, as of training or else from the current TBox."""
         if (known := self._store.learnt.ancestors.get(class_)) is not None:
             return known
         classes = self._classes()

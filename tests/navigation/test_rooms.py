@@ -185,5 +185,5 @@ def test_a_plan_without_rooms_is_refused():
     cells = np.full((50, 50), UNKNOWN, dtype=np.int8)
     cells[10:20, 10:20] = FREE
     pixels = pixels_of(OccupancyGrid(Frame(0.0, 0.0, SIDE, 50, 50), cells))
-    with pytest.raises(BadFile, match="has no room in it"):
+    with pytest.raises(BadFile, match="has no free area"):
         loaded_plan(MapDescription(image="x", resolution=SIDE), pixels, "plan.yaml")

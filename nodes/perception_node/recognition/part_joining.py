@@ -29,10 +29,10 @@ Members = tuple[int, ...]
 def join_parts(
     things: Sequence[Thing], same_thing_logits: Numbers, learnt: RecognitionModel, join: Join
 ) -> tuple[list[Thing], Numbers, list[list[int]]]:
-    """Join neighbours that are pieces of one thing, the surest pair first.
+    """Join neighbours that are pieces of one thing, the most certain pair first.
 
-    `same_thing_logits`: (2, N, N), see `fusion`. Returns the things, (N, K) probabilities of their leaves, and for
-    each the numbers of `things` in it.
+    `same_thing_logits`: (2, N, N), see `fusion`. Returns the things, (N, K) probabilities of their leaves,
+    and for each the numbers of `things` in it.
     """
     if not things:
         return [], np.empty((0, len(learnt.classes))), []
