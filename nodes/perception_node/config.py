@@ -27,7 +27,7 @@ class TrackingConfig:
     rest_frames: int = 2
     """Frames in which a known entity must be seen elsewhere, at rest, before it counts as moved."""
     nudge_frames: int = 8
-    """The same if it still overlaps its old place and that is not seen empty, as the motion may be an error."""
+    """The same if it overlaps its old place, which is not seen empty: the motion may be an error."""
     kept_frames: int = 40
     """The same if the remainder of its old place is filled: only a part may have been seen."""
     pushed_m: float = math.inf

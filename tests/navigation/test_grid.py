@@ -51,9 +51,9 @@ def test_forbidden_places_as_a_mask():
 
 
 def test_nothing_and_too_much_are_refused():
-    with pytest.raises(Refused, match="nothing to plan on"):
+    with pytest.raises(Refused, match="no place with an extent"):
         occupancy(plan(places=(), walls=()), 0.05, HEIGHTS)
-    with pytest.raises(Refused, match=r"too large .* a resolution of 0\.1"):
+    with pytest.raises(Refused, match=r"too large .* a resolution of at least 0\.1"):
         occupancy(plan(places=(place("plain", 0, 0, 500, 500),), walls=()), 0.05, HEIGHTS)
 
 

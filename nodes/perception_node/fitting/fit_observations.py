@@ -1,4 +1,4 @@
-"""Which of the things that a look shows can be fitted, and what a fit tells of one."""
+"""Fits models to the things of a frame, and applies the results to observations."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from semmap.schemas.entities import Pose, Size
 from semmap.schemas.perception import Observation
 
 _LONG = 1.3
-"""What is so much longer than wide has a direction of its own, from which its model must not stray."""
+"""A thing longer than wide by this factor has a direction, which its model must match."""
 _STRAYED_RAD = math.radians(20.0)
 
 
 def with_poses(clouds: Sequence[Cloud], found: FrameResult) -> list[Cloud]:
-    """The clouds with the poses that the look has taken for theirs."""
+    """Return the clouds with the camera poses used for the frame."""
     views = found.observations.views
     return [
         replace(cloud, map_from_camera=np.array(view.map_from_camera).reshape(4, 4))
@@ -36,7 +36,10 @@ def with_poses(clouds: Sequence[Cloud], found: FrameResult) -> list[Cloud]:
 
 
 def points_of(number: int, clouds: Sequence[Cloud], found: FrameResult) -> Numbers:
-    """(N, 3) what clouds, `posed`, show of the n-th thing of a look, counted from 1; map frame [m]."""
+    """Return points (N, 3) of the n-th thing of a frame, from 1, in the map frame [m].
+
+    Needs clouds with poses, see `with_poses`.
+    """
     seen = []
     for cloud, labels in zip(clouds, found.labels, strict=True):
         if cloud.map_from_camera is None:
@@ -49,7 +52,7 @@ def points_of(number: int, clouds: Sequence[Cloud], found: FrameResult) -> Numbe
 
 
 def fit_all(clouds: Sequence[Cloud], found: FrameResult, surfaces: ClassSurfaces) -> tuple[Observation, ...]:
-    """The observations of a look, each with what its fit tells."""
+    """Return the observations of a frame, each updated by its fit."""
     clouds = with_poses(clouds, found)
     return tuple(
         with_fit(seen, fit_of(seen, points_of(n, clouds, found), clouds, surfaces))
@@ -58,23 +61,23 @@ def fit_all(clouds: Sequence[Cloud], found: FrameResult, surfaces: ClassSurfaces
 
 
 def fit_view(
-    sight: SegmentedView, told: Mapping[int, Observation | None], surfaces: ClassSurfaces
+    sight: SegmentedView, found: Mapping[int, Observation | None], surfaces: ClassSurfaces
 ) -> dict[int, Observation | None]:
-    """What each label of one sight is taken for, with what its fit tells."""
+    """Return the observation of each label of one view, updated by its fit."""
     clouds = [replace(sight.cloud, map_from_camera=sight.map_from_camera)]
     points = {segment.label: segment.points.astype(float) for segment in sight.segments}
     return {
         label: None if seen is None else with_fit(seen, fit_of(seen, points[label], clouds, surfaces))
-        for label, seen in told.items()
+        for label, seen in found.items()
     }
 
 
 def fit_of(
     seen: Observation, points: Numbers, clouds: Sequence[Cloud], surfaces: ClassSurfaces
 ) -> Fit | None:
-    """The model of its class aligned with what was seen of a thing.
+    """Align the model of the observation's class with a thing.
 
-    None without a model, where too little was seen, and for a pose across the box.
+    Returns None without a model, with too few points, or if the model lies across the box.
     """
     models = surfaces.get(seen.class_)
     if not models:
@@ -86,7 +89,7 @@ def fit_of(
 
 
 def lies_across(found: Fit, pose: Pose, size_m: Size) -> bool:
-    """Whether a fit has an upright model lie across the long box that was seen."""
+    """Return whether an upright model lies across a long observed box."""
     x, y, _ = size_m
     if found.lying or max(x, y) < _LONG * min(x, y) or found.fold in (0, 4):
         return False
@@ -96,10 +99,10 @@ def lies_across(found: Fit, pose: Pose, size_m: Size) -> bool:
 
 
 def with_fit(seen: Observation, found: Fit | None) -> Observation:
-    """The observation with what its fit tells: orientation and size, or that it is not of that class.
+    """Return the observation updated by its fit: orientation and size, or that its class is wrong.
 
-    What is not seen whole is not told to be of another class: its box is a guess, and the model has its size.
-    Nor is what was shown: it may look unlike the model that its class has.
+    The class of a partly visible thing is not rejected, because its box is an estimate. Neither is that of an
+    exemplar, which may look unlike the model of its class.
     """
     if found is None:
         return seen
@@ -115,11 +118,11 @@ def with_fit(seen: Observation, found: Fit | None) -> Observation:
 
 
 def contradicts_class(seen: Observation, found: Fit) -> bool:
-    """Whether a fit takes an observation's name back."""
+    """Return whether a fit rejects the class of an observation."""
     return seen.whole and not seen.shown and not found.is_verified
 
 
 def size_along(turn_rad: float, size_m: Size) -> Size:
-    """The extents of a box along axes that are turned by this, to the nearest quarter."""
+    """Return the extents of a box along axes rotated by an angle, to the nearest quarter turn."""
     x, y, z = size_m
     return (y, x, z) if round(turn_rad / (math.pi / 2.0)) % 2 else (x, y, z)

@@ -1,4 +1,4 @@
-"""Fits of what is tracked: which thing is next, and what becomes of the answer."""
+"""Fits models to tracked things: selects the next thing, and applies the result."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ _LONG = 1.3
 
 @dataclass(frozen=True)
 class FitToModels:
-    """Fits what is asked for to the models of classes."""
+    """Fits requested things to the models of their classes."""
 
     surfaces: ClassSurfaces
 
     def __call__(self, request: Request) -> Fit | None:
-        """The fit of one thing, if it can be fitted."""
+        """Return the fit of one thing, or None."""
         clouds = with_poses(request.clouds, request.found)
         points = points_of(request.number, clouds, request.found)
         return fit_of(request.seen, points, clouds, self.surfaces)
@@ -51,7 +51,7 @@ def request_fit(
     config: TrackingConfig,
     classes: ClassHierarchy,
 ) -> Request | None:
-    """The first entity that was seen whole, rests, and was not fitted as what it is since it does."""
+    """Return a request for the first entity that was seen whole, rests, and has no current fit."""
     if len(seen.views) != len(clouds):
         return None
     for number, one in enumerate(seen.observations, 1):
@@ -67,7 +67,7 @@ def request_fit(
 
 
 def apply_fit(tracks: Tracks, request: Request, found: Fit | None, config: TrackingConfig) -> Tracks:
-    """The tracks with the answer; what has moved meanwhile is asked for again."""
+    """Return the tracks with the result of a fit. If the thing moved since, the result is dropped."""
     track = tracks.known.get(request.name)
     if track is None or distance_m(track.pose, request.box) > slack_m(track.size_m, config.still_m):
         return tracks
@@ -80,7 +80,7 @@ def apply_fit(tracks: Tracks, request: Request, found: Fit | None, config: Track
 
 
 def with_known_fit(seen: Observation, entity: str, tracks: Tracks) -> Observation:
-    """An observation with the entity that it was taken for, and what was fitted of that."""
+    """Return an observation with its entity, and the entity's fitted orientation."""
     track = tracks.known.get(entity)
     if track is None or track.fit is None or track.fit.orientation_wxyz is None:
         return structs.replace(seen, entity=entity)
@@ -90,7 +90,7 @@ def with_known_fit(seen: Observation, entity: str, tracks: Tracks) -> Observatio
 
 
 def _across(pose: Pose, track: Track) -> bool:
-    """Whether a model's x axis lies across a long box's: the map's size would be the wrong way round."""
+    """Return whether a model's x axis is across a long box, so that the size would be swapped."""
     x, y, _ = track.size_m
     quarters = round((pose.yaw_rad - track.pose.yaw_rad) / (math.pi / 2.0))
     return max(x, y) > _LONG * min(x, y) and quarters % 2 == 1

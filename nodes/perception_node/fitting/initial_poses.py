@@ -1,4 +1,4 @@
-"""Where the search for a pose starts: how a model may stand or lie in the box that was seen."""
+"""Initial poses for registration: how a model may stand or lie in the observed box."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from semmap.schemas.entities import Pose, Size
 
 _EIGHTH = math.pi / 4.0
 _LIES = 0.75
-"""A box is that of a lying model where it is unlike the lying one by less than this share of the upright."""
+"""A box is of a lying model if its mismatch is below this share of the mismatch of the upright model."""
 _UNLIKE = 0.25
-"""A box is like a model's where the logarithms of their extents differ by no more, on the mean."""
+"""Maximum mean difference of the log extents of a box and a model."""
 
 
 @dataclass(frozen=True)
 class InitialPose:
-    """A model at the size that was seen, put into the map: `pose` (4, 4) is where its own frame is there.
+    """A model at the observed size; `pose` (4, 4) is its frame in the map.
 
-    `turn` (3, 3) has laid it down before: its own frame in `model`'s. `laid_m` (3,): what it measures then,
-    not yet scaled.
+    `turn` (3, 3) is the rotation from its own frame to `model`'s, for lying models. `laid_m` (3,): the size
+    after this rotation, before scaling.
     """
 
     model: ModelSurface
@@ -35,12 +35,12 @@ class InitialPose:
 
     @property
     def lying(self) -> bool:
-        """Whether the model is not upright."""
+        """Return whether the model is not upright."""
         return bool(self.turn[2, 2] < 0.5)
 
 
 def initial_poses(model: ModelSurface, pose: Pose, size_m: Size) -> Iterator[InitialPose]:
-    """Every eighth of a turn in the box that was seen, upright and, where only that fits the box, lying."""
+    """Yield every eighth of a turn, upright and, if only that fits the box, lying."""
     seen = np.array(size_m)
     upright = [np.eye(3)]
     lying = [turn for turn in _LAID if size_mismatch(np.abs(turn @ model.size_m), seen) < _UNLIKE]
@@ -58,7 +58,7 @@ def initial_poses(model: ModelSurface, pose: Pose, size_m: Size) -> Iterator[Ini
 
 
 def stretch(start: InitialPose) -> float:
-    """How far a model was drawn out of its proportions on the floor: the logarithm of that."""
+    """Return the log change of the model's proportions on the floor."""
     own = start.laid_m
     x, y, _ = start.model.size_m / own
     return abs(math.log(x / y))
@@ -69,28 +69,28 @@ def _turns(model: ModelSurface) -> int:
 
 
 def size_mismatch(size_m: Numbers, seen_m: Numbers) -> float:
-    """The mean difference of the logarithms of extents, whichever way the box is turned."""
+    """Return the mean difference of log extents, for the better of two orientations of the box."""
     ways = (seen_m, seen_m[[1, 0, 2]])
     return min(float(np.abs(np.log(size_m / way)).mean()) for way in ways)
 
 
 def choice_distance(size_m: Numbers, seen_m: Numbers) -> float:
-    """How far a model's extents are off, whichever way it is turned, by the rule of `ontology/model_choice`.
+    """Return the distance of a model's size from the observed one, as in `ontology/model_choice`.
 
-    The squared logarithms of their ratios, and once more of proportions.
+    It is the sum of the squared log ratios of extents and of proportions, for the better of two orientations.
     """
     ways = (np.log(size_m / seen_m), np.log(size_m / seen_m[[1, 0, 2]]))
     return min(float((way**2).sum() + ((way - way.mean()) ** 2).sum()) for way in ways)
 
 
 def in_proportion(own_m: Numbers, seen_m: Numbers) -> Numbers:
-    """The size of a model that keeps its proportions on the floor: as large and high as what was seen."""
+    """Return the size of a model that keeps its proportions on the floor, with the observed area."""
     factor = math.sqrt(float(seen_m[0] * seen_m[1] / (own_m[0] * own_m[1])))
     return np.array([factor * own_m[0], factor * own_m[1], seen_m[2]])
 
 
 def placed(yaw_rad: float, pose: Pose) -> Numbers:
-    """(4, 4) of what stands at a pose's position, turned by this yaw."""
+    """Return the transform (4, 4) to a pose's position with this yaw."""
     c, s = math.cos(yaw_rad), math.sin(yaw_rad)
     transform = np.eye(4)
     transform[:2, :2] = [[c, -s], [s, c]]
@@ -99,7 +99,7 @@ def placed(yaw_rad: float, pose: Pose) -> Numbers:
 
 
 def _laid() -> list[Numbers]:
-    """The turns that lay a model on its front, back and sides, and upside down."""
+    """Return the rotations that lay a model on its front, back and sides, and upside down."""
     found = []
     for axis, quarters in (("x", 1), ("x", 3), ("y", 1), ("y", 3)):
         angle = quarters * math.pi / 2.0

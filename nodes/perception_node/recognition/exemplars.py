@@ -1,7 +1,7 @@
-"""What people have shown: things that are recognised by how they looked, beside the votes.
+"""Exemplars: things that were shown with `semmap learn`, recognised by their similarity.
 
-Each exemplar is a leaf of its own below its class: its things may look like nothing else of that class, and
-have a size of their own. Nothing is trained anew.
+Each exemplar is a leaf below its class, since it may look unlike other things of that class and have another
+size. No classifier is retrained.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from semmap.schemas.entities import Size
 
 _SUREST = 0.999
 _LEAST = 1e-3
-"""What is less likely the same thing is not: many exemplars are not to wear the votes down."""
+"""Smaller similarities count as 0, so that many exemplars do not suppress the votes."""
 
 
 @dataclass(frozen=True)
 class Exemplar:
-    """Views of one thing, or of several that look alike, and of which class they are.
+    """Views of one thing, or of several that look alike, with their class.
 
-    `number`: by which it is forgotten. `ancestors`: what the TBox has above the class. `views`: (N, WIDTH),
-    see `likeness`. `size_m`: long side, short side and height. `shown`: what was shown, in words.
+    `number` identifies it. `ancestors`: the superclasses in the TBox. `views`: (N, WIDTH), see `similarity`.
+    `size_m`: long side, short side and height. `shown`: a description of the source.
     """
 
     number: int
@@ -39,21 +39,21 @@ class Exemplar:
 
     @property
     def leaf(self) -> str:
-        """Its name among the leaves of the vote; no class is called so."""
+        """Return its name among the leaves of the vote, which is no class name."""
         return f"{self.class_} #{self.number}"
 
 
 @dataclass(frozen=True)
 class ExemplarMatcher:
-    """Tells whether a thing is one of those that were shown."""
+    """Estimates whether a thing is one of the exemplars."""
 
     exemplars: tuple[Exemplar, ...]
     similarity: Similarity
 
     def add_probabilities(self, features: Sequence[Numbers], chances: Numbers) -> Numbers:
-        """(N, K + L) probabilities: of the leaves that were voted for (N, K), then of L exemplars.
+        """Return (N, K + L) probabilities of K leaves and L exemplars, given those of the leaves (N, K).
 
-        Whether a thing is that of a exemplar is told apart from the votes; what is left is theirs.
+        The probability of an exemplar does not depend on the votes, which share the remainder.
         """
         seen = views_of(features)
         like = np.column_stack([self._like(seen, exemplar) for exemplar in self.exemplars])
@@ -62,7 +62,7 @@ class ExemplarMatcher:
         return np.concatenate([chances * rest, odds * rest], axis=1)
 
     def _like(self, seen: Numbers, exemplar: Exemplar) -> Numbers:
-        """(N,) how likely each is the same as in the view of the exemplar that it is most like."""
+        """Return (N,) the similarity of each thing to the most similar view of an exemplar."""
         best = self.similarity(exemplar.views, seen).max(axis=0)
         return np.where(best < _LEAST, 0.0, np.minimum(best, _SUREST))
 
@@ -70,7 +70,7 @@ class ExemplarMatcher:
 def with_exemplars(
     learnt: RecognitionModel, exemplars: Sequence[Exemplar], similarity: Similarity
 ) -> RecognitionModel:
-    """What was `learnt` by training, and these exemplars beside it; without any it is as it was."""
+    """Return the trained model extended by exemplars."""
     if not exemplars:
         return learnt
     sideways = [

@@ -1,4 +1,4 @@
-"""Which things stand by themselves: whatever else they are, no scraps of others."""
+"""Detects free-standing things, which are not pieces of others."""
 
 from __future__ import annotations
 
@@ -12,23 +12,26 @@ from semmap.nodes.perception_node.views.boxes import Box, in_frame
 from semmap.nodes.perception_node.views.merged_thing import Thing
 
 _SMALLEST_M, _LARGEST_M = 0.025, 0.5
-"""What such a thing measures at most: less is a scrap, more a piece of furniture or a wall."""
+"""Limits of its largest extent: less is a piece, more is furniture or a wall."""
 _SLENDER, _LEG_M = 5.0, 0.25
-"""What is so high, and so many times as high as wide, may be the leg of a table whose top is not seen."""
+"""A thing this high, and this many times higher than wide, may be a leg of a hidden table."""
 
 _EDGE_M = 0.1
-"""So near to its edges a table has its legs: what is below them there may be a piece of one."""
+"""A table has its legs within this distance of its edges; a thing below may be a piece of one."""
 
 _LIFTED_M = 0.03
 _BESIDE_M = 0.015
-"""What has so much room about it is no scrap of its neighbour."""
+"""A thing with this much clearance is not a piece of its neighbour."""
 _FEWEST = 100
 _WORTH = 0.1
-"""A neighbour with a smaller share of its points is a scrap of its own."""
+"""A neighbour with a smaller share of its points is itself a piece."""
 
 
 def are_free_standing(things: Sequence[Thing]) -> NDArray[np.bool_]:
-    """(N,) whether each is compact, seen whole, upon its support, beside nothing else and below no edge."""
+    """Return (N,) whether each thing is compact, whole, on a support, and apart from others.
+
+    A thing below an edge of a table is excluded.
+    """
     tables = [thing.box for thing in things if thing.carrier]
     alone = np.array(
         [is_compact(one) and not any(_is_below_edge(one, box) for box in tables) for one in things],
@@ -42,7 +45,7 @@ def are_free_standing(things: Sequence[Thing]) -> NDArray[np.bool_]:
 
 
 def _is_below_edge(thing: Thing, table: Box) -> bool:
-    """Whether it is within a table's box near one of its sides, and well below its top."""
+    """Return whether a thing is below a table, near one of its edges."""
     cells = in_frame(thing.cells, table.yaw_rad)
     middle = cells.mean(axis=0)[:2]
     to_sides = np.minimum(middle - table.low[:2], table.high[:2] - middle)
@@ -50,7 +53,7 @@ def _is_below_edge(thing: Thing, table: Box) -> bool:
 
 
 def is_compact(thing: Thing) -> bool:
-    """Of the size of what stands on tables, seen whole, and upon its support."""
+    """Return whether a thing has the size of tabletop things, is fully visible and on a support."""
     x, y, z = thing.box.size_m.tolist()
     return (
         not thing.carrier

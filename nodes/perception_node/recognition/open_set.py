@@ -1,4 +1,4 @@
-"""How likely a thing is of no class that was learnt."""
+"""Open-set recognition: how likely a thing is of no known class."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from semmap.nodes.perception_node.views.boxes import Numbers
 
 @dataclass(frozen=True)
 class OpenSetDetector:
-    """A space in which things of one class lie close together, and a regression on how far off a thing is.
+    """An embedding in which things of one class are close, and a logistic regression on the distance.
 
-    `mean`: (D,) of all features together, `axes`: (D, A) into the space, `centres`: (K, A) of the leaves.
-    `weights`: (open_set_features + 1,) of the logistic regression, the constant last; see `open_set_features`.
+    `mean`: (D,) of all features, `axes`: (D, A) of the projection, `centres`: (K, A) of the leaves.
+    `weights`: (F + 1,) of the regression on `open_set_features`, with the constant last.
     """
 
     mean: Numbers
@@ -25,18 +25,18 @@ class OpenSetDetector:
     weights: Numbers
 
     def __call__(self, features: Sequence[Numbers], votes: Numbers, pooled: Numbers) -> Numbers:
-        """(N,) probabilities that things are like nothing known; arguments as for `open_set_features`."""
-        told = open_set_features(self, features, votes, pooled)
-        return np.asarray(1.0 / (1.0 + np.exp(-(told @ self.weights[:-1] + self.weights[-1]))))
+        """Return (N,) probabilities that things are of no known class; see `open_set_features`."""
+        inputs = open_set_features(self, features, votes, pooled)
+        return np.asarray(1.0 / (1.0 + np.exp(-(inputs @ self.weights[:-1] + self.weights[-1]))))
 
 
 def open_set_features(
     novelty: OpenSetDetector, features: Sequence[Numbers], votes: Numbers, pooled: Numbers
 ) -> Numbers:
-    """(N, open_set_features) what tells the unknown: doubt, disagreement and distance.
+    """Return features (N, F): entropy of the votes, disagreement, and distance to classes.
 
-    `features`: of each sort (N, its own number); `votes`: (voters, N, K) and `pooled`: (N, K) logarithms of
-    probabilities.
+    `features`: of each sort (N, its own number). `votes`: (voters, N, K) and `pooled`: (N, K) are logarithms
+    of probabilities.
     """
     best = pooled.argmax(axis=1)
     rows = np.arange(len(best))

@@ -1,4 +1,4 @@
-"""Pieces of things look for what they are pieces of: together they are easier to recognise than apart."""
+"""Joins pieces of things: together they are easier to recognise than apart."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From things as they were seen to observations: class, pose and size of the whole."""
+"""From visible things to observations: class, pose and complete size."""
 
 from __future__ import annotations
 
@@ -31,21 +31,21 @@ _WORTH_SAYING = 0.01
 def recognise(
     things: Sequence[Thing], chances: Numbers, learnt: RecognitionModel, labels: LabelMap | None = None
 ) -> list[Observation | None]:
-    """An observation of each thing, None for one that is rather clutter than a thing.
+    """Return an observation of each thing, or None for clutter.
 
-    What stands alone is no clutter, but of no class that is known. `chances`: (N, K) the probabilities of the
-    leaves. `labels`: what detectors' own labels mean here.
+    A free-standing thing is not clutter, but of unknown class. `chances`: (N, K) the probabilities of the
+    leaves. `labels` maps labels of detectors to classes.
     """
     labels = labels or LabelMap(learnt)
     chances = _no_clutter(reclassify_trimmed(things, chances, learnt), are_free_standing(things), learnt)
     chances = with_detector_labels(chances, things, learnt, labels)
     expected = expected_sizes(chances, learnt.sizes_m)
-    told = [detector_class(thing, learnt, labels) for thing in things]
-    return [_observation(*row, learnt) for row in zip(things, chances, expected, told, strict=True)]
+    detected = [detector_class(thing, learnt, labels) for thing in things]
+    return [_observation(*row, learnt) for row in zip(things, chances, expected, detected, strict=True)]
 
 
 def _no_clutter(chances: Numbers, alone: NDArray[np.bool_], learnt: RecognitionModel) -> Numbers:
-    """The same, but what stands `alone` and would be clutter is of `UNKNOWN` instead."""
+    """Return probabilities in which `alone` things that would be clutter are `UNKNOWN`."""
     clutter, unknown = learnt.classes.index(CLUTTER), learnt.classes.index(UNKNOWN)
     kept = alone & (chances[:, clutter] > _CLUTTER)
     chances = chances.copy()
@@ -58,7 +58,7 @@ def _observation(
     thing: Thing,
     probabilities: Numbers,
     expected_m: Numbers,
-    told: tuple[str, float] | None,
+    detected: tuple[str, float] | None,
     learnt: RecognitionModel,
 ) -> Observation | None:
     chances = dict(zip(learnt.classes, probabilities.tolist(), strict=True))
@@ -67,8 +67,8 @@ def _observation(
         return None
     chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
     class_, probability = choose_class(chances, learnt.ancestors, learnt.sure)
-    if told is not None and told[1] > (learnt.sure if class_ == UNKNOWN else probability):
-        class_, probability = told
+    if detected is not None and detected[1] > (learnt.sure if class_ == UNKNOWN else probability):
+        class_, probability = detected
     likely = sorted(chances, key=chances.__getitem__, reverse=True)[:_CANDIDATES]
     box = completed(thing, side_features(thing, expected_m), learnt.sides)
     box = _turned(box, bool(learnt.sideways[learnt.classes.index(likely[0])]))
@@ -87,7 +87,7 @@ def _observation(
 
 
 def _as_shown(chances: Mapping[str, float], class_: str, learnt: RecognitionModel) -> bool:
-    """Whether what people have shown says a class (or leaf) at least as loudly as the votes do."""
+    """Return whether exemplars contribute at least as much to a class (or leaf) as the votes."""
     exemplars = (
         set() if learnt.exemplars is None else {exemplar.leaf for exemplar in learnt.exemplars.exemplars}
     )
@@ -99,7 +99,7 @@ def _as_shown(chances: Mapping[str, float], class_: str, learnt: RecognitionMode
 def _candidates(
     chances: Mapping[str, float], likely: Sequence[str], learnt: RecognitionModel
 ) -> dict[str, float]:
-    """The likely leaves by their classes: what was shown of a class counts for it."""
+    """Return the likely leaves by class; an exemplar counts for its class."""
     found: dict[str, float] = {}
     for leaf in likely:
         if chances[leaf] > _WORTH_SAYING:
@@ -108,7 +108,7 @@ def _candidates(
 
 
 def _turned(box: Box, sideways: bool) -> Box:
-    """The box with its longer side along the axis where its class has it, its yaw in (-pi / 2, pi / 2]."""
+    """Return the box with its longer side along the usual axis of its class, and yaw in (-pi / 2, pi / 2]."""
     if (box.size_m[1] > box.size_m[0]) != sideways:
         box = box.quarter_turned()
     yaw = math.remainder(box.yaw_rad, math.pi)

@@ -1,4 +1,4 @@
-"""What training found, and its file: arrays and a description, no code."""
+"""The trained recognition model and its file of arrays and a description, without code."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 SHIPPED = Path(__file__).with_name("recognition.npz")
 
 UNKNOWN = "Object"
-"""The class of a thing that is like nothing known."""
+"""The class of a thing of no known class."""
 
 CLUTTER = ""
-"""The leaf for what is no thing: a table's edge, a leg, a piece of something."""
+"""The leaf for what is not a thing: a table's edge, a leg, a piece of something."""
 
 VOTERS: Mapping[str, tuple[str, ...]] = {
     **{sort: (sort,) for sort in SORTS},
@@ -37,7 +37,10 @@ VOTERS: Mapping[str, tuple[str, ...]] = {
     "all_again": SORTS,
     "without_relief": SORTS[:-1],
 }
-"""Who votes, in the order of the weights, and by which sorts of features; who sees others errs otherwise."""
+"""The voters in the order of the weights, and their sorts of features.
+
+Different features make different errors.
+"""
 
 _JOINING = ("feature", "threshold", "keeps", "first", "value")
 _NOVELTY = ("mean", "axes", "centres", "weights")
@@ -45,16 +48,15 @@ _NOVELTY = ("mean", "axes", "centres", "weights")
 
 @dataclass(frozen=True)
 class RecognitionModel:
-    """Everything that recognition learnt.
+    """The trained parameters of recognition.
 
-    `classes`: K leaves, `UNKNOWN` and `CLUTTER` among them. `ancestors`: what the TBox had above each class,
-    the most special first. `sizes_m`: (K, 3) what things of a leaf measure: long side, short side, height.
-    `sideways`: (K,) whether a leaf's longer side is its own y axis. `voters`: scores (N, K) from each one's
-    features. `weights`: (voters,) how much each vote counts. `familiar`: scores (N, K + 1) of having the very
-    form of our model of a leaf, the last of having that of none. `joining`: whether two
-    things are pieces of one, from `joining.pair_features`. `sides`: see `sides.completed`.
-    `sure`: the probability from which on a class is said. `story`: what all this was learnt from.
-    `shown`: what people have shown since, whose leaves come last.
+    `classes`: K leaves, with `UNKNOWN` and `CLUTTER`. `ancestors`: the superclasses of each class, most
+    specific first. `sizes_m`: (K, 3) typical long side, short side and height of a leaf. `sideways`: (K,)
+    whether a leaf's longer side is its y axis. `voters`: scores (N, K) from the features of each voter.
+    `weights`: (voters,) weights of the votes. `familiar`: scores (N, K + 1) of having the exact form of our
+    model of a leaf, with "none" last. `joining`: whether two things are pieces of one, from
+    `joining.pair_features`. `sides`: see `sides.completed`. `sure`: minimum probability of a reported class.
+    `story`: the training data. `exemplars`: things that were shown, whose leaves come last.
     """
 
     classes: tuple[str, ...]
@@ -72,13 +74,13 @@ class RecognitionModel:
     exemplars: ExemplarMatcher | None = None
 
     def class_of(self, leaf: str) -> str:
-        """The class of a leaf: a exemplar's has another name."""
+        """Return the class of a leaf; an exemplar's leaf has another name."""
         exemplars = () if self.exemplars is None else self.exemplars.exemplars
         return next((exemplar.class_ for exemplar in exemplars if exemplar.leaf == leaf), leaf)
 
     @property
     def usual_m(self) -> dict[str, Size]:
-        """What things of each class measure along their own axes [m]."""
+        """Return the typical size of things of each class along their own axes [m]."""
         of_leaf = self._usual_m
         return {self.class_of(leaf): of_leaf[leaf] for leaf in reversed(of_leaf)}
 
@@ -94,7 +96,7 @@ class RecognitionModel:
 
 
 def save(learnt: RecognitionModel, path: Path) -> None:
-    """Write it as a compressed NumPy archive; matrices in half precision."""
+    """Write the model as a compressed NumPy archive, with matrices in half precision."""
     arrays: dict[str, NDArray[np.generic]] = {
         "sizes_m": learnt.sizes_m,
         "sideways": learnt.sideways,
@@ -120,7 +122,7 @@ def save(learnt: RecognitionModel, path: Path) -> None:
 
 
 def load(path: Path = SHIPPED) -> RecognitionModel:
-    """Read what `save` wrote. Raises BadFile for anything else."""
+    """Read a model that `save` wrote. Raises BadFile if it is invalid."""
     try:
         with np.load(path, allow_pickle=False) as arrays:
             text = json.loads(str(arrays["description"]))
@@ -141,12 +143,12 @@ def load(path: Path = SHIPPED) -> RecognitionModel:
                 story=text["story"],
             )
     except (OSError, EOFError, ValueError, KeyError) as error:
-        raise BadFile(f"{path} does not hold what recognition learnt: {error}") from None
+        raise BadFile(f"{path} is not a valid recognition model: {error}") from None
 
 
 @lru_cache(maxsize=1)
 def shipped() -> RecognitionModel:
-    """What ships with perception."""
+    """Return the model that ships with semmap."""
     return load()
 
 

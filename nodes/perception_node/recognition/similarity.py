@@ -1,7 +1,7 @@
-"""How likely a thing that is seen is one that was shown before, from what both look like.
+"""Similarity of views: how likely a visible thing is one that was shown before.
 
-A view of a thing is a row of features: geometry, shape and colour one after the other, see `features`.
-Outlines are not among them: what was shown to an earlier version stays what it is.
+A view is a row of features: geometry, shape and colour, see `features`. Outlines are not included, so that
+exemplars of earlier versions remain valid.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ SHIPPED = Path(__file__).with_name("likeness.npz")
 
 GEOMETRY, SHAPE, COLOUR = slice(0, 35), slice(35, 95), slice(95, 129)
 WIDTH = COLOUR.stop
-"""How many features a view has."""
+"""The number of features of a view."""
 
 _MEASURES = [*range(6), *range(19, 31)]
-"""Logarithms of extents, whole and trimmed: here it matters which of the two is larger."""
+"""Logarithms of whole and trimmed extents, of which the sign of the difference matters."""
 _HEIGHT = 2
 _HOW_SEEN = slice(14, 19)
 _FROM, _TO = COLOUR.start, COLOUR.stop
@@ -40,18 +40,18 @@ _DARKEST = 0.05
 
 _ARRAYS = ("feature", "threshold", "keeps", "first", "value")
 _FAR = 1.1
-"""Two views whose heights differ by more than this, as logarithms, are not looked at any closer."""
+"""Views whose log heights differ by more than this are not compared."""
 
 
 @dataclass(frozen=True)
 class Similarity:
-    """Tells how likely two views are of the same thing. `story`: what it was learnt from."""
+    """Estimates how likely two views are of the same thing. `story` describes the training data."""
 
     trees: Trees
     story: str
 
     def __call__(self, kept: Numbers, seen: Numbers) -> Numbers:
-        """(V, N) for kept views (V, WIDTH) and seen ones (N, WIDTH)."""
+        """Return (V, N) similarities of stored views (V, WIDTH) and seen ones (N, WIDTH)."""
         like = np.zeros((len(kept), len(seen)))
         rows, columns = np.nonzero(np.abs(kept[:, _HEIGHT, None] - seen[:, _HEIGHT]) < _FAR)
         if len(rows):
@@ -60,19 +60,19 @@ class Similarity:
 
 
 def save(similarity: Similarity, path: Path) -> None:
-    """Write it as a compressed NumPy archive."""
+    """Write the model as a compressed NumPy archive."""
     text = {"story": similarity.story, "bias": similarity.trees.bias, "width": WIDTH}
     arrays = {name: getattr(similarity.trees, name) for name in _ARRAYS}
     np.savez_compressed(path, description=np.array(json.dumps(text)), **arrays)
 
 
 def load(path: Path = SHIPPED) -> Similarity:
-    """Read what `save` wrote. Raises BadFile for anything else, and for other features than today's."""
+    """Read a model that `save` wrote. Raises BadFile if it is invalid or uses other features."""
     try:
         with np.load(path, allow_pickle=False) as arrays:
             text = json.loads(str(arrays["description"]))
             if text["width"] != WIDTH:
-                raise ValueError("it was learnt from other features; run make train-perception")
+                raise ValueError("it uses other features; run: make train-perception")
             trees = Trees(**{name: arrays[name] for name in _ARRAYS}, bias=float(text["bias"]))
             return Similarity(trees, text["story"])
     except (OSError, EOFError, ValueError, KeyError) as error:
@@ -81,17 +81,17 @@ def load(path: Path = SHIPPED) -> Similarity:
 
 @lru_cache(maxsize=1)
 def shipped() -> Similarity:
-    """What ships with perception."""
+    """Return the model that ships with semmap."""
     return load()
 
 
 def views_of(features: Sequence[Numbers]) -> Numbers:
-    """(N, WIDTH) views of things, of whose features each sort is (N, its own number)."""
+    """Return views (N, WIDTH) of things, given their features by sort."""
     return np.concatenate(features, axis=1)[:, :WIDTH]
 
 
 def pair_features(kept: Numbers, seen: Numbers) -> Floats:
-    """(N, pair_features) of pairs of views (N, WIDTH): how they differ, and how each was seen."""
+    """Return features (N, F) of pairs of views (N, WIDTH): their differences, and how each was seen."""
     difference = seen - kept
     apart = np.abs(difference)
     return np.column_stack(
@@ -112,6 +112,6 @@ def pair_features(kept: Numbers, seen: Numbers) -> Floats:
 
 
 def _tint(views: Numbers) -> NDArray[np.float64]:
-    """(N, 3) the mean colours without how bright they are."""
+    """Return (N, 3) the mean colours without brightness."""
     mean = views[:, _MEAN] + _DARKEST
     return np.asarray(mean / mean.sum(axis=1, keepdims=True))

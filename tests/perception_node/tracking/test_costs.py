@@ -15,7 +15,7 @@ from semmap.nodes.perception_node.tracking.costs import (
     cost_anywhere,
     cost_in_place,
     cost_of_height,
-    is_rather_all_of_it,
+    is_complete_despite_cut,
     size_difference,
 )
 from tests.perception_node.things import CLASSES, SIZES, at, seen
@@ -208,6 +208,6 @@ USUAL = (0.4, 0.6, 0.8)
 )
 def test_what_was_too_large_is_rather_what_measures_as_usual(before, now, whole, was_whole, expected):
     known = target(before, whole=was_whole, usual_m=USUAL)
-    assert is_rather_all_of_it(box(now, whole=whole), known) is expected
-    assert not is_rather_all_of_it(box(now, whole=whole), known._replace(usual_m=None))
-    assert not is_rather_all_of_it(box(now, whole=whole), known._replace(size_m=None))
+    assert is_complete_despite_cut(box(now, whole=whole), known) is expected
+    assert not is_complete_despite_cut(box(now, whole=whole), known._replace(usual_m=None))
+    assert not is_complete_despite_cut(box(now, whole=whole), known._replace(size_m=None))
