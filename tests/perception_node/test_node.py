@@ -210,7 +210,7 @@ def test_what_the_map_refuses_is_told_and_not_said_again_at_once(world, monkeypa
 NAN = float("nan")
 NOTHING = "camera left has no depth values from 0.01 to 100 m"
 BAD = {
-    "the past": ({"stamp_ns": -5_000_000_000}, "frame ignored: its stamp is older"),
+    "the past": ({"stamp_ns": -5_000_000_000}, "frame ignored: its stamp is not newer"),
     "sizes": ({"rgb": {"width": 32}}, "its colour image has 32 x 48 pixels, its depth 64 x 48"),
     "intrinsics": ({"intrinsics": (0.0,) * 9}, "the intrinsics (0.0,"),
     "pose": ({"map_from_camera": (2.0,) * 16}, "map_from_camera is not a 4 x 4 pose"),

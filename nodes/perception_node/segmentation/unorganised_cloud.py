@@ -1,4 +1,4 @@
-"""Clouds without order, seen as a camera at their origin would see them."""
+"""Converts unorganised clouds to images of a camera at their origin."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from scipy.spatial import KDTree
 from semmap.nodes.perception_node.input.cloud import Cloud
 
 _WIDEST = 1280
-_MARGIN = 0.1  # of the extent, beyond what all but a few points take
-_LOOKED_AT = 2000  # points whose neighbours tell how dense the cloud is
+_MARGIN = 0.1  # of the extent without outliers
+_LOOKED_AT = 2000  # points that are used to measure the density
 _AROUND = 4  # the nearest neighbours on a grid
 
 
 def as_image(cloud: Cloud) -> tuple[Cloud, NDArray[np.int64]]:
-    """The points of a cloud without order as an organised one, and for each (N,) the pixel it falls on.
+    """Return the cloud as an organised one, and for each point (N,) its pixel.
 
-    Points that fall on no pixel, and those that are not in front of the camera, have -1. Of several on one
-    pixel the nearest is in the picture. Where the cloud was a picture once, its pixels are found again.
+    Points outside the image or not in front of the camera have -1. The nearest point of a pixel is in the
+    image. If the cloud was made from an image, its pixels are restored.
     """
     points = cloud.points_camera.reshape(-1, 3)
     pixel = np.full(len(points), -1, np.int64)
@@ -43,17 +43,17 @@ def as_image(cloud: Cloud) -> tuple[Cloud, NDArray[np.int64]]:
     nearest = np.full(height * width, np.inf, np.float32)
     np.minimum.at(nearest, target, depth)
     seen = depth <= nearest[target]
-    picture = np.full((height, width, 3), np.nan, np.float32)
-    picture.reshape(-1, 3)[target[seen]] = points[index[seen]]
+    image = np.full((height, width, 3), np.nan, np.float32)
+    image.reshape(-1, 3)[target[seen]] = points[index[seen]]
     colors = None
     if cloud.colors is not None:
         colors = np.zeros((height, width, 3), np.uint8)
         colors.reshape(-1, 3)[target[seen]] = cloud.colors.reshape(-1, 3)[index[seen]]
-    return replace(cloud, points_camera=picture, colors=colors), pixel
+    return replace(cloud, points_camera=image, colors=colors), pixel
 
 
 def _pitch(rays: NDArray[np.float32]) -> float:
-    """How far rays (N, 2) are from one another: on a grid its pitch, else about as much room as each has."""
+    """Return the spacing of rays (N, 2): the pitch of a grid, else the typical distance."""
     far = np.abs(rays - np.median(rays[:: max(1, len(rays) // _LOOKED_AT)], axis=0)).max(axis=1)
     enough = min(len(far), _LOOKED_AT) - 1
     middle = rays[far <= np.partition(far, enough)[enough]].astype(np.float64)

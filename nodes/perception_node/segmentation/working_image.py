@@ -1,4 +1,4 @@
-"""The working picture: an organised cloud, small or huge, as a picture of about 320 cells across."""
+"""The working image: an organised cloud of any size, reduced to about 320 cells across."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ Labels = NDArray[np.int32]
 Mask = NDArray[np.bool_]
 
 WIDTH = 320
-"""About how many cells there are across. The pixels of a cell are averaged, which halves a Kinect's noise."""
+"""Approximate number of cells across. The pixels of a cell are averaged, which halves a Kinect's noise."""
 
 _BRIGHTEST = np.float32(3 * 255)
-_DARK = 60.0  # colours of what is darker are mostly noise
-_SAME_SURFACE = 0.015  # of the distance: pixels of one cell that lie deeper belong to what is behind
+_DARK = 60.0  # colours of darker pixels are mostly noise
+_SAME_SURFACE = 0.015  # of the distance: deeper pixels of a cell are background
 _LOWEST = np.float32(-1e6)
 _AROUND = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Cells of the working picture, (h, w), `step` pixels wide and high.
+    """Cells of the working image, (h, w), `step` pixels wide and high.
 
-    `points`: (3, h, w) x, y and z, since long rows are computed with faster, camera frame [m], NaN where
-    nothing was seen: of each cell the nearest surface. `weights`: (N, h, w) the shares of its pixels in that.
-    `depth`: (H, W) how deep the cloud's points are, not above 0 for none. `colors`: the cloud's.
+    `points`: (3, h, w) x, y and z of each cell's nearest surface, camera frame [m], NaN for no measurement.
+    `weights`: (N, h, w) the shares of its pixels in that. `depth`: (H, W) the depth of the cloud, <= 0 for
+    none. `colors`: the colours of the cloud.
     """
 
     points: Floats
@@ -41,7 +41,7 @@ class Grid:
     step: int
 
     def shades(self, where: Mask) -> Floats:
-        """(3, h, w) the colours of the cells in `where`, see `shades_of`; NaN elsewhere and if unknown."""
+        """Return the colours (3, h, w) of the cells in `where`, see `shades_of`; NaN if unknown."""
         out = np.full(self.points.shape, np.nan, np.float32)
         if self.colors is None:
             return out
@@ -50,7 +50,7 @@ class Grid:
         height, width = self.depth.shape
         mean = np.zeros((len(cells), 3), np.float32)
         for weight, (down, right) in zip(self.weights, _offsets(self.step), strict=True):
-            # beyond the picture's edge the weight is 0
+            # beyond the image's edge the weight is 0
             r, c = (
                 np.minimum(row * self.step + down, height - 1),
                 np.minimum(column * self.step + right, width - 1),
@@ -61,38 +61,38 @@ class Grid:
 
 
 def grid_of(cloud: Cloud) -> Grid:
-    """The working picture of an organised cloud."""
+    """Return the working image of an organised cloud."""
     step = max(1, round(cloud.points_camera.shape[1] / WIDTH))
     # NaN times 0 would be NaN
     axes = [np.fmax(cloud.points_camera[..., axis], _LOWEST) for axis in range(3)]
     weights = _weights(axes[2], step)
     points = np.zeros((3, *weights.shape[1:]), np.float32)
-    for cells, picture in zip(points, axes, strict=True):
-        for weight, corner in zip(weights, _corners(picture, step), strict=True):
+    for cells, image in zip(points, axes, strict=True):
+        for weight, corner in zip(weights, _corners(image, step), strict=True):
             height, width = corner.shape
             cells[:height, :width] += weight[:height, :width] * corner
     return Grid(points, weights, axes[2], cloud.colors, step)
 
 
 def _offsets(step: int) -> list[tuple[int, int]]:
-    """Which pixels of a cell are looked at: at most four."""
+    """Return the pixels of a cell that are used: at most four."""
     sides = sorted({0, step // 2})
     return list(product(sides, sides))
 
 
-def _corners(picture: Floats, step: int) -> list[Floats]:
-    """Views of a picture (H, W): the same pixel of each cell."""
-    return [picture[r::step, c::step] for r, c in _offsets(step)]
+def _corners(image: Floats, step: int) -> list[Floats]:
+    """Return views of an image (H, W): the same pixel of each cell."""
+    return [image[r::step, c::step] for r, c in _offsets(step)]
 
 
 def _weights(depth: Floats, step: int) -> Floats:
-    """(N, h, w) for each of a cell's pixels that show its nearest surface the same, 0 for the others.
+    """Return (N, h, w) equal weights of each cell's pixels on its nearest surface, 0 for the others.
 
-    NaN where none shows anything.
+    NaN for a cell without measurement.
     """
     corners = _corners(depth, step)
     z = np.full((len(corners), *corners[0].shape), np.inf, np.float32)
-    for of, corner in zip(z, corners, strict=True):  # a cell at the picture's edge may lack some
+    for of, corner in zip(z, corners, strict=True):  # a cell at the image's edge may lack some
         np.copyto(of[: corner.shape[0], : corner.shape[1]], corner, where=corner > 0)
     nearest = z.min(axis=0)
     nearest[np.isinf(nearest)] = np.nan
@@ -102,9 +102,9 @@ def _weights(depth: Floats, step: int) -> Floats:
 
 
 def shades_of(colors: NDArray[Any]) -> Floats:
-    """Of rgb (3, ...) up to 255: brightness, red against green, and yellow against blue, in about [-1, 1].
+    """Convert rgb (3, ...) up to 255 to brightness, red-green and yellow-blue, in about [-1, 1].
 
-    The last two hardly change with the light.
+    The last two hardly depend on the illumination.
     """
     red, green, blue = colors.astype(np.float32)
     total = red + green + blue
@@ -113,9 +113,9 @@ def shades_of(colors: NDArray[Any]) -> Floats:
 
 
 def spread(grid: Grid, labels: Labels) -> Labels:
-    """Labels of the cells (h, w) as labels of the cloud's points (H, W); 0 where nothing was seen.
+    """Expand labels of the cells (h, w) to the cloud's points (H, W); 0 for no measurement.
 
-    A point that is not on its cell's surface has the label of the cell around whose surface it is nearest to.
+    A point that is not on its cell's surface gets the label of the adjacent cell with the nearest surface.
     """
     height, width = grid.depth.shape
     out = _enlarged(labels, grid.step, height, width)
@@ -141,7 +141,7 @@ def spread(grid: Grid, labels: Labels) -> Labels:
 
 
 def _borders(labels: Labels) -> Mask:
-    """(h, w) cells beside which there is another label."""
+    """Return cells (h, w) next to another label."""
     border = np.zeros(labels.shape, dtype=bool)
     for shift in ((0, 1), (1, 0), (1, 1), (1, -1)):
         differs = np.not_equal(*shifted(labels, *shift))
@@ -150,17 +150,17 @@ def _borders(labels: Labels) -> Mask:
     return border
 
 
-def _enlarged(picture: NDArray[Any], step: int, height: int, width: int) -> NDArray[Any]:
-    """Each cell as a block of pixels."""
-    return picture.repeat(step, axis=0)[:height].repeat(step, axis=1)[:, :width]
+def _enlarged(image: NDArray[Any], step: int, height: int, width: int) -> NDArray[Any]:
+    """Return each cell as a block of pixels."""
+    return image.repeat(step, axis=0)[:height].repeat(step, axis=1)[:, :width]
 
 
-def shifted(picture: NDArray[Any], rows: int, columns: int) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Two views of a picture (h, w): cells, and those `rows` down and `columns` to the right of each.
+def shifted(image: NDArray[Any], rows: int, columns: int) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return two views of an image (h, w): cells, and those `rows` down and `columns` to the right.
 
-    Both are empty where the picture is not as large as that.
+    Both are empty for a smaller image.
     """
-    height, width = picture.shape
+    height, width = image.shape
     rows, columns = min(rows, height), max(-width, min(columns, width))
     left, right = max(0, -columns), width - max(0, columns)
-    return picture[: height - rows, left:right], picture[rows:, left + columns : right + columns]
+    return image[: height - rows, left:right], image[rows:, left + columns : right + columns]

@@ -1,4 +1,4 @@
-"""Supports of which too little is seen for a plane: a level ring of points around a thing's foot."""
+"""Supports that are too small for a plane: a level ring of points around a thing's foot."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from semmap.nodes.perception_node.views.segments import in_map
 from semmap.nodes.perception_node.views.supports import Support
 
 _LIFTED_M = 0.1
-"""Only what would stand this far above its support is asked about."""
+"""Minimum distance above the support for a search."""
 _WIDEST_M = 0.6
-"""A ring around what is wider is rather made of the things that stand around it."""
+"""A ring around a wider thing consists of its neighbours."""
 _AROUND_M = 0.08
 _ABOVE_M, _BELOW_M = 0.02, 0.04
 _LEVEL_M = 0.012
@@ -26,8 +26,8 @@ _SECTORS, _FEWEST_SECTORS = 8, 4
 
 
 def supports_at_feet(sights: Sequence[SegmentedView], things: Sequence[Thing]) -> list[Support]:
-    """What small things stand on that seem to hang in the air."""
-    lifted = [thing for thing in things if _is_asked_about(thing)]
+    """Return the supports of small things that seem to float."""
+    lifted = [thing for thing in things if _seems_to_float(thing)]
     if not lifted or not sights:
         return []
     views = [in_map(s.cloud.points_camera[::EVERY, ::EVERY], s.map_from_camera) for s in sights]
@@ -36,12 +36,12 @@ def supports_at_feet(sights: Sequence[SegmentedView], things: Sequence[Thing]) -
     return [support for support in found if support is not None]
 
 
-def _is_asked_about(thing: Thing) -> bool:
+def _seems_to_float(thing: Thing) -> bool:
     return thing.lifted_m > _LIFTED_M and not thing.carrier and thing.box.size_m[:2].max() < _WIDEST_M
 
 
 def _support_at_foot(points: Floats, cells: Numbers) -> Support | None:
-    """The level ring of `points` (N, 3) around the foot of a thing of some `cells` (M, 3), map frame [m]."""
+    """Return the level ring of `points` (N, 3) around the foot of `cells` (M, 3), map frame [m]."""
     low, high = cells.min(axis=0), cells.max(axis=0)
     level = points[(points[:, 2] > low[2] - _BELOW_M) & (points[:, 2] < low[2] + _ABOVE_M)]
     beside = np.maximum(low[:2] - level[:, :2], level[:, :2] - high[:2]).max(axis=1)

@@ -1,4 +1,4 @@
-"""Supports that are other things: what seems to hang in the air stands on the top of one below it."""
+"""Supports that are other things: a thing that seems to float stands on one below it."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from semmap.nodes.perception_node.views.merged_thing import Thing
 from semmap.nodes.perception_node.views.supports import Support
 
 _LIFTED_M = 0.1
-"""Only what would stand this far above its support is asked about."""
+"""Minimum distance above the support for a search."""
 _ABOVE_M, _BELOW_M = 0.03, 0.05
 _FEWEST = 12
 _BENEATH = 0.5
-"""A top is below this share of a thing's outline, both taken as rectangles."""
+"""Minimum share of a thing's outline over the top, both as rectangles."""
 _LOWER = 0.9
-"""Of what goes on above a thing's foot at its side, less is lower than the foot."""
+"""Minimum share of the supporting thing below the foot, since other things may also be beside it."""
 
 
 def supports_of_things(things: Sequence[Thing]) -> list[Support]:
-    """The tops of things on which others stand that seem to hang in the air."""
+    """Return the tops of things on which apparently floating things stand."""
     lifted = [thing for thing in things if thing.lifted_m > _LIFTED_M and not thing.carrier]
     tops = (_top(other, thing.cells) for thing in lifted for other in things if other is not thing)
     return [top for top in tops if top is not None]
 
 
 def _top(thing: Thing, cells: Numbers) -> Support | None:
-    """A thing's top as a support, if that is at the foot of what has some `cells` (N, 3), map frame [m]."""
+    """Return a thing's top as a support, if it is at the foot of `cells` (N, 3), map frame [m]."""
     low, high = cells.min(axis=0), cells.max(axis=0)
     lower = thing.cells[:, 2] < low[2] + _ABOVE_M
     level = thing.cells[lower & (thing.cells[:, 2] > low[2] - _BELOW_M)]

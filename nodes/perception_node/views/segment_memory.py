@@ -1,9 +1,8 @@
-"""What moving cameras saw before: it completes what the picture's edge cuts now.
+"""Memory of what moving cameras saw, which completes things that an image edge cuts.
 
-Of each thing one segment is remembered, in the map frame. What a camera sees just now outweighs it: only
-points that are out of the picture, or hidden, are kept. Those that are seen again are replaced by what is
-seen, and those through which a camera looks are gone. Of a camera that has never moved, or has no name,
-nothing is remembered.
+One segment per thing is remembered, in the map frame. Current measurements take precedence: only points
+outside the image, or occluded, are kept. Points that are seen again are replaced, and points that a camera
+looks through are removed. Nothing is remembered for a camera that has never moved, or has no name.
 """
 
 from __future__ import annotations
@@ -22,22 +21,22 @@ from semmap.nodes.perception_node.views.segments import Segment
 from semmap.schemas import errors
 
 MOST_SEGMENTS = 100
-"""So many are remembered at most, those that were seen last."""
+"""Maximum number of remembered segments; the oldest are dropped."""
 MOST_POINTS = 2000
-"""Of each so many points at most [3.5 kB a hundred with their colours]."""
+"""Maximum number of points per segment [3.5 kB per hundred, with colours]."""
 _FEWEST_POINTS = 30
 _MOVED_M, _TURNED_COS = 0.05, float(np.cos(np.radians(3.0)))
 _FEWEST_SEEN = 12
 _SAME_SHARE = 0.5
 _LARGE_SHARE = 0.05
 _NEAR_M = 0.06
-"""What the picture's edge cuts goes on where something is remembered this near."""
+"""A cut thing continues if a remembered point is this near."""
 _LOOSE = 0.1
-"""A thing is whole when it goes on at all but this share of its ends."""
+"""A thing is whole if it continues at all but this share of its ends."""
 
 
 class Recalled(NamedTuple):
-    """What is left of a remembered segment, and the thing that it is of, from 1; 0 if that is not in view."""
+    """The remainder of a remembered segment, and its thing from 1, or 0 if that is not in view."""
 
     rest: Segment
     thing: int
@@ -45,7 +44,7 @@ class Recalled(NamedTuple):
 
 @dataclass(frozen=True)
 class SegmentMemory:
-    """Segments seen before, those seen last at the end; what was the first pose (4, 4) of each camera.
+    """The remembered segments, latest last, and the first pose (4, 4) of each camera.
 
     `moving`: the cameras that have left it.
     """
@@ -57,7 +56,10 @@ class SegmentMemory:
     def recalled(
         self, sights: Sequence[SegmentedView], labels: Sequence[NDArray[np.int32]]
     ) -> list[Recalled]:
-        """What of each segment is not seen just now; `labels`: of each sight (H, W) the thing, 0 for none."""
+        """Return the part of each segment that is not visible now.
+
+        `labels`: for each view (H, W) the thing, 0 for none.
+        """
         views = [
             (sight.cloud, sight.map_from_camera, own)
             for sight, own in zip(sights, labels, strict=True)
@@ -71,7 +73,7 @@ class SegmentMemory:
     def after(
         self, sights: Sequence[SegmentedView], seen: Iterable[Sequence[Segment]], rest: Iterable[Segment]
     ) -> SegmentMemory:
-        """With the segments of each thing that was `seen`, and the `rest` of what was not."""
+        """Return the memory with the segments of `seen` things, and the `rest` of unseen ones."""
         first, moving = dict(self.first), set(self.moving)
         for sight in sights:
             cloud = sight.cloud
@@ -89,7 +91,7 @@ class SegmentMemory:
 
 
 def completed(own: Sequence[Segment], rests: Sequence[Segment]) -> tuple[Segment, ...]:
-    """The segments of a thing with what is remembered of it: cut only where it does not go on there."""
+    """Return a thing's segments with the remembered ones: cut only where it does not continue."""
     everything = (*own, *rests)
     ends = [_loose(segment, [rest for rest in rests if rest is not segment]) for segment in everything]
     cut = sum(map(len, ends)) > _LOOSE * sum(len(segment.ends) for segment in everything)
@@ -97,7 +99,7 @@ def completed(own: Sequence[Segment], rests: Sequence[Segment]) -> tuple[Segment
 
 
 def joined(segments: Sequence[Segment]) -> Segment:
-    """Several segments of one thing as one, seen from where most of it was, thinned to `MOST_POINTS`."""
+    """Return several segments of one thing as one, seen from the main camera, with at most `MOST_POINTS`."""
     most = max(segments, key=lambda segment: segment.count)
     points = np.concatenate([segment.points for segment in segments])
     shades = [segment.colors for segment in segments if segment.colors is not None]
@@ -118,11 +120,11 @@ def _recalled(segment: Segment, views: Sequence[tuple[Cloud, Transform, NDArray[
     away, ends_away = np.ones(len(segment.points), bool), np.ones(len(segment.ends), bool)
     hits = []
     for cloud, pose, labels in views:
-        unseen, seen = _looked_up(segment.points, cloud, pose, labels)
+        unseen, seen = _visibility(segment.points, cloud, pose, labels)
         away &= unseen
         hits.append(seen)
         if len(ends_away):
-            ends_away &= _looked_up(segment.ends, cloud, pose, labels)[0]
+            ends_away &= _visibility(segment.ends, cloud, pose, labels)[0]
     counts = np.bincount(np.concatenate(hits), minlength=1)
     thing = int(counts.argmax())
     least = max(_FEWEST_SEEN, _LARGE_SHARE * len(segment.points))
@@ -137,10 +139,10 @@ def _recalled(segment: Segment, views: Sequence[tuple[Cloud, Transform, NDArray[
     return Recalled(rest, thing if same else 0)
 
 
-def _looked_up(
+def _visibility(
     points: NDArray[np.float32], cloud: Cloud, pose: Transform, labels: NDArray[np.int32]
 ) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
-    """Which map points (N, 3) a camera does not see, nor look through; the labels of those on a surface."""
+    """Return which map points (N, 3) a camera neither sees nor looks through, and labels of visible ones."""
     if cloud.intrinsics is None:
         raise errors.InternalError("the intrinsics of the camera are unknown")
     height, width = labels.shape
@@ -161,7 +163,7 @@ def _looked_up(
 
 
 def _loose(segment: Segment, others: Sequence[Segment]) -> NDArray[np.float32]:
-    """Those ends of a segment at which none of the others goes on; what is in view now is no end any more."""
+    """Return the ends of a segment at which no other segment continues."""
     if not len(segment.ends) or not others:
         return segment.ends
     tree = KDTree(np.concatenate([other.points for other in others]))

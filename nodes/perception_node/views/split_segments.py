@@ -1,4 +1,4 @@
-"""Disputes: where one camera sees one thing and another sees several, the segment is split."""
+"""Splits a segment of one camera that another camera sees as several things."""
 
 from __future__ import annotations
 
@@ -17,10 +17,9 @@ _FEWEST = 40
 
 
 def resolve_splits(sights: Sequence[SegmentedView]) -> list[SegmentedView]:
-    """Sights in which segments are cut apart that another camera sees as several.
+    """Return the views with such segments split.
 
-    A camera that sees a thing in pieces may be mistaken, or see better: whether the pieces are one thing is
-    left to recognition, which is told by `same` that one camera held them for one.
+    Either camera may be wrong. Whether the pieces are one thing is left to recognition, which uses `same`.
     """
     members, same = matching_segments(sights)
     labels = [sight.labels for sight in sights]
@@ -38,7 +37,7 @@ def resolve_splits(sights: Sequence[SegmentedView]) -> list[SegmentedView]:
 def _divided(
     sight: SegmentedView, labels: NDArray[np.int32], label: int, parts: Sequence[Segment]
 ) -> NDArray[np.int32]:
-    """Labels (H, W) in which the points of one label go to the parts that they are nearest to."""
+    """Return labels (H, W) in which the points of one label are assigned to the nearest of the parts."""
     pixels = np.flatnonzero(sight.labels == label)
     points = in_map(sight.cloud.points_camera.reshape(-1, 3)[pixels], sight.map_from_camera)
     whose = np.repeat(np.arange(len(parts)), [len(part.points) for part in parts])
@@ -54,9 +53,9 @@ def _divided(
 
 
 def _cut_up(sight: SegmentedView, labels: NDArray[np.int32]) -> SegmentedView:
-    """The same cloud with labels (H, W), of which several may be parts of one that it had before.
+    """Return the view with labels (H, W) that may split former labels.
 
-    What was known of that one holds for its parts, and these were held for one.
+    Parts inherit the statistics of their former label, and count as probably one thing.
     """
     before = np.arange(int(labels.max()) + 1)
     before[labels] = sight.labels

@@ -81,7 +81,7 @@ def test_a_frame_that_cannot_be_read_is_told_and_the_others_go_on(recording, cap
         (["--every", "2"], "--every goes with a recording"),
         (["desk", "out", "--format", "json"], "--format goes with the tree"),
         (["desk", "out", "--intrinsics", "lens.json", "--within", "0.001"], "--within takes more"),
-        (["desk", "out", "--intrinsics", "small.json"], "do not fit a picture of"),
+        (["desk", "out", "--intrinsics", "small.json"], "do not fit an image of"),
     ],
 )
 def test_what_cannot_be_done_is_told_in_one_line(recording, tmp_path, capsys, words, said):

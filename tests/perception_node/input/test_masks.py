@@ -74,16 +74,16 @@ def test_a_label_image_has_names_or_none():
     [
         (
             lambda: masks_from_runs([MaskRun(size=(3, 3), counts=(9,))], 4, 4),
-            "a mask is of 3 x 3 pixels, the picture of 4 x 4",
+            "a mask has 3 x 3 pixels, the image 4 x 4",
         ),
         (
             lambda: masks_from_runs([MaskRun(size=(4, 4), counts=(3, 4))], 4, 4),
             "add up to 7 pixels, not to 16",
         ),
-        (lambda: masks_from_runs([MaskRun(size=(4, 4), counts="~")], 4, 4), "none of its letters"),
-        (lambda: masks_from_runs([MaskRun(size=(4, 4), counts="P")], 4, 4), "cut off"),
-        (lambda: masks_from_image(MaskImage(labels=b"abc"), 2, 2), "no label image of 2 x 2 pixels"),
-        (lambda: masks_from_numbers(np.array([[3]]), ["cup"]), "only 1 names"),
+        (lambda: masks_from_runs([MaskRun(size=(4, 4), counts="~")], 4, 4), "invalid character"),
+        (lambda: masks_from_runs([MaskRun(size=(4, 4), counts="P")], 4, 4), "truncated"),
+        (lambda: masks_from_image(MaskImage(labels=b"abc"), 2, 2), "not a label image of 2 x 2 pixels"),
+        (lambda: masks_from_numbers(np.array([[3]]), ["cup"]), "but 1 names"),
         (lambda: masks_from_numbers(np.array([[-1]])), "0 for none"),
         (lambda: masks_from_numbers(np.array([[1]]), ["cup"], [0.5, 0.5]), "each name needs one"),
     ],

@@ -164,9 +164,9 @@ def test_when_only_the_front_was_known_the_rest_is_told_at_once():
 def test_what_is_gone_is_removed_if_it_is_perception_s_own():
     empty = told(track(unseen=4))
     assert (empty.names, empty.source, empty.agent) == (("cup1",), "perception", AGENT)
-    assert empty.reason == "cup1 is gone: its place was empty in 4 frames in a row"
+    assert empty.reason == "cup1 is gone: its place was empty in 4 consecutive frames"
     odd = told(track(odd=6))
-    assert odd.reason == "cup1 is gone: something else was in its place in 6 frames in a row"
+    assert odd.reason == "cup1 is gone: something else was in its place in 6 consecutive frames"
     assert told(track(unseen=3)) is None
 
 
@@ -190,7 +190,7 @@ def test_it_is_perception_s_own_only_if_nobody_has_named_or_measured_it():
 def test_a_more_special_class_is_told_with_what_it_is_called():
     vague = cup(class_="Tableware", size_m=SIZES["Cup"], preferred_reference="tableware")
     update = told(track(), vague)
-    assert (update.class_, update.reason) == ("Cup", "a closer look at cup1")
+    assert (update.class_, update.reason) == ("Cup", "better view of cup1")
     assert update.confidence > 0.8
     assert told(track(frames=2, whole_frames=2), vague) is None
     named = told(track(), structs.replace(vague, preferred_reference="my mug"))

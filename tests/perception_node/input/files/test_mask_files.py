@@ -59,7 +59,7 @@ def test_label_images(tmp_path):
         ("a.json", b"{}", "expected a list of masks"),
         ("a.json", b"[3]", "needs a segmentation"),
         ("a.json", b'[{"segmentation": [[1, 2, 3]]}]', "polygon needs x and y of at least three corners"),
-        ("a.json", b'[{"segmentation": [[0, 0, 9e9, 0, 9, 9]]}]', "far beyond the picture"),
+        ("a.json", b'[{"segmentation": [[0, 0, 9e9, 0, 9, 9]]}]', "far outside the image"),
         ("a.json", b'[{"segmentation": []}]', "or a list of polygons"),
         ("a.json", b'[{"segmentation": {"size": [2, 2], "counts": [4]}}]', "2 x 2 pixels"),
         ("a.json", b'[{"segmentation": {"size": "x", "counts": [4]}}]', r"a\.json: a mask's size must be"),
@@ -69,7 +69,7 @@ def test_label_images(tmp_path):
             r"a mask's score must be a number from 0 to 1",
         ),
         ("a.json", b'{"categories": [3], "annotations": []}', "categories are a list such as"),
-        ("a.json", b'[{"image_id": 1}, {"image_id": 2}]', "masks of 2 pictures"),
+        ("a.json", b'[{"image_id": 1}, {"image_id": 2}]', "masks of 2 images"),
         ("a.json", b'[{"segmentation": {"size": [2, 3], "counts": [%d, 3]}}]' % 10**30, "add up to"),
         ("a.json", b'[{"segmentation": {"size": [2, 3], "counts": "%s0"}}]' % (b"o" * 40), "add up to"),
         ("a.npy", b"nothing", "a.npy"),
@@ -85,7 +85,7 @@ def test_what_is_wrong_is_said_with_the_file(tmp_path, name, content, said):
 
 def test_images_of_another_size_or_of_no_numbers(tmp_path):
     np.save(tmp_path / "a.npy", LABELS)
-    with pytest.raises(BadFile, match="3 x 3 whole numbers; this one has 3 x 2 of"):
+    with pytest.raises(BadFile, match="3 x 3 integers; this one has 3 x 2 of"):
         read_masks(tmp_path / "a.npy", 3, 3)
     np.save(tmp_path / "c.npy", LABELS * 10**9)
     with pytest.raises(BadFile, match="thing number 2000000000; there may be 65535"):
