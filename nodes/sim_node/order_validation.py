@@ -1,4 +1,4 @@
-"""Validates orders before anything is done: each is accepted, or rejected with a reason."""
+"""Validates orders before execution: each is accepted, or rejected with a reason."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from semmap.schemas.joints import Joint, stated
 from semmap.schemas.scenes import BodyOrder, GripOrder, JointOrder, Placement
 
 REACH_M = 1000.0
-"""No body is put farther than this from the origin."""
+"""Maximum distance of a body from the origin."""
 
 ModelSource = Callable[[str, Vec3 | None], Model]
-"""A model by its name, at a size [m] or at its own. Raises ModelError."""
+"""Returns a model by name, at a size [m] or its own. Raises ModelError."""
 
 Newcomer = tuple[BodyRecord, Model]
 
@@ -28,13 +28,16 @@ Newcomer = tuple[BodyRecord, Model]
 def validate_spawn(
     orders: Iterable[BodyOrder], models: ModelSource, taken: Callable[[str], bool]
 ) -> tuple[dict[str, Newcomer], dict[str, str]]:
-    """What is to be made, by name, and why the rest cannot be; models read from files may take their time."""
+    """Return the bodies to create by name, and the reasons why others cannot be created.
+
+    Reading model files may take some time.
+    """
     accepted: dict[str, Newcomer] = {}
     failed: dict[str, str] = {}
     for order in orders:
         try:
             if order.name in accepted:
-                raise ModelError(f"a body named {order.name} is requested twice")
+                raise ModelError(f"body {order.name} is requested twice")
             if taken(order.name):
                 raise ModelError(f"the scene already has a body named {order.name}")
             _check_reach(order.pose)
@@ -66,7 +69,7 @@ def _newcomer(order: BodyOrder, model: Model) -> Newcomer:
 
 
 def _joints(order: BodyOrder, model: Model) -> tuple[Joint, ...]:
-    """The joints of a model, where the map says that they stand."""
+    """Return the joints of a model at the positions stated in the map."""
     joints = [
         Joint(
             name=leaf.joint.name,
@@ -85,7 +88,7 @@ def _joints(order: BodyOrder, model: Model) -> tuple[Joint, ...]:
 
 
 def _within(joint: Joint, position: float) -> float:
-    """A position between the limits."""
+    """Clamp a position to the joint's limits."""
     if joint.lower is None or joint.upper is None:
         return position
     return min(joint.upper, max(joint.lower, position))
@@ -94,9 +97,9 @@ def _within(joint: Joint, position: float) -> float:
 def joint_targets(
     orders: Iterable[JointOrder], records: Mapping[str, BodyRecord]
 ) -> tuple[dict[str, dict[str, float]], dict[str, str]]:
-    """Where the joints of each body are to go [rad, m], by the joint's own name; and why others cannot.
+    """Return target positions of each body's joints [rad, m], by joint name, and reasons for rejections.
 
-    Of several orders about one joint the last counts.
+    If several orders concern one joint, the last takes effect.
     """
     targets: dict[str, dict[str, float]] = {}
     failed: dict[str, str] = {}
@@ -111,27 +114,27 @@ def joint_targets(
 
 
 def _targets(order: JointOrder, joints: Sequence[Joint]) -> dict[str, float]:
-    of_use = [joint for joint in joints if joint.kind != "ball" and order.joint in ("", joint.name)]
-    if order.joint and not of_use:
+    movable = [joint for joint in joints if joint.kind != "ball" and order.joint in ("", joint.name)]
+    if order.joint and not movable:
         names = ", ".join(joint.name for joint in joints) or "none"
         raise ModelError(f"{order.name} has no joint named {order.joint} that can be moved; it has: {names}")
     if order.positions is not None:
         return {
             joint.name: _within(joint, order.positions[joint.name])
-            for joint in of_use
+            for joint in movable
             if joint.name in order.positions
         }
-    opening = [joint for joint in of_use if joint.opens or (order.joint and joint.switches)]
-    if not opening:
-        raise ModelError(f"{order.name} has no joint that opens it")
+    driven = [joint for joint in movable if joint.opens or (order.joint and joint.switches)]
+    if not driven:
+        raise ModelError(f"{order.name} has no joint that opens")
     share = 1.0 if order.openness is None else order.openness
-    return {joint.name: joint.position_at(share) for joint in opening}
+    return {joint.name: joint.position_at(share) for joint in driven}
 
 
 def validate_moves(
     placements: Iterable[Placement], there: Mapping[str, BodyRecord]
 ) -> tuple[list[Placement], dict[str, str]]:
-    """What is to be moved, and why the rest, by name, cannot be."""
+    """Return the moves to execute, and the reasons for rejections by name."""
     accepted: list[Placement] = []
     failed: dict[str, str] = {}
     for placement in placements:
@@ -140,10 +143,10 @@ def validate_moves(
                 raise ModelError(f"the scene has no body named {placement.name}")
             if (record := there[placement.name]).anchored:
                 holder = record.part_of or "its joint"
-                raise ModelError(f"{placement.name} is held by {holder}; only its joints move it")
+                raise ModelError(f"{placement.name} is fixed by {holder}; only its joints can move it")
             if record.held_by:
                 raise ModelError(
-                    f"{placement.name} is held by {record.held_by}; to put it elsewhere, first:"
+                    f"{placement.name} is attached to {record.held_by}; to move it, first run:"
                     f" semmap detach {placement.name}"
                 )
             _check_reach(placement.pose)
@@ -156,7 +159,7 @@ def validate_moves(
 def validate_grips(
     orders: Iterable[GripOrder], there: Mapping[str, BodyRecord]
 ) -> tuple[list[GripOrder], dict[str, str]]:
-    """Which bodies are to be held or let go, and why the rest, by name, cannot be."""
+    """Return the attachments to change, and the reasons for rejections by name."""
     accepted: list[GripOrder] = []
     failed: dict[str, str] = {}
     for order in orders:
@@ -175,19 +178,17 @@ def validate_grips(
 def _check_grip(order: GripOrder, there: Mapping[str, BodyRecord]) -> None:
     record = there[order.name]
     if order.name == order.holder:
-        raise ModelError(f"{order.name} cannot hold itself")
+        raise ModelError(f"cannot attach {order.name} to itself")
     if order.name in holders_of(order.holder, there):
-        raise ModelError(
-            f"{order.holder} is held by {order.name} or part of it, so it cannot hold {order.name}"
-        )
+        raise ModelError(f"cannot attach {order.name} to {order.holder}, which is attached to or part of it")
     if record.anchored or record.fixed:
-        where = f"held by {record.part_of or 'its joint'}" if record.anchored else "fixed where it stands"
-        raise ModelError(f"{order.name} is {where}, so nothing can take it")
+        where = f"fixed by {record.part_of or 'its joint'}" if record.anchored else "a fixed body"
+        raise ModelError(f"cannot attach {order.name}: it is {where}")
     if order.commit is None and record.held_by not in ("", order.holder):
-        raise ModelError(f"{order.name} is held by {record.held_by} already")
+        raise ModelError(f"{order.name} is already attached to {record.held_by}")
 
 
 def _check_reach(pose: Pose) -> None:
     distance = float(np.linalg.norm(pose.position_m))
     if distance > REACH_M:
-        raise ModelError(f"{distance:.0f} m from the origin is too far; the limit is {REACH_M:.0f} m")
+        raise ModelError(f"position is {distance:.0f} m from the origin; the limit is {REACH_M:.0f} m")

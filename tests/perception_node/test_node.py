@@ -309,6 +309,6 @@ def test_masks_that_do_not_fit_are_told_and_the_frame_is_looked_at_all_the_same(
         world.film()
         masks = DetectedMasks(camera="left", stamp_ns=world._stamp_ns, width=32, height=48)
         world.session.put(keys.MASKS.key, codec.encode(masks))
-        return world.seen and "of 32 x 48 pixels, the picture of 64 x 48" in caplog.text
+        return world.seen and "of 32 x 48 pixels, the image of 64 x 48" in caplog.text
 
     until(told, "it says so")

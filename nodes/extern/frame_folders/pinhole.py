@@ -50,7 +50,7 @@ def scaled(intrinsics: NDArray[np.float64], of: tuple[int, int], to: tuple[int, 
     across, down = width / of[0], height / of[1]
     if abs(across / down - 1.0) > _SAME_SHAPE:
         raise ValueError(
-            f"the intrinsics are those of pictures of {of[0]} x {of[1]}; these have {width} x {height} pixels"
+            f"the intrinsics are for images of {of[0]} x {of[1]}; this one has {width} x {height} pixels"
         )
     found = intrinsics * np.array([[across], [down], [1.0]])
     if not fits(found, width, height):
@@ -58,5 +58,5 @@ def scaled(intrinsics: NDArray[np.float64], of: tuple[int, int], to: tuple[int, 
             f"{name} {n:g}"
             for name, n in zip(("fx", "fy", "cx", "cy"), found[[0, 1, 0, 1], [0, 1, 2, 2]], strict=True)
         )
-        raise ValueError(f"the intrinsics {numbers} do not fit a picture of {width} x {height} pixels")
+        raise ValueError(f"the intrinsics {numbers} do not fit an image of {width} x {height} pixels")
     return np.asarray(found)

@@ -101,9 +101,8 @@ class Track:
             return self._all_of_it(seen, votes)
         hidden = (not seen.whole and _is_part(seen, self, config.still_m)) or is_front(now, before)
         if self.whole and hidden:
-            return replace(
-                self, votes=votes, frames=self.frames + 1, unseen=0, odd=0, absent=0
-            )  # a part of it, in its place
+            # a part of it, in its place
+            return replace(self, votes=votes, frames=self.frames + 1, unseen=0, odd=0, absent=0)
         pose, size_m = turned_like(seen.pose, seen.size_m, self)
         near = self.frames > 0 and distance_m(pose, self.pose) <= slack_m(self.size_m, config.still_m)
         still = near and turn_between(self, pose) <= config.turned_rad

@@ -1,6 +1,6 @@
-"""Grips: bodies that are held by others, as welds of MuJoCo between them.
+"""Attachments: bodies attached to others by MuJoCo weld constraints.
 
-A weld is part of the compiled model, so taking and letting go compile it anew; later compilations keep it.
+A weld is part of the compiled model, so attaching and detaching recompile it.
 """
 
 from __future__ import annotations
@@ -15,17 +15,15 @@ from semmap.schemas.entities import Pose
 _STIFF = (0.008, 1.0)
 """Time constant [s] and damping of a weld (`solref`)."""
 _HARD = (0.99, 0.999, 0.001, 0.5, 2.0)
-"""How near it comes to being rigid (`solimp`)."""
+"""Stiffness of the constraint (`solimp`)."""
 
 
 def add_welds(spec: mujoco.MjSpec, records: Mapping[str, BodyRecord]) -> None:
-    """Weld what is held to its holder; the two do not collide, nor does it with the holder's other parts."""
+    """Weld attached bodies to their holders, and exclude collisions with all parts of the holder."""
     for record in attached_records(records):
         holder = records[record.held_by]
         body = spec.body(holder.name)
-        spec.body(
-            record.name
-        ).gravcomp = 1.0  # whatever holds it bears it: an arm that droops would be no help
+        spec.body(record.name).gravcomp = 1.0  # its weight must not bend the arm
         weld = spec.add_equality(
             type=mujoco.mjtEq.mjEQ_WELD,
             objtype=mujoco.mjtObj.mjOBJ_BODY,
@@ -40,7 +38,7 @@ def add_welds(spec: mujoco.MjSpec, records: Mapping[str, BodyRecord]) -> None:
 
 
 def attached_records(records: Mapping[str, BodyRecord]) -> list[BodyRecord]:
-    """Those that are held, who holds before who is held."""
+    """Return the attached bodies, holders before their attachments."""
     found: dict[str, BodyRecord] = {}
     waiting = [record for record in records.values() if record.held_by in records]
     for record in sorted(waiting, key=lambda record: len(holders_of(record.name, records))):
@@ -49,7 +47,7 @@ def attached_records(records: Mapping[str, BodyRecord]) -> list[BodyRecord]:
 
 
 def holders_of(name: str, records: Mapping[str, BodyRecord]) -> list[str]:
-    """What a body is held by or part of, and what that is, and so on; never twice."""
+    """Return all bodies that a body is attached to or part of, directly or not, without repetition."""
     found: list[str] = []
     waiting = [name]
     while waiting:
@@ -62,20 +60,20 @@ def holders_of(name: str, records: Mapping[str, BodyRecord]) -> list[str]:
 
 
 def involves_attachment(names: Iterable[str], records: Mapping[str, BodyRecord]) -> bool:
-    """Is one of these held, or does it hold something?"""
+    """Return whether one of these is attached, or has an attachment."""
     names = set(names)
     return any(r.held_by and not names.isdisjoint((r.name, r.held_by)) for r in records.values())
 
 
 def _in_body_frames(record: BodyRecord, holder: BodyRecord) -> list[float]:
-    """Where the held MuJoCo body is in the frame of the other: position [m] and quaternion."""
+    """Return the pose of the attached MuJoCo body in the frame of the other: position [m] and quaternion."""
     grip = record.grip or Pose(position_m=(0.0, 0.0, 0.0))
     position, quaternion = frame_of(grip, record.origin_m)
     return [*(position + holder.origin_m).tolist(), *quaternion.tolist()]
 
 
 def _whole_of(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> list[str]:
-    """The named bodies of the tree that a body is in."""
+    """Return the named bodies of the tree of a body."""
     while body.parent is not None and body.parent.name != "world":
         body = body.parent
     found, waiting = [], [body]

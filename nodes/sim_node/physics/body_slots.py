@@ -1,8 +1,8 @@
-"""Body slots: spare bodies of a compiled model that newcomers are written into.
+"""Body slots: spare bodies of a compiled model into which new bodies are written.
 
-To compile costs time with the square of the number of free bodies, so a model is compiled with some bodies
-more than are asked for. A newcomer is written into one of these: the rows that it has in a model compiled of
-it alone are copied. Who leaves is hidden, touches nothing and is too heavy to move, until another comes.
+Compilation time grows with the square of the number of free bodies, so a model is compiled with some spare
+bodies. A new body is written into a spare one by copying its rows from a model that contains only this body.
+A deleted body is hidden, does not collide and is too heavy to move until the slot is reused.
 """
 
 from __future__ import annotations
@@ -28,18 +28,19 @@ _GEOM = (
 _NODE = ("depth", "child", "aabb")
 _IMMOVABLE_KG = 1e9
 _SPARES = (4, 32)
-"""At least and at most so many are compiled to spare: one to every `_SPARE_OF` bodies in between."""
+"""Minimum and maximum number of spare slots: one for every `_SPARE_OF` bodies in between."""
 
 _SPARE_OF = 8
 _SPARE_PARTS = (14, 14, 14, 28)
-"""Nine models out of ten have no more than 18 parts, three out of four 12."""
+"""Nine models out of ten have at most 18 parts, three out of four at most 12."""
 
 
 @dataclass(frozen=True)
 class BodySlot:
-    """Body number `body` of a model, which stays where it is put if `static`.
+    """Body number `body` of a model, without free joint if `static`.
 
-    It has `geoms` geoms from number `geom` on and `nodes` nodes of the tree of bounding boxes from `node` on.
+    It has `geoms` geoms from number `geom` on, and `nodes` nodes of the bounding volume hierarchy from `node`
+    on.
     """
 
     body: int
@@ -51,7 +52,7 @@ class BodySlot:
 
     @staticmethod
     def of(model: mujoco.MjModel, name: str) -> BodySlot:
-        """The body of that name in a model as it was compiled."""
+        """Return the slot of a named body in a newly compiled model."""
         body = model.body(name).id
         return BodySlot(
             body=body,
@@ -63,12 +64,12 @@ class BodySlot:
         )
 
     def has_room_for(self, alone: mujoco.MjModel, *, static: bool) -> bool:
-        """Whether a body has room here."""
+        """Return whether a body fits."""
         return self.static == static and self.geoms >= alone.ngeom and self.nodes >= alone.body_bvhnum[1]
 
 
 def spare_slots(bodies: int) -> list[tuple[bool, int]]:
-    """The slots to compile beside so many bodies: for each whether it is static, and for how many parts."""
+    """Return the spare slots for this many bodies: for each whether it is static, and its number of parts."""
     least, most = _SPARES
     count = min(most, least + bodies // _SPARE_OF)
     return [(i % 6 == 5, _SPARE_PARTS[i % len(_SPARE_PARTS)]) for i in range(count)]
@@ -81,7 +82,7 @@ def fill_slot(
     newcomer: tuple[BodyRecord, mujoco.MjModel],
     pose: Pose,
 ) -> None:
-    """Make `slot` the body of the newcomer, whose model `alone` is, standing at `pose` and awake."""
+    """Write a body, whose model is `alone`, into a slot, at `pose` and awake."""
     (record, alone), body = newcomer, slot.body
     clear_slot(model, data, slot)
     for field in _BODY:
@@ -107,11 +108,9 @@ def fill_slot(
 
 
 def clear_slot(model: mujoco.MjModel, data: mujoco.MjData, slot: BodySlot) -> None:
-    """Nobody is here: nothing to see, nothing to touch, nothing that moves, and no name."""
+    """Clear a slot: it is invisible, does not collide or move, and has no name."""
     body = slot.body
-    model.name_bodyadr[body] = (
-        model.nnames - 1
-    )  # where the last name ends; names themselves cannot be written
+    model.name_bodyadr[body] = model.nnames - 1  # the end of the last name; names are read-only
     geoms = slice(slot.geom, slot.geom + slot.geoms)
     model.geom_contype[geoms] = model.geom_conaffinity[geoms] = 0
     model.geom_group[geoms] = build.FELT_GROUP
@@ -125,7 +124,7 @@ def clear_slot(model: mujoco.MjModel, data: mujoco.MjData, slot: BodySlot) -> No
 
 
 def _copy_boxes(model: mujoco.MjModel, slot: BodySlot, alone: mujoco.MjModel) -> None:
-    """The tree of bounding boxes, whose leaves name geoms by number."""
+    """Copy the bounding volume hierarchy, whose leaves refer to geoms by number."""
     count = int(alone.body_bvhnum[1])
     nodes = slice(slot.node, slot.node + count)
     for field in _NODE:
@@ -138,7 +137,7 @@ def _copy_boxes(model: mujoco.MjModel, slot: BodySlot, alone: mujoco.MjModel) ->
 def _set_frames(
     model: mujoco.MjModel, data: mujoco.MjData, slot: BodySlot, position: Floats, quaternion: Floats
 ) -> None:
-    """What kinematics would work out; it passes over what is static or was asleep."""
+    """Set the frames, since MuJoCo's kinematics skips static and sleeping bodies."""
     rotation = rotation_matrix(quaternion.tolist())
     data.xpos[slot.body] = data.xipos[slot.body] = position
     data.xquat[slot.body] = quaternion
@@ -150,9 +149,9 @@ def _set_frames(
 
 @lru_cache(maxsize=256)
 def compiled_alone(model: Model) -> mujoco.MjModel | None:
-    """A MuJoCo model of nothing but this one body, free.
+    """Return a MuJoCo model of only this body, free.
 
-    None if it has meshes, which no slot knows, or joints, whose bodies no slot has.
+    None for a body with meshes or joints, which slots do not support.
     """
     if model.leaves or any(part.mesh for part in model.parts):
         return None

@@ -23,10 +23,11 @@ _STEPS_A_CHECK = 25
 
 
 class Engine:
-    """Steps the bodies; compiles anew when one comes, or changes between held and free, and finds no slot.
+    """Simulates the bodies, and recompiles the model if no slot is free for a new or changed body.
 
-    `records` has every body, in the order of `index`; `resting` (N,) says which rest. `revision` grows with
-    every change of the model; while the next is made (`compiling`) bodies are asked about and stepped only.
+    `records` has every body, in the order of `index`; `resting` (N,) marks resting bodies. `revision`
+    increases with every change of the model. During compilation (`compiling`), bodies may only be queried and
+    stepped.
     """
 
     def __init__(
@@ -35,9 +36,10 @@ class Engine:
         while_waiting: Callable[[], None],
         is_class: Callable[[str], bool] = lambda word: False,
     ) -> None:
-        """A world of nothing but its ground yet; `while_waiting` is called while it compiles, and may `step`.
+        """Compile the ground without bodies. `while_waiting` is called meanwhile, and may call `step`.
 
-        `is_class` tells the names of classes, by which parts of the world's bodies are bodies of their own.
+        `is_class` returns whether a word names a class, which makes parts of the world's bodies separate
+        bodies.
         """
         world = build.run_in_background(lambda: base_scene.prepare(ground), while_waiting)
         self._while_waiting = while_waiting
@@ -47,7 +49,7 @@ class Engine:
         self._free_slots: list[BodySlot] = []
         self.records = base_scene.bodies_of(ground, world, is_class)
         self.left_out = base_scene.left_out(world.model, self.records)
-        """The bodies of the world that are only parts of others, each by name or by what it is part of."""
+        """Bodies of the world file that are only parts of others, by name or by their parent."""
         self.revision = 0
         self.compiling = False
         self.model: mujoco.MjModel
@@ -61,36 +63,36 @@ class Engine:
         self.resting: NDArray[np.bool_] = self.index.tree < 0
 
     def poses(self) -> Floats:
-        """(N, 7): bottom centre [m] and quaternion wxyz of each body, map frame."""
+        """Return (N, 7) bottom centre [m] and quaternion wxyz of each body, map frame."""
         return self.index.poses(self.data)
 
     def positions(self) -> Floats:
-        """(J,): where each joint of a body stands [rad, m], in the order of the index."""
+        """Return (J,) the position of each body joint [rad, m], in the order of the index."""
         return self.index.positions(self.data)
 
     def obstacles(self) -> Obstacles:
-        """The scene as it is now, for questions of who is in whose way."""
+        """Return the current collision geometry."""
         mujoco.mj_kinematics(self.model, self.data)
         return Obstacles(self.model, self.data, self.index, self.records)
 
     def has(self, name: str) -> bool:
-        """Whether there is a body of this name, or a part of one of the world's own."""
+        """Return whether a body of this name exists, or a part of one of the world's own."""
         return name in self.records or self._ground.body(name) is not None
 
     def shape(self, name: str) -> Model | None:
-        """The model that a body was made from; None for the world's own, and for one that is not there."""
+        """Return the model of a body; None for the world's own and for unknown bodies."""
         return self._shapes.get(name)
 
-    # bodies come, go and change
+    # Changes of bodies
 
     def add(self, newcomers: Sequence[tuple[BodyRecord, Model]]) -> None:
-        """Put bodies where their records say."""
+        """Add bodies at their ordered poses."""
         for record, shape in newcomers:
             self.records[record.name], self._shapes[record.name] = record, shape
         self._arrange({record.name: record.ordered for record, _ in newcomers})
 
     def remove(self, names: Sequence[str]) -> None:
-        """Take bodies out."""
+        """Remove bodies."""
         own = [name for name in names if name not in self._shapes]
         jointed = any(self._shapes[name].leaves for name in names if name in self._shapes)
         jointed = attachments.involves_attachment(names, self.records) or jointed
@@ -103,7 +105,7 @@ class Engine:
             self._shapes.pop(name, None)
             del self.records[name]
         for name in own:
-            if (body := self._ground.body(name)) is not None:  # else it went with what it was part of
+            if (body := self._ground.body(name)) is not None:  # else it was removed with its parent
                 self._ground.delete(body)
         if own or jointed:
             self._recompile({})
@@ -111,12 +113,12 @@ class Engine:
             self._reindex()
 
     def hold(self, poses: Mapping[str, Pose]) -> None:
-        """Fix bodies at these poses or set them free there, solid or ghost, as their records say now."""
+        """Set bodies at these poses static or free, and colliding or not, as in their records."""
         if poses:
             self._arrange(poses)
 
     def put(self, poses: Mapping[str, Pose]) -> None:
-        """Set free bodies down at these poses, with no speed."""
+        """Set free bodies to these poses, without speed."""
         for name, pose in poses.items():
             row = self.index.row[name]
             address, dof = self.index.qpos[row], self.index.dof[row]
@@ -127,13 +129,13 @@ class Engine:
             self.data.qacc_warmstart[dof : dof + 6] = 0.0
 
     def grip(self, names: Collection[str]) -> None:
-        """Have bodies held, or let go, as their records say now; who is held goes where it is held."""
+        """Attach or detach bodies as in their records; an attached body moves to its attach pose."""
         poses = self.poses()
         self._recompile({name: pose_of(poses[self.index.row[name]]) for name in names})
         self.carry(names)
 
     def carry(self, names: Collection[str]) -> None:
-        """Put bodies, and all that these hold, where they are held."""
+        """Move attached bodies, and those attached to them, to their attach poses."""
         for record in attachments.attached_records(self.records):
             above = attachments.holders_of(record.name, self.records)
             if record.static or record.grip is None or not {record.name, *above} & set(names):
@@ -144,7 +146,7 @@ class Engine:
         mujoco.mj_kinematics(self.model, self.data)
 
     def drive(self, name: str, targets: Mapping[str, float]) -> None:
-        """Begin to move joints of a body, by their own names, to these positions [rad, m]."""
+        """Start to move joints of a body, by name, to these positions [rad, m]."""
         record = self.records[name]
         of = {
             joint.name: in_mujoco for joint, in_mujoco in zip(record.joints, record.joint_names, strict=True)
@@ -159,13 +161,13 @@ class Engine:
     def drive_base(
         self, name: str, points: Sequence[tuple[float, float]], yaw_rad: float | None, speed_m_s: float
     ) -> None:
-        """Begin to drive a robot's base through these points [m], at the end to face `yaw_rad`."""
+        """Start to drive a robot's base through these points [m], finally facing `yaw_rad`."""
         self.base_controller.begin(name, points, yaw_rad, speed_m_s)
         sleep.wake(self.data, int(self.index.tree[self.index.row[name]]))
         self._keep_awake((name,))
 
     def set_joints(self, names: Iterable[str]) -> None:
-        """Put the joints of these bodies where their records say, with no speed and not pushed any more."""
+        """Set the joints of these bodies to the positions in their records, without speed or force."""
         for name in names:
             record = self.records[name]
             self._drives.stop(record.joint_names)
@@ -174,14 +176,15 @@ class Engine:
                 if joint.kind != "ball":
                     self.data.qpos[self.index.joint_qpos[row]] = joint.position
                     self.data.qvel[self.index.joint_dof[row]] = 0.0
-                    self.data.qfrc_applied[self.index.joint_dof[row]] = 0.0  # else a drive's last push stays
+                    # else the last force of a drive remains
+                    self.data.qfrc_applied[self.index.joint_dof[row]] = 0.0
 
     def lift(self, row: int, rise_m: float) -> None:
         """Raise a free body."""
         self.data.qpos[self.index.qpos[row] + 2] += rise_m
 
     def _arrange(self, poses: Mapping[str, Pose]) -> None:
-        """Give each of these bodies a slot at its pose; compile anew if there are not enough."""
+        """Assign a slot to each of these bodies at its pose; recompile if there are not enough."""
         for name in poses:
             self._release_slot(name)
         enough = len(poses) <= len(self._free_slots) and not attachments.involves_attachment(
@@ -199,7 +202,7 @@ class Engine:
             self._free_slots.append(slot)
 
     def _assign_slot(self, name: str, pose: Pose) -> bool:
-        """Give the body the smallest slot that will do; False if there is none."""
+        """Assign the smallest slot that fits; return False if there is none."""
         record, shape = self.records[name], self._shapes.get(name)
         alone = body_slots.compiled_alone(shape) if shape is not None else None
         if alone is None:
@@ -214,7 +217,7 @@ class Engine:
         return True
 
     def _recompile(self, poses: Mapping[str, Pose]) -> None:
-        """Compile everything anew, these bodies at new poses, the others in the state they have by then."""
+        """Recompile the model with these bodies at new poses, and the others in their current state."""
         model, data, index = self.model, self.data, self.index
         now = {name: pose_of(row) for name, row in zip(index.names, self.poses(), strict=True)}
         now.update(poses)
@@ -237,7 +240,7 @@ class Engine:
         self._carry_rest_state(before)
 
     def _compile(self, poses: Mapping[str, Pose]) -> None:
-        """A new model of all bodies, each at its pose, and of some vacant slots."""
+        """Compile a model of all bodies, each at its pose, with some spare slots."""
         self.compiling = True
         try:
             self.model, spares = build.run_in_background(lambda: self._compiled(poses), self._while_waiting)
@@ -254,7 +257,7 @@ class Engine:
         self.revision += 1
 
     def _compiled(self, poses: Mapping[str, Pose]) -> tuple[mujoco.MjModel, list[str]]:
-        """That model, and the names of the vacant slots."""
+        """Return that model, and the names of the spare slots."""
         spec = self._ground.copy()
         made = [(self.records[name], shape, poses[name]) for name, shape in self._shapes.items()]
         build.add_bodies(spec, made)
@@ -274,32 +277,32 @@ class Engine:
         return BodyIndex.of(self.model, self.records, numbers)
 
     def _rows_in(self, index: BodyIndex) -> NDArray[np.int64]:
-        """(N,) the row that each body has in another index, -1 if none."""
+        """Return (N,) the row of each body in another index, -1 if none."""
         return np.array([index.row.get(name, -1) for name in self.index.names], dtype=np.int64)
 
     def _reindex(self) -> None:
-        """Go on with other bodies in the same model."""
+        """Update the index after a change of bodies in the same model."""
         index = self.index
         self.index = self._indexed()
         self.revision += 1
         self._carry_rest_state(self._rows_in(index))
 
     def _carry_rest_state(self, before: NDArray[np.int64]) -> None:
-        """Those who were there, in the rows `before`, and rested rest on."""
+        """Keep the rest state of bodies that existed before, in the rows `before`."""
         self._rest = self._rest.carried_over(self.poses(), self.data.time, before)
         rested = np.append(self.resting, False)[before]
         self._joint_rest = JointRestDetector(self.positions(), self.data.time)
         self.resting = (self.index.tree < 0) | rested
 
     def aim(self, camera: str, view: View) -> None:
-        """Put a camera of the ground where the view is seen from."""
+        """Set a camera of the ground to the pose of a view."""
         base_scene.aim(self._ground.camera(camera), view)
         self._recompile({})
 
-    # time goes on
+    # Simulation
 
     def step(self, duration_s: float) -> None:
-        """Let `duration_s` of simulated time pass; it costs nothing while everything sleeps."""
+        """Advance the simulated time by `duration_s`; this takes no time while everything sleeps."""
         end = self.data.time + duration_s
         timestep = self.model.opt.timestep
         while (left := round((end - self.data.time) / timestep)) > 0:
@@ -326,32 +329,29 @@ class Engine:
             self._keep_awake(self.base_controller.names)
 
     def _keep_awake(self, names: Iterable[str]) -> None:
-        """Robots that drive do not rest, also before they move and where something is in their way."""
+        """Mark driving robots as not resting, also while they are blocked."""
         for name in names:
             if (row := self.index.row.get(name)) is not None:
                 self.resting[row] = False
 
     @property
     def asleep(self) -> bool:
-        """Nothing moves: every body sleeps, and none is about to be woken."""
+        """Return whether every body sleeps and none is about to wake."""
         return not self._drives and not self.base_controller and sleep.all_asleep(self.data)
 
     @property
     def awake(self) -> int:
-        """How many bodies do not sleep, vacant slots with them."""
+        """Return the number of awake bodies, including spare slots."""
         return sleep.awake(self.data)
 
     def wake(self, names: Iterable[str]) -> None:
-        """Wake bodies, and with each the heap that it sleeps in."""
+        """Wake bodies, each with the island that it sleeps in."""
         for name in names:
             if name in self.records:
                 sleep.wake(self.data, self.index.tree[self.index.row[name]])
 
     def disturb(self, rows: Sequence[int]) -> None:
-        """These bodies were taken in hand: those that are free do not rest before they were still anew.
-
-        Nor does what moves along with them, as a robot's gripper does.
-        """
+        """Restart rest detection of these bodies, and of bodies in the same kinematic tree."""
         tree = self.index.tree
         along = np.flatnonzero((tree >= 0) & np.isin(tree, tree[list(rows)]))
         taken = [*rows, *along.tolist()]
@@ -359,7 +359,7 @@ class Engine:
         self.resting[taken] = tree[taken] < 0
 
     def _stop_diverged(self, before: Floats) -> None:
-        """A body whose motion ran out of bounds stops where it was a step ago."""
+        """Stop a body whose state is no longer finite, at its previous position."""
         bad = ~np.isfinite(self.data.qpos)
         self.data.qpos[bad] = before[bad]
         self.data.qvel[~np.isfinite(self.data.qvel)] = 0.0

@@ -1,4 +1,4 @@
-"""Which joints of an MJCF file open something and which switch it, and at which end that is shut or off."""
+"""Texts in an MJCF file that declare which joints are switches, and their closed or off positions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import mujoco
 
 CLOSED_TEXT: Final = "semmap-closed:"
 OFF_TEXT: Final = "semmap-off:"
-"""`<text name="semmap-off:JOINT" data="upper"/>`: it is a switch, and off at its upper limit."""
+"""`<text name="semmap-off:JOINT" data="upper"/>`: the joint is a switch, and off at its upper limit."""
 ENDS: Final = ("lower", "upper")
 
 _SWITCHES: Final = ("switch", "knob", "button")
@@ -19,14 +19,14 @@ _JOINT: Final = int(mujoco.mjtEq.mjEQ_JOINT)
 
 
 class JointTexts(NamedTuple):
-    """What the texts of a file say of its joints, by the joint's name: `lower` or `upper`."""
+    """The declarations of a file, by joint name: `lower` or `upper`."""
 
     closed: dict[str, str]
     off: dict[str, str]
 
     @classmethod
     def of(cls, spec: mujoco.MjSpec) -> JointTexts:
-        """What its texts say; what they say of other ends is passed over."""
+        """Read the declarations of a file; invalid ends are ignored."""
         return cls(
             *(
                 {name: end for name, end in read_texts(spec, p) if end in ENDS}
@@ -35,13 +35,13 @@ class JointTexts(NamedTuple):
         )
 
     def closed_end(self, joint: str) -> str | None:
-        """The end at which a joint is said to be shut, or off."""
+        """Return the declared end at which a joint is closed, or off."""
         return self.off.get(joint) or self.closed.get(joint)
 
     def is_switch(self, model: mujoco.MjModel, joint: int) -> bool:
-        """Is a joint a switch: by a text or, without one, by its name or that of the body that it moves?
+        """Return whether a joint is a switch: by a text, else by its name or that of the body it moves.
 
-        `knob_1`, `lightswitch` and `PowerButton` are; a `door_knob` is none.
+        `knob_1`, `lightswitch` and `PowerButton` are switches; a `door_knob` is not.
         """
         name = model.joint(joint).name
         if name in self.off or name in self.closed:
@@ -52,7 +52,7 @@ class JointTexts(NamedTuple):
 
 
 def coupled_joints(model: mujoco.MjModel, joints: set[int]) -> set[int]:
-    """The other joints that equality constraints tie to some of these: they stand as those do."""
+    """Return the other joints that equality constraints couple to some of these."""
     found = set(joints)
     pairs = [
         {int(model.eq_obj1id[number]), int(model.eq_obj2id[number])}
@@ -65,13 +65,13 @@ def coupled_joints(model: mujoco.MjModel, joints: set[int]) -> set[int]:
 
 
 def read_texts(spec: mujoco.MjSpec, prefix: str) -> list[tuple[str, str]]:
-    """The texts of a file whose names begin so: the rest of the name, and what they say."""
+    """Return the texts of a file whose names have this prefix: the rest of the name, and the data."""
     texts = ((text.name, text.data) for text in spec.texts)
     return [(name.removeprefix(prefix), data) for name, data in texts if name.startswith(prefix)]
 
 
 def _words(name: str) -> list[str]:
-    """`PowerButton_2` is power, button."""
+    """Split a name into words: power, button for `PowerButton_2`."""
     return [word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+", name)]
 
 

@@ -1,8 +1,8 @@
-"""Where a body can stand: overlap, lifting onto a support, ghosts.
+"""Finds a valid place for a body: overlap, lifting onto a support, non-colliding bodies.
 
-Maps say where things are, not always possibly so: a cup and a table at one spot, two cupboards in one
-place. Nothing is ever shifted sideways. A thing that a support can carry is lifted onto it; whatever
-else would start inside something stays where it is said to be as a *ghost*, seen and not colliding.
+Maps may contain impossible poses: a cup and a table at one spot, two cupboards in one place. Bodies are never
+shifted sideways. A body is lifted if a support can carry it. Any other body that would start inside another
+stays at its pose as a *ghost*: visible, but not colliding.
 """
 
 from __future__ import annotations
@@ -16,7 +16,10 @@ from semmap.nodes.sim_node.placement.obstacles import CLEARANCE_M, GROUND, Obsta
 
 @dataclass(frozen=True)
 class Placed:
-    """What became of one body: lifted by `rise_m`, or a ghost, as the body `in_the_way` fills its place."""
+    """The result for one body: lifted by `rise_m`, or a ghost.
+
+    `in_the_way` is the body that occupies a ghost's place.
+    """
 
     rise_m: float = 0.0
     ghost: bool = False
@@ -24,9 +27,9 @@ class Placed:
 
 
 def place(obstacles: Obstacles, rows: Sequence[int]) -> dict[int, Placed]:
-    """Find room for the bodies `rows`, the biggest first, among all others, which stay.
+    """Place the bodies `rows`, largest first, among all others, which stay.
 
-    A standing body that a newcomer is meant to carry is lifted onto it, so it may be in the answer too.
+    A body that a new one is meant to carry is lifted onto it, so it may be in the result.
     """
     obstacles.standing[list(rows)] = False
     queue = deque(sorted(rows, key=lambda row: (not obstacles.is_fixed(row), -obstacles.volume[row])))
@@ -65,9 +68,9 @@ def _yields(obstacles: Obstacles, other: int, newcomer: int) -> bool:
 
 
 def _lift(obstacles: Obstacles, row: int, onto: list[int]) -> float | None:
-    """Raise the body onto the lowest surface where it is free, from the first of `onto` up if any is named.
+    """Raise the body onto the lowest free surface; if `onto` is given, from the first of its surfaces up.
 
-    Answers by how much [m], or None if there is no such surface.
+    Returns the rise [m], or None if there is no such surface.
     """
     start = float(obstacles.body_low[row, 2])
     reached = not onto

@@ -1,4 +1,4 @@
-"""BaseController: mobile bases on their way, steered by the velocity actuators of their models."""
+"""Controller of mobile bases, which uses the velocity actuators of their models."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from semmap.schemas.scenes import UPRIGHT
 
 Outcome = Literal["there", "blocked", "fallen", "stopped"]
 ACTUATORS: Final = ("drive_x", "drive_y", "drive_yaw")
-"""Velocities along and about the base's own axes; in the world each is called `NAME_drive_x`."""
+"""Velocities along and about the base's own axes; their names in the world are `NAME_drive_x` etc."""
 
 _NEAR_M, _PASSED_M, _FAR_M = 0.015, 0.15, 0.3
 _TURNED_RAD, _AHEAD_RAD = 0.02, 0.3
-"""It turns to where it goes before it goes there, if that is far, so that its cameras see what is ahead."""
+"""The base turns towards a far goal before it drives, so that its cameras see the path."""
 _TURN_GAIN, _TURN_RAD_S, _GAIN = 2.5, 1.2, 1.6
 _STUCK_S, _PROGRESS = 4.0, 0.01
 
@@ -30,13 +30,13 @@ class _DriveCommand:
     yaw_rad: float | None
     speed_m_s: float
     left: float = math.inf
-    """How far it was from its next point at best [m + rad]."""
+    """The smallest distance to the next point so far [m + rad]."""
     better_s: float = 0.0
-    """When that was, in simulated time."""
+    """The simulated time of the smallest distance."""
 
 
 def actuators(model: mujoco.MjModel, name: str) -> tuple[int, ...]:
-    """The three that drive a robot's base; nothing if it lacks one."""
+    """Return the three actuators of a robot's base; empty if one is missing."""
     found = tuple(
         mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, f"{name}_{axis}") for axis in ACTUATORS
     )
@@ -44,43 +44,43 @@ def actuators(model: mujoco.MjModel, name: str) -> tuple[int, ...]:
 
 
 class BaseController:
-    """Those under way, by robot; owned by the engine, which lets them `steer` every few steps."""
+    """The active drive commands, by robot. The engine calls `steer` every few steps."""
 
     def __init__(self) -> None:
-        """Nobody drives."""
-        self._under_way: dict[str, _DriveCommand] = {}
+        """Start without commands."""
+        self._active: dict[str, _DriveCommand] = {}
         self.ended: dict[str, Outcome] = {}
-        """How the courses ended that nobody has asked about yet."""
+        """Outcomes of ended commands that were not fetched yet."""
 
     def __bool__(self) -> bool:
-        return bool(self._under_way)
+        return bool(self._active)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The robots that drive."""
-        return tuple(self._under_way)
+        """Return the driving robots."""
+        return tuple(self._active)
 
     def begin(
         self, name: str, points: Sequence[tuple[float, float]], yaw_rad: float | None, speed_m_s: float
     ) -> None:
-        """Drive through these points [m], and face `yaw_rad` at the last; another command is given up."""
-        if name in self._under_way:
+        """Drive through these points [m], with the final orientation `yaw_rad`; replaces another command."""
+        if name in self._active:
             self.ended[name] = "stopped"
-        self._under_way[name] = _DriveCommand(list(points), yaw_rad, speed_m_s)
+        self._active[name] = _DriveCommand(list(points), yaw_rad, speed_m_s)
 
     def stop(self, model: mujoco.MjModel, data: mujoco.MjData, name: str, outcome: Outcome) -> None:
-        """End a command, if there is one; the base stands still."""
-        if self._under_way.pop(name, None) is not None:
+        """Stop a robot, if it drives."""
+        if self._active.pop(name, None) is not None:
             data.ctrl[list(actuators(model, name))] = 0.0
             self.ended[name] = outcome
 
     def steer(self, model: mujoco.MjModel, data: mujoco.MjData, index: BodyIndex) -> None:
-        """Work out the velocities of all that drive."""
-        for name, command in list(self._under_way.items()):
+        """Compute the velocities of all driving robots."""
+        for name, command in list(self._active.items()):
             row = index.row.get(name)
             wheels = actuators(model, name)
             if row is None or index.qpos[row] < 0 or not wheels:
-                self._under_way.pop(name)
+                self._active.pop(name)
                 self.ended[name] = "blocked"
                 continue
             outcome = self._steer(data, index, row, wheels, command)
@@ -124,5 +124,5 @@ class BaseController:
 
 
 def _wrapped(angle_rad: float) -> float:
-    """The same angle in [-pi, pi]."""
+    """Return the angle in [-pi, pi]."""
     return math.remainder(angle_rad, 2.0 * math.pi)

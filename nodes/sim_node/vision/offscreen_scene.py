@@ -1,4 +1,4 @@
-"""A scene for a film: bodies stand exactly where they are put, without physics, and are seen by one view."""
+"""A scene for rendering videos: bodies are placed exactly, without physics."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Rgb = NDArray[np.uint8]
 
 
 class OffscreenScene:
-    """The world of a file, with bodies that come, go and are put elsewhere. Bound to one thread."""
+    """The world of a file, with bodies that are added, removed and moved. Bound to one thread."""
 
     def __init__(
         self,
@@ -36,10 +36,10 @@ class OffscreenScene:
         data: Path | None = None,
         graphics: bool = True,
     ) -> None:
-        """Of a world in JSON, whose bodies are entities, the floor alone is taken; so it is without a file.
+        """Load the world. A JSON world, whose bodies are entities, provides only a floor, as no file does.
 
-        `models` is a folder of model files, `data` the map's data folder, where some may be, too. Where
-        OpenGL is not to be had, or without `graphics`, rays are cast. Raises BadFile.
+        `models` is a folder of model files, and `data` the map's data folder, which may contain some. Without
+        OpenGL, or without `graphics`, rays are cast. Raises BadFile.
         """
         bare = world is None or is_scene(world)
         ground = base_scene.bare_floor() if bare or world is None else base_scene.read_mjcf(world)
@@ -49,35 +49,35 @@ class OffscreenScene:
 
     @property
     def has_graphics(self) -> bool:
-        """Does OpenGL draw? Else rays are cast, with flat colours."""
+        """Return whether OpenGL is used; otherwise rays are cast, with flat colours."""
         return self._eye.has_graphics
 
     def __contains__(self, name: object) -> bool:
-        """Is there a body of this name?"""
+        """Return whether a body of this name exists."""
         return name in self._engine.records
 
-    def add(self, ordered: Iterable[BodyOrder]) -> Mapping[str, str]:
-        """Make bodies, each where it is ordered to be; why some cannot be made, by name."""
-        made, failed = order_validation.validate_spawn(list(ordered), self._models, self._engine.has)
+    def add(self, orders_: Iterable[BodyOrder]) -> Mapping[str, str]:
+        """Add bodies at their ordered poses; return the reasons for rejections by name."""
+        made, failed = order_validation.validate_spawn(list(orders_), self._models, self._engine.has)
         if made:
             self._engine.add(list(made.values()))
         return failed
 
     def remove(self, names: Iterable[str]) -> None:
-        """Take bodies away; names that are not there are passed over."""
+        """Remove bodies; unknown names are ignored."""
         there = [name for name in names if name in self._engine.records]
         if there:
             self._engine.remove(there)
 
     def put(self, poses: Mapping[str, Pose]) -> None:
-        """Put bodies elsewhere, whatever is there already; names that are not there are passed over."""
+        """Move bodies, without collision checks; unknown names are ignored."""
         there = {name: pose for name, pose in poses.items() if name in self._engine.records}
         static = {name for name in there if self._engine.records[name].static}
         self._engine.hold({name: there[name] for name in static})
         self._engine.put({name: pose for name, pose in there.items() if name not in static})
 
     def extent(self) -> tuple[Floats, Floats]:
-        """Lowest and highest corner, each (3,) [m], of the box around all bodies but those far off."""
+        """Return lowest and highest corner, each (3,) [m], of the box around all bodies but outliers."""
         obstacles = self._engine.obstacles()
         felt = np.isfinite(obstacles.body_low).all(axis=1)
         return bulk(obstacles.body_low[felt], obstacles.body_high[felt])
@@ -85,9 +85,9 @@ class OffscreenScene:
     def view(
         self, width: int, height: int, *, camera: str = "", box: tuple[Vector, Vector] | None = None
     ) -> View:
-        """That of a camera of the world; of a box (lowest and highest corner [m]) from above; or of all.
+        """Return the view of a camera, of a box (lowest and highest corner [m]) from above, or of everything.
 
-        Raises BadRequest for a camera that the world does not have.
+        Raises BadRequest for an unknown camera.
         """
         if camera:
             return camera_view(self._engine.model, self._engine.data, camera, width, height)
@@ -96,11 +96,11 @@ class OffscreenScene:
         return overview(*self.extent(), width, height)
 
     def picture(self, view: View, labels: Mapping[str, str]) -> Rgb:
-        """(H, W, 3) what the view sees; `labels` are draw_labels beside the bodies of these names."""
+        """Render the view (H, W, 3); `labels` are drawn next to the bodies of these names."""
         model, data = self._engine.model, self._engine.data
         mujoco.mj_kinematics(model, data)
         mujoco.mj_camlight(model, data)
-        scale = 2 if self.has_graphics else 1  # smooth edges, where they cost little
+        scale = 2 if self.has_graphics else 1  # antialiasing, if it is cheap
         fine = View(
             scale * view.width,
             scale * view.height,
@@ -117,7 +117,7 @@ class OffscreenScene:
         return np.asarray(image)
 
     def _tops(self, names: Iterable[str]) -> dict[str, Floats]:
-        """The middle of the top (3,) [m] of each of these bodies."""
+        """Return the centre of the top (3,) [m] of each of these bodies."""
         obstacles, found = self._engine.obstacles(), {}
         for name in names:
             if (row := self._engine.index.row.get(name)) is not None:

@@ -1,4 +1,4 @@
-"""Renders images on a thread of its own, from copies, so that the simulation is never blocked."""
+"""Renders images on a separate thread, from copies, so that the simulation is never blocked."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Plane = tuple[CameraFrame, NDArray[np.generic]]
 
 @dataclass(frozen=True)
 class SceneSnapshot:
-    """The world at one moment, all of it copies. `names` (ngeom,) is the body of each geom, "" for none."""
+    """A copy of the world at one moment. `names` (ngeom,) is the body of each geom, "" for none."""
 
     model: mujoco.MjModel
     data: mujoco.MjData
@@ -34,37 +34,40 @@ class SceneSnapshot:
 
 
 class VideoRenderer:
-    """Owns the thread, and on it the only OpenGL context."""
+    """Owns the rendering thread and its OpenGL context."""
 
     def __init__(self, config: CameraConfig, segments_wanted: Callable[[], bool] = lambda: True) -> None:
-        """`segments_wanted()`: whether anybody looks at them just now; they cost as much as a picture."""
+        """Start the thread.
+
+        `segments_wanted()` returns whether segments have subscribers, since they are costly.
+        """
         self._config = config
         self._segments_wanted = segments_wanted
-        self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="studio")
+        self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="renderer")
         self._eye: Eye | None = None
         self._rng = np.random.default_rng(0)
         self._rendering: Future[None] | None = None
 
     def close(self) -> None:
-        """Let the picture in hand be finished, and no other be begun."""
+        """Finish the current image and stop."""
         self._thread.shutdown(wait=True, cancel_futures=True)
 
     def render_picture(
         self, snapshot: SceneSnapshot, view: View, labels: Mapping[str, Floats] = MappingProxyType({})
     ) -> Future[Picture]:
-        """A picture for people, with `labels` beside their points (3,) [m] of the map frame."""
+        """Render an image as PNG, with `labels` next to their points (3,) [m] of the map frame."""
         return self._thread.submit(
             lambda: Picture(png=picture_png(self._open_eye(), snapshot.model, snapshot.data, view, labels))
         )
 
     def render_cameras(self, snapshot: Callable[[], SceneSnapshot], publish: Callable[[Plane], None]) -> None:
-        """Publish the planes of all cameras, unless the last ones are still being made."""
+        """Publish the planes of all cameras, unless the previous ones are still being rendered."""
         if self._rendering is not None:
             if not self._rendering.done():
                 return
             self._rendering.result()
-        moment = snapshot()
-        self._rendering = self._thread.submit(self._render, moment, publish)
+        current = snapshot()
+        self._rendering = self._thread.submit(self._render, current, publish)
 
     def _render(self, snapshot: SceneSnapshot, publish: Callable[[Plane], None]) -> None:
         for camera in camera_names(snapshot.model):
@@ -72,12 +75,12 @@ class VideoRenderer:
                 publish(plane)
 
     def _open_eye(self) -> Eye:
-        """Opened when it is first needed, on the thread that it is bound to."""
+        """Create the renderer when it is first needed, on the thread that it is bound to."""
         self._eye = self._eye or Eye(graphics=self._config.graphics)
         return self._eye
 
     def planes(self, snapshot: SceneSnapshot, camera: str) -> list[Plane]:
-        """What one camera sees: rgb, depth, and whose each pixel is if that is wanted."""
+        """Return the planes of one camera: rgb, depth, and segments if requested."""
         config = self._config
         eye = self._open_eye()
         view = camera_view(snapshot.model, snapshot.data, camera, config.width, config.height)
@@ -95,7 +98,7 @@ class VideoRenderer:
 
 
 def segment_bodies(geoms: NDArray[np.int32], owners: list[str]) -> tuple[tuple[str, ...], NDArray[np.uint16]]:
-    """From geoms (H, W), -1 for none, to numbers of bodies (H, W): 0 for none, n for the n-th name."""
+    """Convert geoms (H, W), -1 for none, to numbers of bodies (H, W): 0 for none, n for the n-th name."""
     names = tuple(sorted(set(owners) - {""}))
     number = {name: place + 1 for place, name in enumerate(names)}
     numbers = np.array([*(number.get(owner, 0) for owner in owners), 0], dtype=np.uint16)

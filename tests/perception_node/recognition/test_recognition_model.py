@@ -48,5 +48,5 @@ def test_what_is_far_from_all_that_was_learnt_is_unknown():
 def test_another_file_is_told(tmp_path, content):
     path = tmp_path / "learnt.npz"
     path.write_bytes(content)
-    with pytest.raises(BadFile, match="recognition learnt"):
+    with pytest.raises(BadFile, match="is not a valid recognition model"):
         load(path)

@@ -81,5 +81,5 @@ def test_a_detector_that_is_unsure_does_not_overrule_what_is_plain():
 
 def test_masks_of_another_size_are_refused():
     small = Masks(np.zeros((240, 320), np.int32), ())
-    with pytest.raises(ValueError, match="of 320 x 240 pixels, the picture of 640 x 480"):
+    with pytest.raises(ValueError, match="320 x 240 pixels, the image 640 x 480"):
         with_masks(segment_cloud(shot().clouds[0]), small)

@@ -62,10 +62,10 @@ def test_a_large_picture_is_thinned(tmp_path):
         ({"depth_scale": 0}, "depth_scale must be positive"),
         ({"depth": np.full((48, 64), 200, np.uint8)}, "16 bits"),
         ({"depth": np.zeros((48, 64), np.uint16)}, "no depth"),
-        ({"width": 640, "height": 480}, "pictures of 640 x 480; these have 64 x 48 pixels"),
-        ({"cx": 320.0, "cy": 240.0, "fx": 600.0, "fy": 600.0}, "pictures of another size"),
+        ({"width": 640, "height": 480}, "images of 640 x 480; this one has 64 x 48 pixels"),
+        ({"cx": 320.0, "cy": 240.0, "fx": 600.0, "fy": 600.0}, "images of another size"),
         ({"map_from_camera": [[1, 2], [3]]}, "4 x 4 pose matrix"),
-        ({"cx": 16.0, "cy": 12.0, "fx": 30.0, "fy": 30.0}, "pictures of another size"),
+        ({"cx": 16.0, "cy": 12.0, "fx": 30.0, "fy": 30.0}, "images of another size"),
         ({"fx": "wide"}, "fx"),
     ],
 )

@@ -129,5 +129,5 @@ def test_what_is_no_picture_or_a_truncated_or_huge_one_is_told(tmp_path, monkeyp
     monkeypatch.setattr(
         "semmap.nodes.perception_node.input.files.image_files._MOST_PIXELS", WIDTH * HEIGHT - 1
     )
-    with pytest.raises(ValueError, match="a picture of 40 x 30 pixels is too big"):
+    with pytest.raises(ValueError, match="an image of 40 x 30 pixels is too big"):
         opened(whole)

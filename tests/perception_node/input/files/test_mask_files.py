@@ -88,7 +88,7 @@ def test_images_of_another_size_or_of_no_numbers(tmp_path):
     with pytest.raises(BadFile, match="3 x 3 integers; this one has 3 x 2 of"):
         read_masks(tmp_path / "a.npy", 3, 3)
     np.save(tmp_path / "c.npy", LABELS * 10**9)
-    with pytest.raises(BadFile, match="thing number 2000000000; there may be 65535"):
+    with pytest.raises(BadFile, match="has 2000000000 things; the maximum is 65535"):
         read_masks(tmp_path / "c.npy", 2, 3)
     np.save(tmp_path / "b.npy", LABELS / 2)
     with pytest.raises(BadFile, match="float64"):
