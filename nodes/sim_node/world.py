@@ -323,7 +323,10 @@ class World:
         return world_surface(self.model, self.data, self.body_names())
 
     def snapshot(self) -> tuple[mujoco.MjModel, mujoco.MjData, list[str]]:
-        """Return copies of the model and its state, and `body_names`; the model is shared until it changes."""
+        """Return copies of the model and its state, and `body_names`.
+
+        The copy of the model is shared until the model changes.
+        """
         if self._copied != self._engine.revision:
             self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
         model, names = self._copy

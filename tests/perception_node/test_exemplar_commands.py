@@ -114,7 +114,7 @@ def test_a_class_that_perception_never_learnt_has_what_the_map_has_above_it(aske
         (
             Learn(class_="Cup", views=(view_message(ExemplarView(np.zeros(5), (1.0, 1.0, 1.0))),)),
             errors.BadRequest,
-            f"a view has {WIDTH} numbers",
+            f"a view must have {WIDTH} features",
         ),
     ],
 )

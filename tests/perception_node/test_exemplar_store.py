@@ -40,9 +40,9 @@ def test_what_cannot_be_is_refused_and_nothing_is_kept(tmp_path):
         book.forget(1)
     with pytest.raises(BadRequest, match="name a more specific class"):
         book.add("Object", (), VIEWS, "")
-    with pytest.raises(BadRequest, match=f"a view has {WIDTH} numbers"):
+    with pytest.raises(BadRequest, match=f"a view must have {WIDTH} features"):
         book.add("Toy", (), [ExemplarView(np.zeros(7), (1.0, 1.0, 1.0))], "")
-    with pytest.raises(BadRequest, match=f"a view has {WIDTH} numbers"):
+    with pytest.raises(BadRequest, match=f"a view must have {WIDTH} features"):
         book.add("Toy", (), [ExemplarView(np.full(WIDTH, np.nan), (1.0, 1.0, 1.0))], "")
     assert not list(tmp_path.iterdir())
     book.add("Toy", (), VIEWS, "")

@@ -49,7 +49,7 @@ def test_what_is_left_out_and_what_is_declared_in_vain_is_named(kitchen):
     assert kitchen.ignored == [
         "ghost (no such body)",
         "nothing (no such joint)",
-        "wheel (closed at 'middle'; say lower or upper)",
+        "wheel (closed at 'middle'; use lower or upper)",
     ]
 
 
@@ -89,8 +89,8 @@ def test_what_is_held_is_put_nowhere_and_the_order_counts_as_tried(kitchen):
     before = bodies(kitchen)["microwave_1"].pose
     asked = [Placement(name="microwave_1", pose=pose(0.0, 0.0), commit=9), Placement(name="arm", pose=before)]
     assert kitchen.move(asked).failed == {
-        "microwave_1": "microwave_1 is held by desk; only its joints move it",
-        "arm": "arm is held by its joint; only its joints move it",
+        "microwave_1": "microwave_1 is fixed by desk; only its joints can move it",
+        "arm": "arm is fixed by its joint; only its joints can move it",
     }
     after = bodies(kitchen)["microwave_1"]
     assert (after.pose, after.commit) == (before, 9)

@@ -124,11 +124,11 @@ def test_of_several_orders_about_one_joint_the_last_counts():
     ("asked", "why"),
     [
         ({"name": "x"}, "the scene has no body named x"),
-        ({"name": "stone1"}, "stone1 has no joint that opens it"),
+        ({"name": "stone1"}, "stone1 has no joint that opens"),
         ({"name": "stone1", "joint": "lid"}, "no joint named lid that can be moved; it has: none"),
         ({"name": "cabinet1", "joint": "lid"}, "it has: door, drawer, knob, wheel, gimbal"),
         ({"name": "cabinet1", "joint": "gimbal"}, "no joint named gimbal that can be moved"),
-        ({"name": "cabinet1", "joint": "wheel", "openness": 1.0}, "no joint that opens it"),
+        ({"name": "cabinet1", "joint": "wheel", "openness": 1.0}, "no joint that opens"),
     ],
     ids=str,
 )
@@ -151,9 +151,9 @@ def test_what_cannot_be_moved_has_a_reason():
     accepted, failed = validate_moves([first, *stays, hand("can1", pose(0, 2000)), last], there)
     assert accepted == [first, last]
     assert "no body named x" in failed["x"]
-    assert "2000 m from the origin is too far; the limit is 1000 m" in failed["can1"]
-    assert failed["door1"] == "door1 is held by its joint; only its joints move it"
-    assert failed["lid1"] == "lid1 is held by pot1; only its joints move it"
+    assert "position is 2000 m from the origin; the limit is 1000 m" in failed["can1"]
+    assert failed["door1"] == "door1 is fixed by its joint; only its joints can move it"
+    assert failed["lid1"] == "lid1 is fixed by pot1; only its joints can move it"
     assert "semmap detach ring1" in failed["ring1"]
 
 
@@ -173,13 +173,19 @@ THERE = {
     [
         ({"name": "x", "holder": "hand1"}, "no body named x"),
         ({"name": "cup1", "holder": "x"}, "no body named x"),
-        ({"name": "cup1", "holder": "cup1"}, "cannot hold itself"),
-        ({"name": "robot1", "holder": "hand1"}, "hand1 is held by robot1 or part of it"),
-        ({"name": "hand1", "holder": "ring1"}, "ring1 is held by hand1 or part of it"),
-        ({"name": "wall1", "holder": "hand1"}, "wall1 is fixed where it stands"),
-        ({"name": "door1", "holder": "hand1"}, "door1 is held by its joint"),
-        ({"name": "lid1", "holder": "hand1"}, "lid1 is held by pot1"),
-        ({"name": "ring1", "holder": "robot1"}, "ring1 is held by hand1 already"),
+        ({"name": "cup1", "holder": "cup1"}, "to itself"),
+        (
+            {"name": "robot1", "holder": "hand1"},
+            "cannot attach robot1 to hand1, which is attached to or part of it",
+        ),
+        (
+            {"name": "hand1", "holder": "ring1"},
+            "cannot attach hand1 to ring1, which is attached to or part of it",
+        ),
+        ({"name": "wall1", "holder": "hand1"}, "cannot attach wall1: it is a fixed body"),
+        ({"name": "door1", "holder": "hand1"}, "it is fixed by its joint"),
+        ({"name": "lid1", "holder": "hand1"}, "it is fixed by pot1"),
+        ({"name": "ring1", "holder": "robot1"}, "ring1 is already attached to hand1"),
     ],
     ids=str,
 )

@@ -338,11 +338,11 @@ def test_names_that_are_given_are_nobody_elses(tmp_path):
 
 
 def test_a_world_that_does_not_compile_is_refused(tmp_path):
-    with pytest.raises(BadFile, match="not an MJCF scene"):
+    with pytest.raises(BadFile, match="cannot compile world file"):
         read_mjcf(tmp_path / "missing.xml")
     broken = tmp_path / "broken.xml"
     broken.write_text("<mujoco><worldbody><geom type='blob'/></worldbody></mujoco>")
-    with pytest.raises(BadFile, match="not an MJCF scene that compiles"):
+    with pytest.raises(BadFile, match="cannot compile world file"):
         read_mjcf(broken)
 
 
@@ -444,7 +444,7 @@ def test_a_base_that_has_fallen_or_is_held_does_not_drive(rover):
     rover.drive(DriveBase(name="rover", to=()))  # to stop is possible all the same
     rover.move([hand("rover", pose(2.0, 0.0))])
     rover._engine.records["rover"].ghost = True
-    with pytest.raises(Refused, match="another body is in its place"):
+    with pytest.raises(Refused, match="another body occupies its place"):
         rover.drive(DriveBase(name="rover", to=((1.0, 0.0),)))
 
 

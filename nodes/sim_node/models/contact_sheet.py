@@ -1,4 +1,7 @@
-"""A contact sheet of all models: `python -m semmap.nodes.sim_node.models.contact_sheet docs/models.png`."""
+"""Renders a contact sheet of all models.
+
+Usage: `python -m semmap.nodes.sim_node.models.contact_sheet docs/models.png`.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ _PAPER, _INK = (242, 242, 240), (40, 40, 44)
 
 
 def portrait(model: Model, pixels: int, *, is_open: bool | None = None) -> Image.Image:
-    """The model alone, filling a square picture: as it is made, or with all that opens open or shut."""
+    """Render a model in a square image: as designed, or with all its joints open or closed."""
     spec = mujoco.MjSpec()
     body = spec.worldbody.add_body()
     parts = model.parts if is_open is None else [_stands(part, is_open=is_open) for part in model.parts]
@@ -38,7 +41,7 @@ def portrait(model: Model, pixels: int, *, is_open: bool | None = None) -> Image
 
 
 def _stands(part: Part, *, is_open: bool) -> Part:
-    """A part as it stands when its joint is at one end."""
+    """Return a part with its joint at one end."""
     joint = part.joint
     if joint is None or joint.range is None or joint.closed is None:
         return part
@@ -47,9 +50,9 @@ def _stands(part: Part, *, is_open: bool) -> Part:
 
 
 def contact_sheet(names: list[str]) -> Image.Image:
-    """Portraits in rows, each with its name; every one as large as fits, so sizes are not to scale.
+    """Arrange portraits in rows, each with its name. Each is scaled to fit.
 
-    What opens is shown as it is made, and again in rows of its own, open and shut.
+    Models that open are shown as designed, and again in separate rows, open and closed.
     """
     cells: list[tuple[str, Image.Image]] = [(name, portrait(build(name, None), _CELL - 12)) for name in names]
     opening = [model for name in names if (model := build(name, None)).leaves]
@@ -69,7 +72,7 @@ def contact_sheet(names: list[str]) -> Image.Image:
 
 
 def main() -> None:
-    """Write the sheet of all models to the file named on the command line."""
+    """Write the contact sheet to the file named on the command line."""
     target = Path(sys.argv[1])
     target.parent.mkdir(parents=True, exist_ok=True)
     contact_sheet(list(KINDS)).save(target, optimize=True)

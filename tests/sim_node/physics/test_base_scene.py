@@ -253,8 +253,8 @@ def test_what_texts_declare_in_vain_is_named():
         "nobody (no such body)",
         "a b (no entity can have this name)",
         "x (no such joint)",
-        "j (closed at 'left'; say lower or upper)",
-        "j (off at 'right'; say lower or upper)",
+        "j (closed at 'left'; use lower or upper)",
+        "j (off at 'right'; use lower or upper)",
     ]
     assert base_scene.ignored(spec()) == []
 
@@ -292,8 +292,8 @@ def test_a_scene_is_read_from_a_file_and_what_does_not_compile_is_told_only_if_t
     path.write_text("<mujoco><worldbody><geom type='plane' size='1 1 1'/></worldbody></mujoco>")
     assert len(base_scene.read_mjcf(path).geoms) == 1
     path.write_text("<mujoco><actuator><motor joint='nobody'/></actuator></mujoco>")
-    with pytest.raises(BadFile, match=r"world\.xml is not an MJCF scene that compiles: .*nobody"):
+    with pytest.raises(BadFile, match=r"cannot compile world file .*world\.xml: .*nobody"):
         base_scene.read_mjcf(path)
     assert len(base_scene.read_mjcf(path, compiles=False).actuators) == 1
-    with pytest.raises(BadFile, match="is not an MJCF scene"):
+    with pytest.raises(BadFile, match="cannot compile world file"):
         base_scene.read_mjcf(tmp_path / "nothing.xml")

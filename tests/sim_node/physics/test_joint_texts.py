@@ -54,7 +54,7 @@ def test_what_a_switch_moves_opens_nothing(stove):
 
 
 def test_what_is_said_in_vain_is_named(stove):
-    assert stove.ignored == ["nothing (no such joint)", "flame (off at 'left'; say lower or upper)"]
+    assert stove.ignored == ["nothing (no such joint)", "flame (off at 'left'; use lower or upper)"]
 
 
 def test_to_open_it_leaves_its_switches_alone_unless_they_are_named(stove):

@@ -195,10 +195,10 @@ def test_its_arm_moves_and_it_does_not_tip_over(world):
         ("<mujoco><worldbody/></mujoco>", "it has none"),
         (
             "<mujoco><worldbody><body name='a'/><body name='b'/></worldbody></mujoco>",
-            "one body on the top level; it has a, b",
+            "one top-level body; it has a, b",
         ),
-        ("<mujoco><worldbody><body><geom size='-1'/></body></worldbody></mujoco>", "compiles"),
-        ("not xml", "compiles"),
+        ("<mujoco><worldbody><body><geom size='-1'/></body></worldbody></mujoco>", "cannot compile"),
+        ("not xml", "cannot compile"),
     ],
 )
 def test_what_is_no_robot_is_refused(tmp_path, mjcf, said):
