@@ -1,4 +1,4 @@
-"""A table with things on it that perception sees perfectly, and a map that does what it is told."""
+"""A table with things that perception sees perfectly, and a map that applies all commands."""
 
 from __future__ import annotations
 
@@ -90,10 +90,10 @@ class Table:
     tracks: Tracks = field(default_factory=Tracks)
     config: TrackingConfig = CONFIG
     hidden: bool = False
-    """Nobody can tell what is at the places where nothing is seen."""
+    """Make the occupancy of all places unknown."""
 
     def look(self) -> tuple[Command, ...]:
-        """One look, and the map takes what it is told; gives the commands."""
+        """Process one frame, apply the commands to the map, and return them."""
         result = associate(self.entities, self.tracks, self.things, self._occupancy, CLASSES, self.config)
         self.tracks, self.taken_for = result.tracks, result.entities
         for command in result.commands:

@@ -105,7 +105,7 @@ def test_a_fixed_one_opens_too_whatever_the_unit_of_the_world(angles):
 @pytest.mark.parametrize(
     ("asked", "why"),
     [
-        ({"name": "nobody"}, "no body named nobody"),
+        ({"name": "missing"}, "no body named missing"),
         ({"name": "cup1"}, "no joint that opens"),
         ({"name": "fridge1", "joint": "lid"}, "no joint named lid that can be moved; it has: door, freezer"),
     ],

@@ -79,7 +79,7 @@ def test_a_door_of_a_foreign_world_opens(kitchen):
     kitchen.step(3.0)
     (door,) = bodies(kitchen)["microwave_1"].joints
     assert door.position == pytest.approx(-2.0, abs=0.02)
-    kitchen.spawn([order("cup1", "cup", pose(0.0, 5.0))])  # everything is compiled anew
+    kitchen.spawn([order("cup1", "cup", pose(0.0, 5.0))])  # everything is recompiled
     there = bodies(kitchen)
     assert there["microwave_1"].joints[0].position == pytest.approx(-2.0, abs=0.02)
     assert there["microwave_1"].pose.position_m == pytest.approx((2.0, -0.015, 1.0), abs=0.02)

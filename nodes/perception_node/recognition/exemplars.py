@@ -39,7 +39,7 @@ class Exemplar:
 
     @property
     def leaf(self) -> str:
-        """Return its name among the leaves of the vote, which is no class name."""
+        """Return its name among the leaves of the vote, which differs from all class names."""
         return f"{self.class_} #{self.number}"
 
 

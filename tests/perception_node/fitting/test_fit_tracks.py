@@ -1,4 +1,4 @@
-"""Fits of what is tracked, and what the map is told of them."""
+"""Fits of tracked things, and the resulting updates of the map."""
 
 from __future__ import annotations
 

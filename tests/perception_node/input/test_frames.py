@@ -1,4 +1,4 @@
-"""Frames as they come: what belongs together is taken together, what is wrong is told in a sentence."""
+"""Synchronisation of frames, and the errors for invalid ones."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ CHANCES = np.array([[0.2, 0.1, 0.3, 0.1, 0.3]])
 
 
 class Said(NamedTuple):
-    """What a detector said of a mask."""
+    """The label of a detector for a mask."""
 
     label: str
     score: float

@@ -1,4 +1,4 @@
-"""Up and floor in pictures of rooms, from cameras whose pose nobody knows."""
+"""The vertical and the floor in images of rooms with unknown camera poses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The laws of association: identity survives, an operator's word stays, what does not move is no news."""
+"""Association: identity survives moves, an operator's statements stay, and resting things cause no updates."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def test_a_thing_on_its_way_is_followed_and_told_when_it_rests():
 def test_a_thing_that_comes_to_stand_in_anothers_place_keeps_its_name_and_so_does_the_other():
     table = Table([seen("Cup", at(1, 1)), seen("Bottle", at(2, 1))])
     table.observe(5)
-    table.things = [seen("Bottle", at(1, 1))]  # and nobody sees the cup
+    table.things = [seen("Bottle", at(1, 1))]  # and the cup is not visible
     table.observe(2)
     assert table.taken_for == ("bottle1",)
     assert table.entities["bottle1"].pose == at(1, 1)

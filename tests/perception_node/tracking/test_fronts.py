@@ -1,4 +1,4 @@
-"""An oven between others: from before it nobody sees how deep it is."""
+"""An oven between others, whose depth is not visible from the front."""
 
 from __future__ import annotations
 

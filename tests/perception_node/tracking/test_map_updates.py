@@ -1,4 +1,4 @@
-"""What the map is told of a track, and when."""
+"""The updates of the map from a track."""
 
 import math
 from dataclasses import replace

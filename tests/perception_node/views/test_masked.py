@@ -1,4 +1,4 @@
-"""Somebody else's masks, made from the simulator's truth, with noise: ragged, shifted, some missing."""
+"""Masks of an external detector, made from the simulator's ground truth with noise."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A television on a cabinet of which nobody sees the top as a plane."""
+"""A television on a cabinet whose top is not visible as a plane."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from tests.recorder.messages import body, entity, pose
 
 
 class Told:
-    """A recording that only lists what it is told."""
+    """A recording that only lists its calls."""
 
     def __init__(self):
         self.calls = []

@@ -73,7 +73,7 @@ def test_without_a_model_there_is_a_box():
     "size", [(1000.0, 1.0, 1.0), (1.0, 1e-6, 1.0), (1.0, 1.0, float("nan")), (1.0, 1.0, -1.0)]
 )
 def test_absurd_sizes_are_refused(size):
-    with pytest.raises(ModelError, match="measures"):
+    with pytest.raises(ModelError, match="a size must be from"):
         build("chair", size)
 
 

@@ -160,5 +160,5 @@ def test_notes_are_told_of_those_files_that_are_a_class_s_model(folder):
     (told,) = own_notes(folder, {"odd.xml"})
     assert told.endswith(
         "because along already moves that body; 1 tendon (string) omitted;"
-        " 2 actuators (motor) omitted; 1 equality constraint left out"
+        " 2 actuators (motor) omitted; 1 equality constraint omitted"
     )

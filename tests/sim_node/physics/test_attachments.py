@@ -124,7 +124,7 @@ def test_the_robot_carries_what_its_gripper_holds():
 @pytest.mark.parametrize(
     ("name", "holder", "why"),
     [
-        ("cup1", "nobody", "the scene has no body named nobody"),
+        ("cup1", "missing", "the scene has no body named missing"),
         ("cup1", "cup1", "cannot attach cup1 to itself"),
         ("wall1", "tray1", "cannot attach wall1: it is a fixed body"),
         ("tray1", "cup1", "cannot attach tray1 to cup1, which is attached to or part of it"),

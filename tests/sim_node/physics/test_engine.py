@@ -184,7 +184,7 @@ def test_a_step_lets_just_its_time_pass():
 def test_one_that_is_woken_is_awake_and_the_others_sleep_on():
     world = engine(*cans())
     world.step(2.0)
-    world.wake(["can1", "nobody"])
+    world.wake(["can1", "missing"])
     assert not world.asleep
     world.step(0.002)
     assert [asleep(world, f"can{i}") for i in range(3)] == [True, False, True]
@@ -205,7 +205,7 @@ def test_what_is_taken_in_hand_does_not_rest_before_it_was_still():
 def test_newcomers_leave_those_who_rest_in_peace():
     world = engine(*cans())
     world.step(2.0)
-    add(world, order("fridge1", "fridge", pose(5.0, 5.0)))  # the model is compiled anew
+    add(world, order("fridge1", "fridge", pose(5.0, 5.0)))  # the model is recompiled
     assert world.resting.tolist() == [True, True, True, False]
     world.step(0.004)
     assert [asleep(world, f"can{i}") for i in range(3)] == [True] * 3

@@ -1,4 +1,4 @@
-"""The robot that comes with semmap stands, drives, is stopped by walls, and is said to have fallen."""
+"""The robot that ships with semmap stands, drives, is stopped by walls, and can fall over."""
 
 from __future__ import annotations
 

@@ -29,17 +29,17 @@ def test_bodies_come_and_go_and_why_some_do_not_is_told(film):
     assert film.add(boxes(0.0, 2.0)) == {}
     assert "box0" in film
     assert "box0" in film.add(boxes(0.0))
-    film.remove(["box0", "nobody"])
+    film.remove(["box0", "missing"])
     assert "box0" not in film
     assert "box1" in film
-    film.remove(["nobody"])
+    film.remove(["missing"])
     assert film.add([]) == {}
 
 
 @pytest.mark.parametrize("fixed", [False, True])
 def test_bodies_stand_where_they_are_put_in_the_air_and_in_one_another(film, fixed):
     film.add(boxes(0.0, 2.0, fixed=fixed))
-    film.put({"box0": pose(2.1, 0.0, 0.5), "nobody": pose(0.0, 0.0)})
+    film.put({"box0": pose(2.1, 0.0, 0.5), "missing": pose(0.0, 0.0)})
     low, high = film.extent()
     assert low == pytest.approx((1.8, -0.2, 0.5))
     assert high == pytest.approx((2.3, 0.2, 0.9))
@@ -74,15 +74,15 @@ def test_a_picture_shows_bodies_and_the_names_that_are_asked_for(film):
     plain = film.picture(view, {})
     assert plain.shape == (120, 160, 3)
     assert not film.has_graphics
-    named = film.picture(view, {"box0": "first", "nobody": "nobody"})
+    named = film.picture(view, {"box0": "first", "missing": "missing"})
     assert named.shape == plain.shape
     assert (named != plain).any()
-    assert (film.picture(view, {"nobody": "nobody"}) == plain).all()
+    assert (film.picture(view, {"missing": "missing"}) == plain).all()
     film.put({"box0": pose(5.0, 5.0)})
     assert (film.picture(view, {}) != plain).any()
 
 
 def test_names_stand_at_the_tops_of_bodies(film):
     film.add(boxes(0.0))
-    (top,) = film._tops(["box0", "nobody"]).values()
+    (top,) = film._tops(["box0", "missing"]).values()
     assert np.asarray(top) == pytest.approx((0.0, 0.0, 0.9))

@@ -107,12 +107,12 @@ def test_no_frame_is_begun_while_the_last_is_being_made_and_then_the_next_one_is
 
 def test_what_failed_of_one_frame_is_told_with_the_next(studio, snapshot):
     def publish(plane):
-        raise RuntimeError("nobody can be told")
+        raise RuntimeError("no subscriber")
 
     one = studio()
     one.render_cameras(lambda: snapshot, publish)
     assert isinstance(one._rendering.exception(60.0), RuntimeError)
-    with pytest.raises(RuntimeError, match="nobody"):
+    with pytest.raises(RuntimeError, match="no subscriber"):
         one.render_cameras(lambda: snapshot, publish)
 
 

@@ -1,4 +1,4 @@
-"""Folders of frames: what is read, and what is said of one that cannot be."""
+"""Reading of folders of frames, and the errors for invalid ones."""
 
 from __future__ import annotations
 
