@@ -20,7 +20,7 @@ class FileMonitor:
         self._recorded = 0
 
     def find_problem(self, recorded: int) -> str:
-        """Describe what is wrong, or return an empty text.
+        """Describe the problem, or return an empty text.
 
         Must be called every `CHECK_S`. `recorded` is the total number of records so far.
         """

@@ -34,7 +34,7 @@ class IntactPart(NamedTuple):
     why: str = ""
 
     def describe(self, recording: Path) -> str:
-        """Describe what is ignored; empty if nothing is."""
+        """Describe the ignored part; empty if there is none."""
         return f"{recording} {self.why}; its last {self.left_out} bytes are ignored" if self.left_out else ""
 
 

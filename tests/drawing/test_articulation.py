@@ -1,4 +1,4 @@
-"""Surfaces are drawn with their joints where they stand."""
+"""Surfaces are drawn with their joints at their current positions."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Rooms cut out of plans that are drawn: how many, and how well they fit."""
+"""Segmentation of synthetic plans: number of rooms, and intersection over union."""
 
 import math
 
@@ -25,7 +25,7 @@ DOORS = {
 
 
 def drawn(turn=0.0, noise=0.0, seed=0):
-    """The plan with everything turned about its middle; noise: this share of the free cells is not."""
+    """Return the plan rotated about its centre; `noise` is the share of free cells set to unknown."""
     height, width = 200, 260
     y, x = (np.mgrid[:height, :width] + 0.5) * SIDE
     cx, cy = 6.0, 4.5
@@ -59,7 +59,7 @@ def mask_of(polygon, shape):
 
 
 def fits(found, truth, shape):
-    """The intersection over union of each room with what fits it best."""
+    """Return the intersection over union of each room with its best match."""
     masks = [mask_of(room.polygon, shape) for room in found.rooms]
     return {
         name: max((mask & its).sum() / (mask | its).sum() for mask in masks) for name, its in truth.items()
@@ -101,7 +101,7 @@ def test_furniture_that_stands_about_belongs_to_its_room_and_makes_no_other():
 
 
 def furnished(seed, turn):
-    """The plan with eight cupboards and tables against walls, none within 80 cm of a door."""
+    """Return the plan with eight cupboards and tables against walls, at least 80 cm from a door."""
     grid, truth = drawn(turn)
     y, x = (np.mgrid[: grid.cells.shape[0], : grid.cells.shape[1]] + 0.5) * SIDE
     c, s = math.cos(-turn), math.sin(-turn)

@@ -1,4 +1,4 @@
-"""Perception is shown things over the wire."""
+"""Exemplars are learned and removed over the network."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def things():
 
 
 class Asked:
-    """Perception, and one who asks it."""
+    """A perception node and a client."""
 
     def __init__(self, session, path: Path):
         self._session = session

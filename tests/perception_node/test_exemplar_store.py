@@ -1,4 +1,4 @@
-"""Lessons are kept in a file, listed and forgotten."""
+"""Exemplars are stored in a file, listed and removed."""
 
 from __future__ import annotations
 

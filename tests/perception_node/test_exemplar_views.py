@@ -1,4 +1,4 @@
-"""Which thing of a picture is the one that is shown."""
+"""Selection of the thing to be learned in an image."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.perception_node.scenes import KINDS, shot
 
 
 def around(kind):
-    """The box around a thing in the first camera's picture, and its pixels."""
+    """Return the box around a thing in the first camera's image, and its pixels."""
     number = [body.name for body in shot().bodies].index(kind) + 1
     rows, columns = np.nonzero(shot().owners[0] == number)
     return (int(columns.min()), int(rows.min()), int(columns.max()) + 1, int(rows.max()) + 1), len(rows)

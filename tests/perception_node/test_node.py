@@ -1,4 +1,4 @@
-"""Perception on the wire: frames of cameras in, good and bad, observations and commands out."""
+"""The perception node: camera frames in, valid and invalid, observations and commands out."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ CLASSES = tuple(
 
 
 def everything_is_a_cup(clouds, masks):
-    """A look that sees the same cup in whatever it is shown, and fails at what is near."""
+    """Report the same cup for any frame, and fail for near depth."""
     if (clouds[0].points_camera[..., 2] < 0.5).any():
         raise ZeroDivisionError("too near")
     shape = clouds[0].points_camera.shape[:2]
@@ -53,7 +53,7 @@ def everything_is_a_cup(clouds, masks):
 
 
 class World:
-    """Plays the coordinator, the knowledge base and the cameras, and hears what perception says."""
+    """A coordinator, a knowledge base and cameras that record the output of perception."""
 
     def __init__(self, session, other):
         self.session = session
@@ -84,7 +84,7 @@ class World:
         self.node.serve(keys.CMD, {"add": (Add, self._add)})
 
     def film(self, depth_m=2.0, *, rgb=None, pixels=None, **changes):
-        """One frame of a camera."""
+        """Publish one frame of a camera."""
         self._stamp_ns += 1_000_000
         depth = structs.replace(DEPTH, **{"stamp_ns": self._stamp_ns, **changes})
         colour = structs.replace(depth, encoding="rgb8", **(rgb or {}))
@@ -109,7 +109,7 @@ class World:
         return until(filmed, what)
 
     def film_often(self):
-        """Until ten more looks were taken."""
+        """Publish frames until ten more were processed."""
         before = len(self.seen)
         self.film_until(lambda: len(self.seen) >= before + 10, "ten more looks")
 
@@ -253,7 +253,7 @@ def test_cameras_that_are_far_from_everything_are_told(depth_m, said):
 
 
 def detected(world, *observations):
-    """A detector of one's own has seen this."""
+    """Publish an observation of an external detector."""
     found = Observations(stamp_ns=1, views=(), observations=observations)
     world.session.put(keys.DETECTIONS.key, codec.encode(found))
 

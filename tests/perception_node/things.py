@@ -83,7 +83,7 @@ def entity(
 
 @dataclass
 class Table:
-    """`things` is what stands there, `entities` what the map says of it."""
+    """`things` are on the table, and `entities` are in the map."""
 
     things: list[Observation] = field(default_factory=list)
     entities: dict[str, Entity] = field(default_factory=dict)
@@ -153,7 +153,7 @@ class Table:
 
 
 def _fills(thing: Observation, pose: Pose, size_m: Size) -> bool:
-    """Whether a thing that is not turned is where another would stand, and not much smaller."""
+    """Return whether an unrotated thing is in the place of another, and not much smaller."""
     (x, y, z), (u, v, w) = thing.pose.position_m, pose.position_m
     there = math.dist((x, y, z), (u, v, w)) < max(size_m[:2]) / 2
     inside = abs(x - u) < thing.size_m[0] / 2 and abs(y - v) < thing.size_m[1] / 2 and z == w

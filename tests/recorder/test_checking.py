@@ -1,4 +1,4 @@
-"""A recording's commits beside the journal's."""
+"""Comparison of a recording's commits with the journal's."""
 
 import pytest
 from msgspec import structs

@@ -1,4 +1,4 @@
-"""What is whole of a recording that is damaged or cut off."""
+"""The intact part of a damaged or truncated recording."""
 
 import pytest
 
@@ -11,7 +11,7 @@ from tests.recorder.messages import START_NS, commit
 
 @pytest.fixture
 def recording(tmp_path):
-    """The file of one with five commits, each in a message of its own."""
+    """Return a file with five commits, each in its own message."""
     path = tmp_path / "a.rrd"
     with open_recording(path, None) as recording:
         for seq in range(1, 6):

@@ -1,4 +1,4 @@
-"""Commits read back from a recording."""
+"""Commits read from a recording."""
 
 import pytest
 

@@ -12,7 +12,7 @@ from tests.sim_node.orders import bodies, hand, order, pose, spawned
 
 
 def opened(world: World, name: str = "fridge1", **order_) -> dict[str, float]:
-    """Openness of each joint, once all is at rest."""
+    """Return the openness of each joint once all is at rest."""
     assert world.move_joints([JointOrder(name=name, **order_)]).failed == {}
     world.step(4.0)
     return {joint.name: joint.openness for joint in bodies(world)[name].joints}

@@ -1,4 +1,4 @@
-"""Bodies within bodies of an MJCF world: which are bodies of their own, whose joints are whose."""
+"""Nested bodies of an MJCF world: which are separate bodies, and which have joints."""
 
 import mujoco
 import pytest

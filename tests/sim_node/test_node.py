@@ -69,7 +69,7 @@ def ask(client, verb, message):
 
 @pytest.fixture
 def poses(client):
-    """The poses as they come in."""
+    """Return the published poses."""
     seen = []
     subscriber = bus.follow(client, keys.POSES, lambda key, message: seen.append(message))
     yield seen

@@ -1,4 +1,4 @@
-"""Which orders are accepted, and why the others are not."""
+"""Accepted and rejected orders."""
 
 import pytest
 

@@ -36,7 +36,7 @@ _STRAY = 0.02
 _UPRIGHT_COS = np.cos(np.radians(8))
 _LEVEL_COS = np.cos(np.radians(80))
 _FLOOR_BELOW_M = 0.06
-_OVER = 0.3  # so much of it is over what is seen of the other, which it may hide itself
+_OVER = 0.3  # minimum share above the visible part of the other plane
 _SMALLER = 0.7  # else it is a shelf above a shelf
 _TALLEST_M = 0.5
 

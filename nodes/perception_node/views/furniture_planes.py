@@ -24,7 +24,7 @@ _LYING_M = 0.004
 """A thing that lies on a top, however thin, is mostly this far above it."""
 _TOP_M = 0.05
 
-_HIGHEST = 0.99  # what is higher may be a few stray points
+_HIGHEST = 0.99  # higher points may be outliers
 _UNDER_M = 0.015
 _STANDING = 0.5
 """A thing with a larger share of its points above a top stands on it, and ends there."""

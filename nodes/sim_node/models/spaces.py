@@ -130,7 +130,7 @@ def _is_one(one: Surface, other: Surface) -> bool:
 
 
 def _up_to_the_lid(tray: Interior, rooms: Iterable[Interior]) -> Interior:
-    """Extend a drawer's interior above its sides, up to what is above it when it is closed."""
+    """Extend a drawer's interior above its sides, up to the part above it when it is closed."""
     x, y, z = tray.high
     lid = max([z, *(room.high[2] for room in rooms if _shared(tray, room) > 0.5 * _volume(tray))])
     return structs.replace(tray, high=(x, y, lid))

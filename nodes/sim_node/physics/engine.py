@@ -36,7 +36,7 @@ class Engine:
         while_waiting: Callable[[], None],
         is_class: Callable[[str], bool] = lambda word: False,
     ) -> None:
-        """Compile the ground without bodies. `while_waiting` is called meanwhile, and may call `step`.
+        """Compile the ground without bodies. `while_waiting` is called repeatedly, and may call `step`.
 
         `is_class` returns whether a word names a class, which makes parts of the world's bodies separate
         bodies.

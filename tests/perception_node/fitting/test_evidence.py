@@ -1,4 +1,4 @@
-"""How well a model and what was seen bear one another out: a ball of known points before a flat camera."""
+"""Agreement of a model and observed points: a ball of known points before a flat camera."""
 
 import math
 
@@ -13,7 +13,7 @@ WITHIN_M = 0.01
 
 
 def plate(normal=(0.0, 0.0, -1.0), side=0.4, depth=0.0):
-    """A square of points, (N, 3) in its own frame, all facing one way."""
+    """Return a square of points, (N, 3) in its own frame, with parallel normals."""
     line = np.linspace(-side / 2, side / 2, 41)
     x, y = np.meshgrid(line, line)
     points = np.stack([x.ravel(), y.ravel(), np.full(x.size, depth)], axis=1)
@@ -29,7 +29,7 @@ def at(x=0.0, y=0.0, z=1.0, turn=None):
 
 
 def seen(depth_m, *, height=120, width=160, pose=None):
-    """A camera at the origin that sees a wall at this depth; or an array of depths."""
+    """Return a camera at the origin that sees a wall at this depth, or an array of depths."""
     depth = np.broadcast_to(np.asarray(depth_m, float), (height, width))
     intrinsics = np.array([[200.0, 0, width / 2], [0, 200.0, height / 2], [0, 0, 1]])
     u, v = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)

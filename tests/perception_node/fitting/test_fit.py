@@ -1,4 +1,4 @@
-"""Models fitted to what one camera sees of them."""
+"""Models fitted to the points of one camera."""
 
 from __future__ import annotations
 

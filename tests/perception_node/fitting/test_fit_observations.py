@@ -1,4 +1,4 @@
-"""What a fit tells of the things of a look."""
+"""Fits applied to the observations of a frame."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a model may stand or lie in the box that was seen."""
+"""Initial poses of standing and lying models in the observed box."""
 
 import math
 

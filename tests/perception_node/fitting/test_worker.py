@@ -1,4 +1,4 @@
-"""The thread that fits models."""
+"""The worker thread that fits models."""
 
 from __future__ import annotations
 

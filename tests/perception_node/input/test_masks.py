@@ -1,4 +1,4 @@
-"""Masks: what COCO writes, and label images."""
+"""Masks: COCO's format, and label images."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from semmap.schemas.perception import MaskImage, MaskRun
 
 
 def runs(mask):
-    """Run lengths, column after column, the first of what is not of the mask."""
+    """Return column-wise run lengths, starting with background."""
     flat = mask.T.ravel()
     edges = np.flatnonzero(np.diff(flat.astype(int))) + 1
     counts = np.diff([0, *edges, flat.size]).tolist()
@@ -25,7 +25,7 @@ def runs(mask):
 
 
 def compressed(counts):
-    """COCO's text: differences to the run before the last, five bits a letter, the highest tells the end."""
+    """Encode as COCO's text: differences to the run before the last, five bits per character."""
     text = ""
     for n, count in enumerate(counts):
         value = count - counts[n - 2] if n > 2 else count

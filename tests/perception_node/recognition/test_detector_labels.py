@@ -1,4 +1,4 @@
-"""Names that a detector gave, beside our own votes."""
+"""Labels of a detector combined with our votes."""
 
 from types import SimpleNamespace
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""What was shown, beside the votes."""
+"""Exemplars combined with the votes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which neighbours are tried as one, and what is known of them."""
+"""Which neighbours may be joined, and the features of pairs."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What tells a thing that is like nothing known."""
+"""Features that indicate an unknown class."""
 
 import math
 

@@ -19,7 +19,7 @@ def join(a, b):
 
 
 def body(name):
-    """The segments of one body in both views."""
+    """Return the segments of one body in both views."""
     number = [b.name for b in shot().bodies].index(name) + 1
     return [s for sight in truly_cut() for s in sight.segments if s.label == number]
 

@@ -1,4 +1,4 @@
-"""Whether two views show the same thing."""
+"""Similarity of two views."""
 
 from __future__ import annotations
 

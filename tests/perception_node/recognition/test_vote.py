@@ -89,7 +89,7 @@ def test_the_logarithms_of_votes_add_up_by_their_weights():
 
 
 def learnt(new=0.0, familiar=None, shown=None):
-    """Votes in which all things are new with this probability; `familiar`: the scores of models of ours."""
+    """Return a model in which all things are new with this probability; `familiar` are its form scores."""
     scores = np.array([[-50.0] * 4 + [50.0]] if familiar is None else [familiar])
     return SimpleNamespace(
         voters=VOTING,

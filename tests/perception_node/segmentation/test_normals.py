@@ -1,4 +1,4 @@
-"""Normals of surfaces whose normals are known."""
+"""Normals of known surfaces."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ BOX = ((-0.15, -0.1, 0.0), (0.15, 0.1, 0.2))
 
 
 def inner(mask):
-    """Without the cells near its border."""
+    """Return the image without the cells near its border."""
     for _ in range(4):
         mask = mask & np.roll(mask, 1, 0) & np.roll(mask, -1, 0) & np.roll(mask, 1, 1) & np.roll(mask, -1, 1)
     return mask

@@ -18,7 +18,7 @@ POSE = camera_pose(eye=(0.0, -2.0, 1.5), target=(0.0, 0.0, 0.7))
 
 
 def supports(*boxes):
-    """Which of the boxes each support is seen on."""
+    """Return the boxes on which each support is visible."""
     seen = boxes_on_table(*boxes, pose=POSE, posed=True, table=FLOOR)
     planes, of_plane = find_planes(
         grid_of(seen.cloud).points, seen.cloud.map_from_camera, np.random.default_rng(0)

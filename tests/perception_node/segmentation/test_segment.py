@@ -1,4 +1,4 @@
-"""Objects in clouds, with what ships."""
+"""Objects in clouds, with the shipped model."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.perception_node.segmentation.test_patches import SCENES
 
 
 def overlaps(labels, truth, valid):
-    """For each box the best intersection over union with a segment."""
+    """Return for each box the best intersection over union with a segment."""
     labels, truth = labels[valid], truth[valid]
     return [
         max(

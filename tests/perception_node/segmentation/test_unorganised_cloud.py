@@ -1,4 +1,4 @@
-"""Clouds without order."""
+"""Unorganised clouds."""
 
 from __future__ import annotations
 

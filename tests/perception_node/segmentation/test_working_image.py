@@ -1,4 +1,4 @@
-"""The working picture, and labels back on the points."""
+"""The working image, and labels mapped back to points."""
 
 from __future__ import annotations
 

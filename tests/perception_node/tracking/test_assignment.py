@@ -1,4 +1,4 @@
-"""Which observation is of which thing."""
+"""Assignment of observations to things."""
 
 import math
 from dataclasses import replace
@@ -41,7 +41,7 @@ def test_pairs_are_as_many_as_may_be_and_of_the_least_cost(costs):
 
 
 def _best(costs, columns):
-    """How many pairs there may be, and what they cost at the least, by trying all."""
+    """Return the maximum number of pairs, and their minimum cost, by exhaustive search."""
     if not costs:
         return 0, 0.0
     options = [_best(costs[1:], columns)]

@@ -1,4 +1,4 @@
-"""Association: identity survives moves, an operator's statements stay, and resting things cause no updates."""
+"""Association: identity survives moves, operators' statements stay, and resting things cause no updates."""
 
 from __future__ import annotations
 
@@ -230,7 +230,7 @@ def test_one_look_at_it_with_its_neighbour_does_not_change_its_size():
 
 
 def test_what_comes_to_stand_where_another_has_left_is_the_one_that_it_is_most_like():
-    """The one that left that place is like it too, but less."""
+    """The thing that left that place is less similar."""
     table = Table([seen("Object", at(1, 1), (0.08, 0.09, 0.12)), seen("Cup", at(2, 1))])
     table.observe(5)
     object_, cup = table.things
@@ -351,7 +351,7 @@ def entities_of(layout, source):
 @settings(deadline=None, max_examples=40)
 @given(layouts, layouts, layouts)
 def test_whatever_is_seen_and_said_the_map_comes_to_rest_and_holds_what_is_there(there, said, believed):
-    """The table asserts that no name is taken and that nothing of an operator's is removed or renamed."""
+    """The table asserts that names are unique, and that no operator's entity is removed or renamed."""
     operators = {cell: kind for cell, kind in said.items() if cell not in believed}
     table = Table(things_of(there)).told(
         [*entities_of(operators, "operator"), *entities_of(believed, "perception")]
@@ -399,7 +399,7 @@ def test_noise_is_no_news(layout, noise):
 
 
 def test_what_is_moved_takes_along_what_cannot_be_seen():
-    """A book with two cups on it is taken elsewhere: one cup is seen there, the other is hidden."""
+    """A book with two cups on it is moved: one cup is visible there, the other is hidden."""
     table = Table([seen("Book", at(1, 1)), seen("Cup", at(1, 1.05, 0.73)), seen("Bottle", at(1.3, 1))])
     hidden = entity("hidden_cup", "Cup", at(1, 0.95, 0.73))
     table.observe(5)
@@ -426,7 +426,7 @@ def test_what_does_not_move_carries_nothing():
 
 
 def test_what_others_moved_is_looked_for_anew():
-    """That it is not seen where it was says nothing of where it was carried."""
+    """That it is absent from its old place does not indicate its new place."""
     table = Table().told([entity("my_cup", "Cup", at(1, 1))])
     assert table.observe(CONFIG.gone_frames - 1) == []
     table.told([entity("my_cup", "Cup", at(3, 2))])
@@ -510,7 +510,7 @@ def test_a_leg_of_a_known_thing_is_no_new_entity(x, added):
 
 
 def test_a_thing_has_not_moved_where_its_place_is_still_filled():
-    """Next to a counter stands another of one height: what was seen now is a part of both."""
+    """A counter is next to another of the same height: the current observation is a part of both."""
     table = Table([seen("Object", at(1, 1, 0.0), (1.4, 0.6, 0.9))])
     table.observe(5)
     rest = seen("Bottle", at(0.5, 1, 0.0), (0.4, 0.6, 0.9))
@@ -581,7 +581,7 @@ def test_a_narrower_thing_in_the_place_of_another_is_another():
 
 
 def two_cups_as_one(class_: str) -> Table:
-    """A table on which a cup was seen in part, then once with its neighbour, as a whole, then as before."""
+    """A table on which a cup was seen partially, then once merged with its neighbour, then as before."""
     part = seen("Cup", at(1, 1), whole=False)
     table = Table([part])
     table.observe(5)

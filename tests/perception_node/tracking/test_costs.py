@@ -1,4 +1,4 @@
-"""How unlike an observation is a thing: by place, size and class."""
+"""The cost of an observation for a thing: by place, size and class."""
 
 import math
 
@@ -97,7 +97,7 @@ def test_what_else_it_may_be_makes_it_less_alien():
 
 @pytest.mark.parametrize(("aside_m", "stays"), [(0.0, True), (0.24, True), (0.26, False)])
 def test_in_its_place_is_what_hardly_stands_aside(aside_m, stays):
-    """A quarter of both widths, and five centimetres."""
+    """A thing is in its place within a quarter of both widths, and five centimetres."""
     cost = cost_in_place(target(), box(where=at(1 + aside_m, 1)), CLASSES)
     assert cost == (pytest.approx(aside_m / 0.25) if stays else FORBIDDEN)
     assert cost_in_place(target(), box(where=at(1, 1 - aside_m)), CLASSES) == cost

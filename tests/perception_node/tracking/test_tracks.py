@@ -1,4 +1,4 @@
-"""What one more look makes of a track."""
+"""Updates of a track by one more observation."""
 
 from __future__ import annotations
 

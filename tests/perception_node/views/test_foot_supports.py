@@ -1,4 +1,4 @@
-"""A carton in the air over the floor, as far as any plane tells, and what is seen around its foot."""
+"""A carton that seems to float above the floor, and the points around its foot."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ STEP_M = 0.01
 
 
 def patch(height_m, *, slope=0.0, half_m=0.3, beyond=lambda x, y: True):
-    """(h, w, 3) points around the map's z axis, NaN where nothing is seen."""
+    """Return points (h, w, 3) around the map's z axis, NaN for no measurement."""
     side = np.arange(-half_m, half_m, STEP_M)
     x, y = np.meshgrid(side, side)
     points = np.dstack([x, y, height_m + slope * x])
@@ -34,7 +34,7 @@ def carton(low_m=TOP_M, side_m=0.08, *, carrier=False):
 
 
 def sight(points):
-    """What a camera sees of them that looks along the map's axes, every row and column `EVERY` times."""
+    """Return a view of points by a camera along the map's axes, repeated `EVERY` times."""
     full = points.repeat(EVERY, axis=0).repeat(EVERY, axis=1)
     cloud = Cloud(full, None, camera="head", stamp_ns=1)
     nothing = np.zeros(full.shape[:2], np.int32)

@@ -1,4 +1,4 @@
-"""What belongs to a table, and what stands beside it."""
+"""Parts of a table, and things next to it."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_a_front_alone_hides_nothing():
 
 
 def test_what_stands_on_a_top_ends_there():
-    """On the left a thing that was cut out together with the rim below it, on the right the top itself."""
+    """On the left a thing segmented with the rim below it, on the right the top itself."""
     labels = np.zeros((40, 40), np.int32)
     labels[:, :20] = 1
     across = np.linspace(-0.3, 0.3, 40, dtype=np.float32)

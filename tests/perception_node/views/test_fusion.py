@@ -9,7 +9,7 @@ from tests.perception_node.scenes import shot
 
 
 def truly_cut():
-    """Both views of the scene, cut up as the truth has it; a label is the number of a body."""
+    """Return both views of the scene with ground-truth segments; a label is the number of a body."""
     sights = [segment_cloud(cloud) for cloud in shot().clouds]
     return [
         with_labels(sight, np.where(np.isfinite(sight.cloud.points_camera[..., 2]), owner, 0), frozenset())

@@ -18,7 +18,7 @@ CLASSES = {"cereals": "Cereals", "apple": "Apple", "bottle": "Bottle", "basket":
 
 
 def masks(view, *, names=CLASSES, grown=2, alone=False, score=0.8):
-    """The truth's masks, each a few pixels too large, so that their rims lie on what is behind."""
+    """Return the ground-truth masks enlarged by a few pixels, so that their rims lie on the background."""
     taken = shot()
     labels = np.zeros(taken.owners[view].shape, np.int32)
     said = []

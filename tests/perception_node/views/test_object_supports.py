@@ -15,7 +15,7 @@ CABINET_M = (1.4, 0.4, 0.5)
 
 
 def block(size_m, low_m=0.0, *, at=(0.0, 0.0), carrier=False):
-    """What a camera sees of a box: its front and its top."""
+    """Return the visible front and top of a box."""
     x, y, z = (np.arange(0.0, extent + 1e-9, 0.02) for extent in size_m)
     front = np.stack(np.meshgrid(x, [0.0], z), axis=-1).reshape(-1, 3)
     top = np.stack(np.meshgrid(x, y, [size_m[2]]), axis=-1).reshape(-1, 3)

@@ -1,4 +1,4 @@
-"""A board 3 m long before a wall, and a camera that slides past it and never sees all of it at once."""
+"""A board 3 m long in front of a wall, and a camera that moves along it and sees only a part at a time."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ K = np.array([[FOCAL, 0.0, WIDTH / 2], [0.0, FOCAL, HEIGHT / 2], [0.0, 0.0, 1.0]
 
 
 def seen_from(x, *, board=True, screen=False, label=1):
-    """What a camera sees that looks along the map's z axis from (x, 0, 0); it sees 1.33 m to either side."""
+    """Return the view of a camera at (x, 0, 0) along the map's z axis, 1.33 m to either side."""
     aside = x + BOARD_M * (np.arange(WIDTH) + 0.5 - WIDTH / 2) / FOCAL
     above = BOARD_M * (np.arange(HEIGHT) + 0.5 - HEIGHT / 2) / FOCAL
     on = (np.abs(aside) < HALF_M)[None, :] & (np.abs(above) < 0.3)[:, None] & board & (not screen)
@@ -33,7 +33,7 @@ def seen_from(x, *, board=True, screen=False, label=1):
 
 
 def looked(before, sight):
-    """What is remembered after a look, as the pipeline does it, and what was seen of the board."""
+    """Return the memory after a frame, as in the pipeline, and the visible part of the board."""
     recalled = before.recalled([sight], [sight.labels])
     things = {segment.label: (segment,) for segment in sight.segments}
     for rest, thing in recalled:

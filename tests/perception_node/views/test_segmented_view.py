@@ -1,4 +1,4 @@
-"""Clouds with order and without."""
+"""Organised and unorganised clouds."""
 
 from __future__ import annotations
 

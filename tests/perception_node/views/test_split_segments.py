@@ -1,4 +1,4 @@
-"""One camera sees one thing where another one sees two."""
+"""One camera sees one thing where another sees two."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ EYES = ((-0.6, -0.8, 0.7), (0.6, -0.8, 0.7))
 
 
 def sights():
-    """Two views of two boxes side by side; to the first they are one. And the truth about the first."""
+    """Return two views of two adjacent boxes, merged in the first, and the ground truth of the first."""
     found = []
     for eye in EYES:
         seen = boxes_on_table(*BOXES, pose=camera_pose(eye=eye), posed=True)

@@ -1,4 +1,4 @@
-"""A user's own MJCF models bring their joints, and say what they cannot bring."""
+"""A user's MJCF models have joints, and notes on what is omitted."""
 
 import math
 

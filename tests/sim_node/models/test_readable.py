@@ -1,4 +1,4 @@
-"""What is named by a map makes the simulator read nothing but models."""
+"""Names in a map make the simulator read only model files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which file is whose model."""
+"""The file of each model."""
 
 import os
 

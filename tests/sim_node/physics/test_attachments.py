@@ -1,4 +1,4 @@
-"""Bodies that are held go with what holds them, and are let go where they are."""
+"""Attached bodies move with their holders, and stay where they are when detached."""
 
 import math
 
@@ -33,7 +33,7 @@ def held(world: World, name: str, holder: str, **fields: object) -> None:
 
 
 def off_m(world: World, name: str) -> float:
-    """How far a held body is from where it is held."""
+    """Return the distance of an attached body from its attach pose."""
     there = bodies(world)
     body = there[name]
     return distance_m(body.pose, compose(there[body.held_by].pose, body.grip))

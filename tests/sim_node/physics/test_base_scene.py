@@ -1,4 +1,4 @@
-"""Scenes of other people's: what they must have, what is a body in them, and what joints open."""
+"""Scenes of users: requirements, bodies, and joints that open."""
 
 import math
 

@@ -12,7 +12,7 @@ KINDS = ("chair", "cup", "vase", "apple", "table")
 
 
 def laid(*, slotted: bool) -> World:
-    """Things in mid-air, tilted and turning."""
+    """Return things in mid-air, tilted and rotating."""
     world = World()
     for i, kind in enumerate(KINDS):
         if not slotted:
@@ -25,7 +25,7 @@ def laid(*, slotted: bool) -> World:
 
 
 def rows(world: World, name: str) -> dict[str, np.ndarray]:
-    """All that the model says of one body, wherever in the model it is."""
+    """Return all data of one body in the model."""
     model, slot = world.model, world._engine._slots[name]
     dof = int(model.body_dofadr[slot.body])
     count = int(model.body_bvhnum[slot.body])

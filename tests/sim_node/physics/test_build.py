@@ -1,4 +1,4 @@
-"""Models become bodies of MuJoCo: where they are, what they weigh, what collides, and how they open."""
+"""Models become MuJoCo bodies: pose, mass, collision, and joints."""
 
 import math
 import threading

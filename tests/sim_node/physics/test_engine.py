@@ -1,4 +1,4 @@
-"""The engine: bodies find slots or are compiled, keep their state, are stepped, and rest."""
+"""The engine: bodies get slots or are compiled, keep their state, are stepped, and rest."""
 
 import threading
 

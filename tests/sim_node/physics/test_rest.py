@@ -1,4 +1,4 @@
-"""When a body or a joint counts as at rest: it has been still, long enough."""
+"""Rest detection of bodies and joints."""
 
 import numpy as np
 import pytest

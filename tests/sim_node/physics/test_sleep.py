@@ -1,4 +1,4 @@
-"""Who sleeps, who is about to, and who is woken: two free boxes of MuJoCo, and a floor that never wakes."""
+"""Sleep of two free MuJoCo boxes and a floor that never wakes."""
 
 import mujoco
 import numpy as np

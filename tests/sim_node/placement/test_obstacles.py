@@ -1,4 +1,4 @@
-"""Who is in whose way, and what carries what: boxes of known sizes in a scene that stands still."""
+"""Overlap and support of boxes of known sizes in a static scene."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ BOX = (0.4, 0.4, 0.4)
 
 
 def obstacles(*orders, **records):
-    """A scene of boxes, by name: `(x, y, z)` and size; nothing of it has moved or made room."""
+    """Return a scene of boxes, by name: `(x, y, z)` and size; nothing has moved."""
     engine = World()._engine
     made = [
         order(name, "", pose(*at), size_m=size_m, fixed=bool(fixed)) for name, (at, size_m, *fixed) in orders

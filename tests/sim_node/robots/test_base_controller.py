@@ -1,4 +1,4 @@
-"""BaseController of a base: it turns first, passes through points, slows down, and says how it ended."""
+"""The controller turns the base first, passes through points, slows down, and reports the outcome."""
 
 import math
 
@@ -13,7 +13,7 @@ from tests.sim_node.test_bodies import record
 
 
 class Base:
-    """A base that is where it is put; `ctrl` says what it is steered to."""
+    """A base with a fixed pose; `ctrl` has the velocity commands."""
 
     def __init__(self, at=(0.0, 0.0), yaw_rad=0.0, origin_m=(0.0, 0.0, -0.1)):
         spec = mujoco.MjSpec()

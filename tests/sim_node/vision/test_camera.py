@@ -26,7 +26,7 @@ def world():
 
 
 def above(width=80, height=60):
-    """A camera 3 m above the middle of the box, looking down with the map's y up in the picture."""
+    """Return a camera 3 m above the box's centre, looking down with the map's y up in the image."""
     return look_at(np.array([0.0, -1e-6, 3.0]), np.zeros(3), width, height, np.radians(60))
 
 

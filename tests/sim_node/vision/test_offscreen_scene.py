@@ -1,4 +1,4 @@
-"""A scene for a film: bodies stand exactly where they are put."""
+"""A scene for videos: bodies are placed exactly."""
 
 import numpy as np
 import pytest

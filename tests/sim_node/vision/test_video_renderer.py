@@ -1,4 +1,4 @@
-"""Pictures are made on a thread of its own, from copies."""
+"""Images are rendered on a separate thread, from copies."""
 
 import threading
 

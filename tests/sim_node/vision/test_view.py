@@ -1,4 +1,4 @@
-"""Cameras: where they are, what they see, and where a point is in their pictures."""
+"""Cameras: pose, view, and projection of points."""
 
 import math
 
@@ -39,7 +39,7 @@ def scene():
 
 
 def seen_at(view: View, point):
-    """Pixel (2,) and depth of a point of the map frame."""
+    """Return pixel (2,) and depth of a point of the map frame."""
     rotation, eye = view.map_from_camera[:3, :3], view.map_from_camera[:3, 3]
     x, y, z = rotation.T @ (np.asarray(point) - eye)
     u, v, w = view.intrinsics @ (x, y, z)

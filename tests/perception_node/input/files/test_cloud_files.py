@@ -1,4 +1,4 @@
-"""Frames from files, good and bad."""
+"""Frames from files, valid and invalid."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures of depth and colour, and the camera that took them."""
+"""Images of depth and colour, and the camera file."""
 
 import json
 

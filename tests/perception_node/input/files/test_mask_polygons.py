@@ -1,4 +1,4 @@
-"""Polygons become runs of pixels, column after column."""
+"""Conversion of polygons to column-wise runs."""
 
 import numpy as np
 import pytest
