@@ -132,22 +132,22 @@ def _between_places(
     within = {
         frozenset((name, other))
         for name in shown
-        for said, other in relations.get(name, ())
-        if said == LOCATED_IN
+        for prop, other in relations.get(name, ())
+        if prop == LOCATED_IN
     }
     for name in shown:
         around_it = _smallest_around(name, places, relations)
         if around_it in shown:
             pairs[(name, str(around_it))] = {LOCATED_IN}
-        for said, other in relations.get(name, ()):
+        for prop, other in relations.get(name, ()):
             pair = (other, name) if (other, name) in pairs else (name, other)
             if other in shown and other != name and frozenset(pair) not in within:
-                pairs.setdefault(pair, set()).add(said)
+                pairs.setdefault(pair, set()).add(prop)
     return pairs
 
 
 def _smallest_around(name: str, places: Mapping[str, Entity], relations: Relations) -> str | None:
-    around_it = [p for said, p in relations.get(name, ()) if said == LOCATED_IN and p in places and p != name]
+    around_it = [p for prop, p in relations.get(name, ()) if prop == LOCATED_IN and p in places and p != name]
     return min(around_it, key=lambda place: (_floor_m2(places[place]), place), default=None)
 
 
@@ -199,23 +199,23 @@ class _Drawing:
 def _incoming(entities: Mapping[str, Entity], relations: Relations) -> dict[str, dict[str, list[str]]]:
     found: dict[str, dict[str, list[str]]] = {}
     for name in entities:
-        for said, other in relations.get(name, ()):
+        for prop, other in relations.get(name, ()):
             if other in entities and other != name:
-                found.setdefault(other, {}).setdefault(name, []).append(said)
+                found.setdefault(other, {}).setdefault(name, []).append(prop)
     return found
 
 
 def _grouped(related: Iterable[tuple[str, str]], entities: Mapping[str, Entity]) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
-    for said, other in related:
+    for prop, other in related:
         if other in entities:
-            found.setdefault(other, []).append(said)
+            found.setdefault(other, []).append(prop)
     return found
 
 
 def _links(pairs: Mapping[tuple[str, str], Iterable[str]]) -> tuple[GraphEdge, ...]:
     return tuple(
-        GraphEdge(source, target, ", ".join(sorted(said))) for (source, target), said in pairs.items()
+        GraphEdge(source, target, ", ".join(sorted(prop))) for (source, target), prop in pairs.items()
     )
 
 

@@ -22,7 +22,7 @@ _STUB_GROWTH: Final = 1.0
 """Maximum increase of a wall's thickness along its length [cells]."""
 _ASKEW: Final = 0.3
 """Maximum deviation of a wall from the line, as a share of its length."""
-_ASIDE_CELLS: Final = 2.5
+_OFFSET_CELLS: Final = 2.5
 _HALF: Final = 0.5
 """Step, in cells, by which a thickness is measured."""
 
@@ -53,7 +53,7 @@ class Jambs:
         here = (float(row + 1), float(column + 1))
         one = self._nearest_to(here)
         away = _unit(one, here)
-        other = self._nearest_to((here[0] + _ASIDE_CELLS * away[0], here[1] + _ASIDE_CELLS * away[1]))
+        other = self._nearest_to((here[0] + _OFFSET_CELLS * away[0], here[1] + _OFFSET_CELLS * away[1]))
         along = _unit(other, one)
         ends = (self._behind(one, along), self._behind(other, (-along[0], -along[1])))
         return (
@@ -82,9 +82,9 @@ class Jambs:
         """
         side = (-along[1], along[0])
         found: list[float] = []
-        aside, began = 0.0, 0.0
+        offset, began = 0.0, 0.0
         for depth in range(self._deep):
-            shifts = (aside, aside + 1.0, aside - 1.0)
+            shifts = (offset, offset + 1.0, offset - 1.0)
             spots = [tuple(end[i] + depth * along[i] + shift * side[i] for i in (0, 1)) for shift in shifts]
             k = next((k for k, (row, column) in enumerate(spots) if self._is_taken((row, column))), None)
             if k is None:
@@ -92,10 +92,10 @@ class Jambs:
             row, column = spots[k]
             there = self._reach((row, column), side)
             back = self._reach((row, column), (-side[0], -side[1]))
-            aside = shifts[k] + (there - back) / 2.0
+            offset = shifts[k] + (there - back) / 2.0
             if depth <= _STUB_CELLS:
-                began = aside
-            if 1.0 + there + back > self._thick or abs(aside - began) > _ASKEW * (depth - 1) + 0.5:
+                began = offset
+            if 1.0 + there + back > self._thick or abs(offset - began) > _ASKEW * (depth - 1) + 0.5:
                 break
             found.append(1.0 + there + back)
         return found

@@ -23,9 +23,9 @@ _MOST_CELLS: Final = 400_000
 """A larger grid would take seconds, so a large map has larger cells."""
 _COARSEST_M: Final = 0.2
 """Doors are narrower than larger cells."""
-_BESIDE_M: Final = 0.4
+_END_DISTANCE_M: Final = 0.4
 """Maximum distance to a thing at the end of a path, in addition to the robot's radius."""
-_ASIDE_M: Final = 0.5
+_POSITION_TOLERANCE_M: Final = 0.5
 """Maximum distance from a requested position without room for the robot."""
 _POSITION = re.compile(r"\(?\s*(-?[\d.]+(?:e-?\d+)?)\s*[,\s]\s*(-?[\d.]+(?:e-?\d+)?)\s*\)?", re.IGNORECASE)
 
@@ -88,7 +88,7 @@ class TraversabilityMap:
     def end_at_position(self, at: Point, free: Mask) -> PathEnd:
         """Return a position, or the nearest one with room for the robot. Raises Refused."""
         name = f"({at[0]:g}, {at[1]:g})"
-        found = self._nearest(free, at, _ASIDE_M)
+        found = self._nearest(free, at, _POSITION_TOLERANCE_M)
         if found is None:
             raise errors.Refused(
                 f"there is no room for {self._robot()} at {name}: {self._explain_no_room(at)}"
@@ -114,7 +114,7 @@ class TraversabilityMap:
             raise errors.Refused(f"{thing.name} has no size; cannot compute a route next to it")
         self.frame.add_convex(near, outline)
         own_rooms = set(np.unique(self.rooms[near]).tolist()) - {-1}
-        near = grids.inflated(near, self.radius_m + _BESIDE_M, self.frame.resolution)
+        near = grids.inflated(near, self.radius_m + _END_DISTANCE_M, self.frame.resolution)
         if own_rooms and not thing.door:
             near &= np.isin(self.rooms, list(own_rooms))
         rows, columns = np.nonzero(near & free)

@@ -97,7 +97,7 @@ def view_message(view: ExemplarView) -> ShownView:
     return ShownView(features=view.features.astype("<f4").tobytes(), size_m=view.size_m)
 
 
-def _view(told: ShownView) -> ExemplarView:
-    if len(told.features) % 4:
+def _view(message: ShownView) -> ExemplarView:
+    if len(message.features) % 4:
         raise errors.BadRequest("the features of a view must be 32-bit floats")
-    return ExemplarView(np.frombuffer(told.features, "<f4").astype(float), told.size_m)
+    return ExemplarView(np.frombuffer(message.features, "<f4").astype(float), message.size_m)

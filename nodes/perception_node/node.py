@@ -139,7 +139,7 @@ class Perception:
         now = time.monotonic()
         if now - self._complaints.get(text, -math.inf) > _COMPLAINT_S:
             self._node.report(text)
-        self._complaints = {said: at for said, at in self._complaints.items() if now - at < _COMPLAINT_S}
+        self._complaints = {old: at for old, at in self._complaints.items() if now - at < _COMPLAINT_S}
         self._complaints[text] = now
 
     def _on_frame(self, clouds: Sequence[Cloud], found: FrameResult, took_s: float) -> None:
@@ -230,8 +230,8 @@ class Perception:
         """Check first that the name was never used: names may date from before this process started."""
         if command.name is None:
             raise errors.InternalError("a new thing has no name")
-        asked = self._node.ask_later(keys.BRIDGE, LastSeen(name=command.name))
-        asked.add_done_callback(partial(self._on_sighting, command))
+        reply = self._node.ask_later(keys.BRIDGE, LastSeen(name=command.name))
+        reply.add_done_callback(partial(self._on_sighting, command))
 
     def _on_sighting(self, command: Add, done: Future[Sighting]) -> None:
         error = done.exception()

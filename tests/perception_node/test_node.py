@@ -48,7 +48,7 @@ def everything_is_a_cup(clouds, masks):
         raise ZeroDivisionError("too near")
     shape = clouds[0].points_camera.shape[:2]
     observations = Observations(stamp_ns=clouds[0].stamp_ns, views=(), observations=(CUP,))
-    said = {one.label for found in masks if found is not None for one in found.said if one}
+    said = {one.label for found in masks if found is not None for one in found.detector_labels if one}
     return FrameResult(observations, tuple(np.ones(shape, np.int32) for _ in clouds), tuple(sorted(said)))
 
 

@@ -58,7 +58,7 @@ def request_fit(
         track = tracks.known.get(one.entity)
         if track is None or not one.whole or not track.rests(config.rest_frames):
             continue
-        if one.class_ in (ANYTHING, track.unlike) or track.votes.belief(classes) != one.class_:
+        if one.class_ in (ANYTHING, track.rejected_class) or track.votes.belief(classes) != one.class_:
             continue
         if track.fit is None or track.fit.class_ != one.class_:
             own = found.observations.observations[number - 1]  # as its box was seen
@@ -75,8 +75,8 @@ def apply_fit(tracks: Tracks, request: Request, found: Fit | None, config: Track
     if found is not None:
         usable = found.has_orientation and not found.lying and not _across(found.pose, track)
         fit = KnownFit(found.class_, found.score, found.pose.orientation_wxyz if usable else None, found.fold)
-    unlike = found is not None and contradicts_class(request.seen, found)
-    return replace(tracks, known={**tracks.known, request.name: track.fitted(fit, unlike=unlike)})
+    rejected = found is not None and contradicts_class(request.seen, found)
+    return replace(tracks, known={**tracks.known, request.name: track.fitted(fit, rejected=rejected)})
 
 
 def with_known_fit(seen: Observation, entity: str, tracks: Tracks) -> Observation:

@@ -70,8 +70,8 @@ def _turns(model: ModelSurface) -> int:
 
 def size_mismatch(size_m: Numbers, seen_m: Numbers) -> float:
     """Return the mean difference of log extents, for the better of two orientations of the box."""
-    ways = (seen_m, seen_m[[1, 0, 2]])
-    return min(float(np.abs(np.log(size_m / way)).mean()) for way in ways)
+    orientations = (seen_m, seen_m[[1, 0, 2]])
+    return min(float(np.abs(np.log(size_m / orientation)).mean()) for orientation in orientations)
 
 
 def choice_distance(size_m: Numbers, seen_m: Numbers) -> float:
@@ -79,8 +79,8 @@ def choice_distance(size_m: Numbers, seen_m: Numbers) -> float:
 
     It is the sum of the squared log ratios of extents and of proportions, for the better of two orientations.
     """
-    ways = (np.log(size_m / seen_m), np.log(size_m / seen_m[[1, 0, 2]]))
-    return min(float((way**2).sum() + ((way - way.mean()) ** 2).sum()) for way in ways)
+    ratios = (np.log(size_m / seen_m), np.log(size_m / seen_m[[1, 0, 2]]))
+    return min(float((r**2).sum() + ((r - r.mean()) ** 2).sum()) for r in ratios)
 
 
 def in_proportion(own_m: Numbers, seen_m: Numbers) -> Numbers:

@@ -24,13 +24,14 @@ class DetectorLabel:
 
 @dataclass(frozen=True)
 class Masks:
-    """The masks of one image: in `labels` (H, W), n is the n-th thing and 0 none; `said` are their labels.
+    """The masks of one image.
 
-    With `alone`, there are no other things.
+    In `labels` (H, W), n is the n-th thing and 0 none; `detector_labels` are their labels. With `alone`,
+    there are no other things.
     """
 
     labels: NDArray[np.int32]
-    said: tuple[DetectorLabel | None, ...]
+    detector_labels: tuple[DetectorLabel | None, ...]
     alone: bool = False
 
     def thinned(self, step: int) -> Masks:
@@ -79,8 +80,8 @@ def masks_from_numbers(
     if scores and len(scores) != len(names):
         raise ValueError(f"there are {len(names)} names and {len(scores)} scores; each name needs one")
     sure = scores or [1.0] * len(names)
-    said = [DetectorLabel(name, score) if name else None for name, score in zip(names, sure, strict=True)]
-    return Masks(numbers.astype(np.int32), (*said, *[None] * (count - len(said))))
+    labels = [DetectorLabel(name, score) if name else None for name, score in zip(names, sure, strict=True)]
+    return Masks(numbers.astype(np.int32), (*labels, *[None] * (count - len(labels))))
 
 
 def _decoded(mask: MaskRun, height: int, width: int) -> NDArray[np.bool_]:

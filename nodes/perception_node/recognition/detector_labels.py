@@ -34,7 +34,9 @@ class LabelMap:
 
     def unknown(self, masks: Iterable[Masks | None]) -> tuple[str, ...]:
         """Return the unknown labels of these masks, sorted."""
-        labels = {found.label for mask in masks if mask is not None for found in mask.said if found}
+        labels = {
+            found.label for mask in masks if mask is not None for found in mask.detector_labels if found
+        }
         return tuple(sorted(label for label in labels if self.class_of(label) is None))
 
 
@@ -53,7 +55,7 @@ def with_detector_labels(
             continue
         chances[n, unknown] += chances[n, clutter]
         chances[n, clutter] = 0.0
-        for label in {segment.said for segment in thing.segments if segment.said}:
+        for label in {segment.detector_label for segment in thing.segments if segment.detector_label}:
             leaves = _leaves_of(labels.class_of(label.label), learnt)
             if leaves.any():
                 score = min(label.score, _SUREST)
@@ -67,10 +69,10 @@ def with_detector_labels(
 def detector_class(thing: Thing, learnt: RecognitionModel, labels: LabelMap) -> tuple[str, float] | None:
     """Return the best detected class that the classifiers do not know; None if there is none."""
     detected = [
-        (class_, segment.said.score)
+        (class_, segment.detector_label.score)
         for segment in thing.segments
-        if segment.said
-        and (class_ := labels.class_of(segment.said.label)) is not None
+        if segment.detector_label
+        and (class_ := labels.class_of(segment.detector_label.label)) is not None
         and not _leaves_of(class_, learnt).any()
     ]
     return max(detected, key=lambda one: one[1], default=None)

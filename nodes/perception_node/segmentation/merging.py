@@ -44,13 +44,13 @@ def merge(of: Statistics, judge: Judge) -> Merged:
             break
         news = np.zeros_like(may)
         grown = []
-        for keep, gone in pairs:
-            of.merge(keep, gone)
-            may[keep] |= may[gone]
-            may[:, keep] |= may[:, gone]
-            may[gone] = may[:, gone] = False
+        for keep, merged in pairs:
+            of.merge(keep, merged)
+            may[keep] |= may[merged]
+            may[:, keep] |= may[:, merged]
+            may[merged] = may[:, merged] = False
             may[keep, keep] = False
-            score[gone] = score[:, gone] = 0
+            score[merged] = score[:, merged] = 0
             grown.append(keep)
         news[grown] = may[grown]
         news &= ~(news.T & np.tri(count, dtype=bool))  # each pair once

@@ -51,16 +51,16 @@ class Target(NamedTuple):
 def cost_in_place(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
     """Return the cost of matching a thing that did not move much; FORBIDDEN if it cannot match."""
     size_m = target.size_m or seen.size_m
-    aside, above = _apart(target.pose, size_m, seen)
+    horizontal, vertical = _apart(target.pose, size_m, seen)
     reach = (max(size_m[:2]) + max(seen.size_m[:2])) / 4.0 + _NEARBY_M
-    if aside > reach or above > (size_m[2] + seen.size_m[2]) / 4.0 + _NEARBY_M:
+    if horizontal > reach or vertical > (size_m[2] + seen.size_m[2]) / 4.0 + _NEARBY_M:
         return FORBIDDEN
-    unlike, alien = size_difference(target, seen), class_difference(target.class_, seen, classes)
-    if unlike > _SAME and target.size_m and _is_one_but_for_its_depth(target, seen):
-        unlike, reach = _SAME_OF_ANOTHER_CLASS, max(reach, 1.5 * aside)
-    if unlike > (_SAME_OF_ANOTHER_CLASS if alien > 0.5 else _SAME):
+    mismatch, class_cost = size_difference(target, seen), class_difference(target.class_, seen, classes)
+    if mismatch > _SAME and target.size_m and _is_one_but_for_its_depth(target, seen):
+        mismatch, reach = _SAME_OF_ANOTHER_CLASS, max(reach, 1.5 * horizontal)
+    if mismatch > (_SAME_OF_ANOTHER_CLASS if class_cost > 0.5 else _SAME):
         return FORBIDDEN
-    return aside / reach + unlike + alien
+    return horizontal / reach + mismatch + class_cost
 
 
 def is_complete_despite_cut(seen: Observation, target: Target) -> bool:
@@ -86,14 +86,16 @@ def cost_anywhere(target: Target, seen: Observation, classes: ClassHierarchy) ->
     if box is None:
         return FORBIDDEN
     vague = ANYTHING in (seen.class_, target.class_)
-    unlike = size_difference(target._replace(size_m=box.size_m), seen)
-    alike = classes.related(target.class_, seen.class_) and unlike <= (_OF_ANY_KIND if vague else _OF_A_KIND)
-    if not alike and cost_in_place(target, seen, classes) == FORBIDDEN:
+    mismatch = size_difference(target._replace(size_m=box.size_m), seen)
+    matches = classes.related(target.class_, seen.class_) and mismatch <= (
+        _OF_ANY_KIND if vague else _OF_A_KIND
+    )
+    if not matches and cost_in_place(target, seen, classes) == FORBIDDEN:
         return FORBIDDEN
-    aside, above = _apart(box.pose, box.size_m, seen)
+    horizontal, vertical = _apart(box.pose, box.size_m, seen)
     vaguely = vague and target.class_ != seen.class_
-    alien = _VAGUE if vaguely else class_difference(target.class_, seen, classes)
-    return unlike + alien + 0.1 * math.hypot(aside, above)
+    class_cost = _VAGUE if vaguely else class_difference(target.class_, seen, classes)
+    return mismatch + class_cost + 0.1 * math.hypot(horizontal, vertical)
 
 
 def cost_of_height(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
@@ -105,9 +107,9 @@ def cost_of_height(target: Target, seen: Observation, classes: ClassHierarchy) -
         return FORBIDDEN
     (x, y, z), (u, v, w) = target.pose.position_m, seen.pose.position_m
     wide, now = _upright(target.size_m)[:2], _upright(seen.size_m)[:2]
-    aside = math.hypot(u - x, v - y) / min(wide)
+    horizontal = math.hypot(u - x, v - y) / min(wide)
     as_wide = all(abs(math.log(b / a)) < _AS_WIDE for a, b in zip(wide, now, strict=True))
-    return aside if as_wide and aside < _SAME_SPOT and abs(w - z) < _BLUR_M else FORBIDDEN
+    return horizontal if as_wide and horizontal < _SAME_SPOT and abs(w - z) < _BLUR_M else FORBIDDEN
 
 
 def size_difference(target: Target, seen: Observation) -> float:
@@ -121,8 +123,8 @@ def size_difference(target: Target, seen: Observation) -> float:
     pairs = zip(_upright(target.size_m), _upright(seen.size_m), strict=True)
     ratios = [math.log((now + _BLUR_M) / (before + _BLUR_M)) for before, now in pairs]
     shrunk, grown = (1.0 if whole else _HIDDEN_PART for whole in (seen.whole, target.whole))
-    unlike = [ratio * grown if ratio > 0.0 else -ratio * shrunk for ratio in ratios]
-    return max(sum(unlike) / 3.0, max(unlike) / 2.0)
+    mismatch = [ratio * grown if ratio > 0.0 else -ratio * shrunk for ratio in ratios]
+    return max(sum(mismatch) / 3.0, max(mismatch) / 2.0)
 
 
 def class_difference(class_name: str, seen: Observation, classes: ClassHierarchy) -> float:

@@ -80,9 +80,9 @@ def uncovered_slabs(before: OrientedBox, now: OrientedBox) -> list[OrientedBox]:
 
 def _apart(one: OrientedBox, other: OrientedBox) -> bool:
     reach = (math.hypot(*one.size_m[:2]) + math.hypot(*other.size_m[:2])) / 2.0
-    aside = math.dist(one.pose.position_m[:2], other.pose.position_m[:2])
-    above = other.pose.position_m[2] - one.pose.position_m[2]
-    return aside > reach or above > one.size_m[2] or -above > other.size_m[2]
+    horizontal = math.dist(one.pose.position_m[:2], other.pose.position_m[:2])
+    vertical = other.pose.position_m[2] - one.pose.position_m[2]
+    return horizontal > reach or vertical > one.size_m[2] or -vertical > other.size_m[2]
 
 
 def _turn(yaw_rad: float) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:

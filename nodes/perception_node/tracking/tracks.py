@@ -46,7 +46,7 @@ class Track:
     State: `whole`: it was seen completely. `map_pose`: the map's pose at the last frame. `left`: that place
     is seen empty. `kept`: the part of it that would be left is filled. `part`: the map has a size that an
     image edge cuts. `outsized`: the map's size is too large. `fit`: the fitted model since it rests.
-    `unlike`: the class that a fit rejected.
+    `rejected_class`: the class that a fit rejected.
     """
 
     pose: Pose
@@ -68,7 +68,7 @@ class Track:
     part: bool = False
     outsized: bool = False
     fit: KnownFit | None = None
-    unlike: str = ""
+    rejected_class: str = ""
 
     @property
     def reported_pose(self) -> Pose:
@@ -77,11 +77,11 @@ class Track:
             return self.pose
         return Pose(position_m=self.pose.position_m, orientation_wxyz=self.fit.orientation_wxyz)
 
-    def fitted(self, fit: KnownFit, *, unlike: bool) -> Track:
-        """Return the track with a fit; `unlike`: the fit rejects the class."""
-        if not unlike:
+    def fitted(self, fit: KnownFit, *, rejected: bool) -> Track:
+        """Return the track with a fit; `rejected`: the fit rejects the class."""
+        if not rejected:
             return replace(self, fit=fit)
-        return replace(self, fit=fit, unlike=fit.class_, votes=self.votes.moved(fit.class_, ANYTHING))
+        return replace(self, fit=fit, rejected_class=fit.class_, votes=self.votes.moved(fit.class_, ANYTHING))
 
     def is_gone(self, config: TrackingConfig) -> bool:
         """Return whether the thing is no longer at its place."""
@@ -94,7 +94,7 @@ class Track:
     def see(self, seen: Observation, config: TrackingConfig) -> Track:
         """Return the track with one more observation."""
         weight = _weight(seen)
-        class_ = ANYTHING if seen.class_ == self.unlike else seen.class_
+        class_ = ANYTHING if seen.class_ == self.rejected_class else seen.class_
         votes = self.votes.cast(class_, seen.probability, weight)
         before, now = OrientedBox(self.pose, self.size_m), OrientedBox(seen.pose, seen.size_m)
         if self.whole and self.frames and is_front(before, now):
@@ -168,7 +168,7 @@ class Track:
             whole=True,
             map_pose=self.map_pose,
             part=self.part,
-            unlike=self.unlike,
+            rejected_class=self.rejected_class,
         )
 
 
@@ -199,12 +199,12 @@ def turned_like(pose: Pose, size_m: Size, track: Track) -> tuple[Pose, Size]:
     """Return the box with the quarter turn that best matches the track: a box has no front."""
     x, y, z = size_m
 
-    def unlike(quarter: int) -> float:
+    def mismatch(quarter: int) -> float:
         turn = _wrapped(pose.yaw_rad + quarter * math.pi / 2.0 - track.pose.yaw_rad)
         width = y if quarter % 2 else x
         return abs(turn) / math.pi + abs(math.log(width / track.size_m[0]))
 
-    quarter = min(range(4), key=unlike)
+    quarter = min(range(4), key=mismatch)
     orientation = orientation_from_yaw(pose.yaw_rad + quarter * math.pi / 2.0)
     turned: Size = (y, x, z) if quarter % 2 else size_m
     return Pose(position_m=pose.position_m, orientation_wxyz=orientation), turned

@@ -28,8 +28,8 @@ def with_masks(sight: SegmentedView, masks: Masks) -> SegmentedView:
         raise ValueError(f"the masks have {w} x {h} pixels, the image {width} x {height}")
     depth_m = sight.cloud.points_camera[..., 2]
     labels, count = np.zeros_like(sight.labels), 0
-    said: dict[int, DetectorLabel] = {}
-    for number, label in enumerate(masks.said, 1):
+    found: dict[int, DetectorLabel] = {}
+    for number, label in enumerate(masks.detector_labels, 1):
         mask = masks.labels == number
         clear = mask & (sight.planes == 0)
         if np.count_nonzero(clear) < _LEFT * np.count_nonzero(mask):
@@ -40,7 +40,7 @@ def with_masks(sight: SegmentedView, masks: Masks) -> SegmentedView:
         count += 1
         labels[own] = count
         if label is not None:
-            said[count] = label
+            found[count] = label
     masked, carriers = count, set[int]()
     if not masks.alone:
         for old in range(1, int(sight.labels.max(initial=0)) + 1):
@@ -54,7 +54,7 @@ def with_masks(sight: SegmentedView, masks: Masks) -> SegmentedView:
     undisputed = np.zeros((0, 0), np.float32)
     cut = with_labels(replace(sight, same=undisputed), labels, frozenset(carriers))
     named = tuple(
-        replace(segment, masked=segment.label <= masked, said=said.get(segment.label))
+        replace(segment, masked=segment.label <= masked, detector_label=found.get(segment.label))
         for segment in cut.segments
     )
     return replace(cut, carriers=frozenset(carriers), segments=named)

@@ -39,7 +39,7 @@ class Segment:
     count: int
     carrier: bool = False
     masked: bool = False
-    said: DetectorLabel | None = None
+    detector_label: DetectorLabel | None = None
     ends: Floats = field(default_factory=lambda: np.empty((0, 3), np.float32))
 
 

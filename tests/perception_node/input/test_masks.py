@@ -51,7 +51,7 @@ def test_text_worked_out_by_hand():
     # runs 5, 2, 3, 4, 86: the first three as they are, then 4 - 2 and 86 - 3, which takes two letters
     found = masks_from_runs([MaskRun(size=(10, 10), counts="5232c2", label="cup", score=0.9)], 10, 10)
     assert np.flatnonzero(found.labels.T.ravel()).tolist() == [5, 6, 10, 11, 12, 13]
-    assert found.said == (DetectorLabel("cup", 0.9),)
+    assert found.detector_labels == (DetectorLabel("cup", 0.9),)
 
 
 def test_where_masks_overlap_the_surer_one_is_in_front():
@@ -65,8 +65,8 @@ def test_a_label_image_has_names_or_none():
     labels = np.array([[0, 1], [2, 2]], "<u2")
     named = masks_from_image(MaskImage(labels=labels.tobytes(), names=("cup", ""), scores=(0.8, 1.0)), 2, 2)
     assert named.labels.tolist() == labels.tolist()
-    assert named.said == (DetectorLabel("cup", 0.8), None)
-    assert masks_from_numbers(labels).said == (None, None)
+    assert named.detector_labels == (DetectorLabel("cup", 0.8), None)
+    assert masks_from_numbers(labels).detector_labels == (None, None)
 
 
 @pytest.mark.parametrize(

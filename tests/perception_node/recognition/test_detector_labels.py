@@ -33,7 +33,7 @@ def said(label, score=0.9):
 
 
 def thing(*told, masked=True):
-    return SimpleNamespace(masked=masked, segments=[SimpleNamespace(said=one) for one in told])
+    return SimpleNamespace(masked=masked, segments=[SimpleNamespace(detector_label=one) for one in told])
 
 
 def named(*told, masked=True):
@@ -71,8 +71,8 @@ def test_learnt_is_what_our_votes_know_by_exactly_this_name():
 
 
 def test_labels_that_nobody_knows_are_named_once():
-    masks = [SimpleNamespace(said=[said("saucer"), said("fork"), None]), None]
-    masks.append(SimpleNamespace(said=[said("saucer"), said("ladle")]))
+    masks = [SimpleNamespace(detector_labels=[said("saucer"), said("fork"), None]), None]
+    masks.append(SimpleNamespace(detector_labels=[said("saucer"), said("ladle")]))
     assert LABELS.unknown(masks) == ("ladle", "saucer")
 
 
@@ -122,7 +122,7 @@ def test_what_is_said_of_two_views_counts_twice_only_where_it_differs():
 
 
 def _segments(*told):
-    return [SimpleNamespace(said=one) for one in told]
+    return [SimpleNamespace(detector_label=one) for one in told]
 
 
 def test_a_class_that_was_never_learnt_is_told_by_the_surest_detector():

@@ -219,12 +219,12 @@ def test_what_is_cut_is_a_part_of_what_was_seen_whole_where_much_of_either_is_in
 
 
 def test_when_all_of_a_front_is_seen_the_track_is_of_that():
-    front = Track(at(1.19, 1, 0.0), (0.02, 1.0, 1.8), map_pose=at(9, 9), part=True, unlike="Cup")
+    front = Track(at(1.19, 1, 0.0), (0.02, 1.0, 1.8), map_pose=at(9, 9), part=True, rejected_class="Cup")
     front = front.see(seen("Object", at(1.19, 1, 0.0), (0.02, 1.0, 1.8)), CONFIG)
     shelf = seen("Object", at(1, 1, 0.0), (0.4, 1.0, 1.8))
     track = front.see(shelf, CONFIG)
     assert (track.pose, track.size_m, track.frames, track.whole_frames) == (shelf.pose, shelf.size_m, 1, 1)
-    assert (track.map_pose, track.part, track.unlike, track.whole) == (at(9, 9), True, "Cup", True)
+    assert (track.map_pose, track.part, track.rejected_class, track.whole) == (at(9, 9), True, "Cup", True)
     back = track.see(seen("Object", at(1.19, 1, 0.0), (0.02, 1.0, 1.8)), CONFIG)
     assert (back.pose, back.size_m, back.frames) == (shelf.pose, shelf.size_m, 2)
 
@@ -245,9 +245,9 @@ def test_a_model_that_does_not_fit_at_all_takes_its_class_away():
     cup = Track(at(1, 1), SIZES["Cup"])
     for _ in range(4):
         cup = cup.see(seen("Cup", at(1, 1)), CONFIG)
-    kept, doubted = cup.fitted(FIT_OF_CUP, unlike=False), cup.fitted(FIT_OF_CUP, unlike=True)
-    assert (kept.fit, kept.unlike, kept.votes) == (FIT_OF_CUP, "", cup.votes)
-    assert (doubted.fit, doubted.unlike) == (FIT_OF_CUP, "Cup")
+    kept, doubted = cup.fitted(FIT_OF_CUP, rejected=False), cup.fitted(FIT_OF_CUP, rejected=True)
+    assert (kept.fit, kept.rejected_class, kept.votes) == (FIT_OF_CUP, "", cup.votes)
+    assert (doubted.fit, doubted.rejected_class) == (FIT_OF_CUP, "Cup")
     assert doubted.votes.belief(CLASSES) == ANYTHING
     again = doubted.see(seen("Cup", at(1, 1)), CONFIG)
     assert again.votes.belief(CLASSES) == ANYTHING

@@ -40,7 +40,7 @@ def test_segments_are_the_masks_without_what_lies_behind_them():
     assert all(segment.masked for segment in sight.segments)
     for segment, (body, name) in zip(sight.segments, CLASSES.items(), strict=True):
         found, purity = owner_of(sight.labels == segment.label, 0)
-        assert (found, segment.said.label) == (body, name)
+        assert (found, segment.detector_label.label) == (body, name)
         assert purity > 0.9
 
 

@@ -46,8 +46,8 @@ def _read_header(data: bytes) -> tuple[str, int, list[tuple[str, str]], int]:
     properties: list[tuple[str, str]] = []
     for line in data[:mark].decode("ascii", errors="replace").splitlines():
         match line.split():
-            case ["format", said, *_]:
-                encoding = said
+            case ["format", format_, *_]:
+                encoding = format_
             case ["element", name, _] if not properties and name != "vertex":
                 raise OtherVariant(f"its first element is '{name}', not vertex")
             case ["element", name, number]:

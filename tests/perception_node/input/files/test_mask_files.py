@@ -17,11 +17,11 @@ FIRST = {"segmentation": {"size": [2, 3], "counts": [2, 1, 1, 1, 1]}, "score": 0
 def test_results_and_datasets_of_coco(tmp_path):
     (tmp_path / "a.json").write_text(json.dumps([{**FIRST, "category": "cup"}, {**FIRST, "category_id": 7}]))
     results = read_masks(tmp_path / "a.json", 2, 3)
-    assert results.said == (DetectorLabel("cup", 0.7), DetectorLabel("7", 0.7))
+    assert results.detector_labels == (DetectorLabel("cup", 0.7), DetectorLabel("7", 0.7))
     dataset = {"categories": [{"id": 7, "name": "coffee mug"}], "annotations": [{**FIRST, "category_id": 7}]}
     (tmp_path / "b.json").write_text(json.dumps(dataset))
     found = read_masks(tmp_path / "b.json", 2, 3)
-    assert found.said == (DetectorLabel("coffee mug", 0.7),)
+    assert found.detector_labels == (DetectorLabel("coffee mug", 0.7),)
     assert found.labels.tolist() == [[0, 1, 1], [0, 0, 0]]
 
 
@@ -40,7 +40,7 @@ def test_polygons_hold_the_pixels_whose_middle_is_within(tmp_path, polygons, pix
     (tmp_path / "a.json").write_text(json.dumps([{"segmentation": polygons, "category": "cup"}]))
     found = read_masks(tmp_path / "a.json", 3, 4)
     assert found.labels.tolist() == pixels
-    assert found.said == (DetectorLabel("cup", 1.0),)
+    assert found.detector_labels == (DetectorLabel("cup", 1.0),)
 
 
 def test_label_images(tmp_path):
@@ -49,7 +49,7 @@ def test_label_images(tmp_path):
     for name in ("a.npy", "a.png"):
         found = read_masks(tmp_path / name, 2, 3)
         assert found.labels.tolist() == LABELS.tolist()
-        assert found.said == (None, None)
+        assert found.detector_labels == (None, None)
 
 
 @pytest.mark.parametrize(
