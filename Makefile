@@ -73,7 +73,7 @@ shapes: setup  ## Write the models' sizes, support surfaces and hollows anew, fo
 	$(BIN)/python -m semmap.nodes.training.model_surfaces
 
 models: setup  ## Draw the contact sheet of all models
-	$(BIN)/python -m semmap.nodes.sim_node.models.sheet docs/models.png
+	$(BIN)/python -m semmap.nodes.sim_node.models.contact_sheet docs/models.png
 
 pictures: setup  ## Draw the manual's pictures of the page, the plan and the movie; needs Debian's chromium
 	$(BIN)/python docs/_ext/pictures.py

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from PIL import Image
 
+from semmap.nodes.recorder.intact_part import chunks
 from semmap.nodes.recorder.recorded_commits import read_commits
-from semmap.nodes.recorder.whole_part import chunks
 
 if TYPE_CHECKING:
     from demo.tour import Tour

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from semmap.nodes.recorder.whole_part import chunks
+from semmap.nodes.recorder.intact_part import chunks
 
 _CAMERAS = ("kitchen", "robot1_head")
 _PICTURE, _PLACE, _TIME = "EncodedImage:blob", "Transform3D:translation", "time"

@@ -147,7 +147,7 @@ def test_what_is_held_is_held_again_after_a_restart(system, client):
     until(lambda: live_off_m(client) < 0.02, "where it was")
     asked = Grip(orders=(GripOrder(name="cup1", holder="table1"),))
     why = bus.ask(client.session, keys.SIM, "grip", asked, Gripped).failed
-    assert why == {"cup1": "cup1 is held by tray1 already"}
+    assert why == {"cup1": "cup1 is already attached to tray1"}
 
 
 def test_the_last_word_wins(client):

@@ -66,7 +66,7 @@ def test_ways_in_words_in_python_and_when_a_door_is_shut(system):
         client.set("door4", "isOpen", False)
         assert client.route("bathroom1", "studio1").closed == ("door4",)
         assert client.route("bathroom1", "studio1", as_of=1).closed == ()
-        with pytest.raises(errors.Refused, match="it is in no place of the map"):
+        with pytest.raises(errors.Refused, match="it is outside every place of the map"):
             client.route("bathroom1", (50.0, 50.0))
         with pytest.raises(errors.UnknownName, match="nothing is named or called 'atlantis'"):
             client.route("bathroom1", "atlantis")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from benchmarks.perception import fitted, foreign, learnt, live, recorded, simulated, tracking, unknown
 from benchmarks.perception.table import Row, lines
-from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
 PARTS = ("recorded", "simulated", "painted", "unknown", "foreign", "fitted", "learnt", "tracking", "live")
 

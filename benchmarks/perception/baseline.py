@@ -9,9 +9,9 @@ from msgspec import structs
 from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.pipeline import Look, look_at
-from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
-from semmap.nodes.perception_node.views.segmented_view import Sight, labelled, see
+from semmap.nodes.perception_node.pipeline import FrameResult, observe_views
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, RecognitionModel
+from semmap.nodes.perception_node.views.segmented_view import SegmentedView, segment_cloud, with_labels
 
 _EVERY = 3
 _NEAR_M = 0.02
@@ -19,12 +19,12 @@ _FEWEST = 10
 _LEAST = 40
 
 
-def clustered(clouds: Sequence[Cloud], learnt: Learnt) -> Look:
+def clustered(clouds: Sequence[Cloud], learnt: RecognitionModel) -> FrameResult:
     """Our pipeline, but with what is off the planes grouped by DBSCAN."""
-    return look_at([_dbscan(see(cloud)) for cloud in clouds], learnt)
+    return observe_views([_dbscan(segment_cloud(cloud)) for cloud in clouds], learnt)
 
 
-def _dbscan(sight: Sight) -> Sight:
+def _dbscan(sight: SegmentedView) -> SegmentedView:
     import open3d
 
     thin = sight.cloud.points_camera[::_EVERY, ::_EVERY]
@@ -38,10 +38,10 @@ def _dbscan(sight: Sight) -> Sight:
         np.int32
     )
     labels[(np.bincount(labels.ravel()) < _LEAST)[labels]] = 0
-    return labelled(sight, labels, frozenset())
+    return with_labels(sight, labels, frozenset())
 
 
-def guessed(looks: Sequence[Look], learnt: Learnt) -> Iterator[Look]:
+def guessed(looks: Sequence[FrameResult], learnt: RecognitionModel) -> Iterator[FrameResult]:
     """The same observations, but each of a leaf drawn by lot."""
     rng = np.random.default_rng(0)
     leaves: NDArray[np.str_] = np.array([name for name in learnt.classes if name not in (UNKNOWN, CLUTTER)])
@@ -50,4 +50,4 @@ def guessed(looks: Sequence[Look], learnt: Learnt) -> Iterator[Look]:
             structs.replace(observation, class_=str(rng.choice(leaves)))
             for observation in look.observations.observations
         )
-        yield Look(structs.replace(look.observations, observations=drawn), look.labels)
+        yield FrameResult(structs.replace(look.observations, observations=drawn), look.labels)

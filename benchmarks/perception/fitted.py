@@ -16,11 +16,11 @@ from benchmarks.perception.rooms import Room, rooms
 from benchmarks.perception.simulated import LEAST_PIXELS, SAME_IOU, Judge, looked, overlap, shots
 from benchmarks.perception.table import Row
 from semmap.nodes.perception_node.fitting.fit import Fit, angle_between
+from semmap.nodes.perception_node.fitting.fit_observations import fit_of, points_of, with_fit, with_poses
 from semmap.nodes.perception_node.fitting.model_surfaces import ClassSurfaces
 from semmap.nodes.perception_node.fitting.model_surfaces import shipped as shipped_surfaces
-from semmap.nodes.perception_node.fitting.things import fit_of, points_of, posed, with_fit
-from semmap.nodes.perception_node.pipeline import Look, look
-from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+from semmap.nodes.perception_node.pipeline import FrameResult, observe_clouds
+from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel
 from semmap.nodes.sim_node.models.library import build
 from semmap.nodes.sim_node.models.model_table import MODELS
 from semmap.nodes.sim_node.models.parts import rotation_matrix
@@ -53,7 +53,7 @@ class Fitted:
         return len(self.errors_deg) / max(1, self.directed)
 
 
-def matched(room: Room, shot: Shot, found: Look) -> Iterator[tuple[Item, Pose, int]]:
+def matched(room: Room, shot: Shot, found: FrameResult) -> Iterator[tuple[Item, Pose, int]]:
     """Each thing that was found, where it stands, and the number of its observation from 1."""
     items = {item.name: item for item in room.items}
     shared, pixels = overlap(shot, found)
@@ -65,12 +65,12 @@ def matched(room: Room, shot: Shot, found: Look) -> Iterator[tuple[Item, Pose, i
 
 
 def score(
-    seen: Sequence[tuple[Room, Shot]], looks: Sequence[Look], judge: Judge, surfaces: ClassSurfaces
+    seen: Sequence[tuple[Room, Shot]], looks: Sequence[FrameResult], judge: Judge, surfaces: ClassSurfaces
 ) -> Fitted:
     """Fit all that was found, and compare with the truth."""
     total = Fitted()
     for (room, shot), found in zip(seen, looks, strict=True):
-        clouds = posed(shot.clouds[: len(found.labels)], found)
+        clouds = with_poses(shot.clouds[: len(found.labels)], found)
         for item, pose, number in matched(room, shot, found):
             observation = found.observations.observations[number - 1]
             started = time.perf_counter()
@@ -82,14 +82,17 @@ def score(
 
 
 def _count(total: Fitted, item: Item, truth: Pose, seen: Observation, fit: Fit | None, judge: Judge) -> None:
-    right, refuted = judge.right(item, seen.class_), with_fit(seen, fit).class_ != seen.class_
-    total.right, total.lost = total.right + right, total.lost + (right and refuted)
-    total.wrong, total.taken_back = total.wrong + (not right), total.taken_back + (not right and refuted)
+    right, contradicts_class = judge.right(item, seen.class_), with_fit(seen, fit).class_ != seen.class_
+    total.right, total.lost = total.right + right, total.lost + (right and contradicts_class)
+    total.wrong, total.taken_back = (
+        total.wrong + (not right),
+        total.taken_back + (not right and contradicts_class),
+    )
     if not right or _fold(item.kind) == 0:
         return
     total.directed += 1
     error = partial(_error_deg, truth=truth, fold=_fold(item.kind))
-    if fit is not None and fit.turned:
+    if fit is not None and fit.has_orientation:
         total.errors_deg.append(error(fit.pose))
         total.before_deg.append(error(seen.pose))
 
@@ -104,13 +107,13 @@ def _error_deg(pose: Pose, truth: Pose, fold: int) -> float:
     return math.degrees(angle_between(said, true, fold))
 
 
-def measure(scenes: int, learnt: Learnt) -> list[Row]:
+def measure(scenes: int, learnt: RecognitionModel) -> list[Row]:
     """All figures of so many easy and as many crowded rooms, from both cameras and from one."""
     judge, surfaces, rows = Judge(class_of_models(MODELS), learnt.ancestors), shipped_surfaces(), list[Row]()
     for crowded, name in ((False, "easy"), (True, "crowded")):
         seen = list(shots(rooms(scenes, _SEEDS[crowded], crowded=crowded), seed=3))
         for cameras in (2, 1):
-            looks = looked(seen, partial(look, learnt=learnt), cameras=cameras).looks
+            looks = looked(seen, partial(observe_clouds, learnt=learnt), cameras=cameras).looks
             found = score(seen, looks, judge, surfaces)
             where = f"{name}, {cameras} camera{'s' if cameras > 1 else ''}"
             off = np.array(found.errors_deg)

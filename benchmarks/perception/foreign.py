@@ -18,9 +18,9 @@ from benchmarks.perception.foreign_frames import Studio, distance_m, scenes
 from benchmarks.perception.simulated import LEAST_PIXELS, SAME_IOU
 from benchmarks.perception.table import Row
 from semmap.nodes.perception_node.input.projection import cloud_of
-from semmap.nodes.perception_node.pipeline import Learnt, look_at
-from semmap.nodes.perception_node.recognition.shipped_votes import UNKNOWN
-from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.pipeline import RecognitionModel, observe_views
+from semmap.nodes.perception_node.recognition.recognition_model import UNKNOWN
+from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 from semmap.nodes.training.recognition.__main__ import learn
 from semmap.nodes.training.recognition.gathering import Gathered, gather, read
 from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
@@ -64,22 +64,24 @@ def folds(things: Sequence[ForeignThing]) -> dict[str, int]:
     return {thing.name: n % FOLDS for n, thing in enumerate(in_order)}
 
 
-def _without(gathered: Gathered, things: Sequence[ForeignThing], dealt: dict[str, int], fold: int) -> Learnt:
+def _without(
+    gathered: Gathered, things: Sequence[ForeignThing], dealt: dict[str, int], fold: int
+) -> RecognitionModel:
     return learn(gathered, unseen=[thing.name for thing in things if dealt[thing.name] == fold])
 
 
 def tallies(
-    things: Sequence[ForeignThing], dealt: dict[str, int], learnt: Sequence[Learnt]
+    things: Sequence[ForeignThing], dealt: dict[str, int], learnt: Sequence[RecognitionModel]
 ) -> tuple[Counter[str], Counter[str]]:
     """How often things of known classes 2.5 cm and higher, and those of none, were what; see `outcome`."""
     rng, studio = np.random.default_rng(_SEED), Studio()
     known, new = Counter[str](), Counter[str]()
     for number, (_, stood) in enumerate(scenes(things, _ALONE, _MIXED, rng)):
         view, rgb, depth, mask = studio.shoot(stood, distance_m(number, rng), rng)
-        sight = see(cloud_of(depth, rgb, view.intrinsics, view.map_from_camera))
+        sight = segment_cloud(cloud_of(depth, rgb, view.intrinsics, view.map_from_camera))
         seen = np.where(depth > 0, mask, 0)
         for fold in {dealt[one.thing.name] for one in stood}:
-            found = look_at([sight], learnt[fold])
+            found = observe_views([sight], learnt[fold])
             classes = [observation.class_ for observation in found.observations.observations]
             of = matched(seen, np.where(depth > 0, found.labels[0], 0), len(stood), len(classes))
             for n, one in enumerate(stood):
@@ -93,7 +95,7 @@ def tallies(
     return known, new
 
 
-def outcome(said: str | None, classes: Sequence[str], learnt: Learnt) -> str:
+def outcome(said: str | None, classes: Sequence[str], learnt: RecognitionModel) -> str:
     """`exact` for one of its classes, `above` for one above these, `Object`, `wrong`; None is `missed`."""
     if said is None:
         return "missed"

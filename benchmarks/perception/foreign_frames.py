@@ -88,7 +88,7 @@ class Studio:
         middle = np.mean([(one.x, one.y, one.z) for one in stood], axis=0)
         target = middle + rng.normal(0.0, 0.04, 3)
         view = look_at(target + distance_m * back, target, WIDTH, HEIGHT, float(rng.uniform(*_FOVY_RAD)))
-        rgb, depth = self._eye.see(model, data, view)
+        rgb, depth = self._eye.render(model, data, view)
         geoms = self._eye.segment(model, data, view)
         owner = np.zeros(model.ngeom + 1, np.uint8)
         for geom in range(model.ngeom):

@@ -21,9 +21,9 @@ from scipy import ndimage
 from benchmarks.perception.foreign import matched, outcome
 from benchmarks.perception.foreign_frames import Stood, Studio
 from semmap.nodes.perception_node.input.projection import cloud_of
-from semmap.nodes.perception_node.pipeline import Learnt, look_at
-from semmap.nodes.perception_node.recognition.shipped_votes import UNKNOWN, shipped
-from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.pipeline import RecognitionModel, observe_views
+from semmap.nodes.perception_node.recognition.recognition_model import UNKNOWN, shipped
+from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 from semmap.nodes.training.recognition.__main__ import learn
 from semmap.nodes.training.recognition.gathering import read
 from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
@@ -75,11 +75,13 @@ def _placed(things: Sequence[ForeignThing], rng: np.random.Generator) -> list[St
 
 
 def panel(
-    studio: Studio, stood: Sequence[Stood], learnt: Learnt, rng: np.random.Generator
+    studio: Studio, stood: Sequence[Stood], learnt: RecognitionModel, rng: np.random.Generator
 ) -> tuple[Image.Image, Counter[str]]:
     """A table as the camera sees it, on each thing what it is said to be, in the colour of the outcome."""
     view, rgb, depth, mask = studio.shoot(stood, _NEAR_M, rng)
-    found = look_at([see(cloud_of(depth, rgb, view.intrinsics, view.map_from_camera))], learnt)
+    found = observe_views(
+        [segment_cloud(cloud_of(depth, rgb, view.intrinsics, view.map_from_camera))], learnt
+    )
     labels, classes = found.labels[0], [seen.class_ for seen in found.observations.observations]
     of = matched(np.where(depth > 0, mask, 0), np.where(depth > 0, labels, 0), len(stood), len(classes))
     outcomes = Counter[str]()
@@ -165,7 +167,9 @@ def _shared(one: Box, other: Box) -> float:
     return max(0.0, across) * max(0.0, down)
 
 
-def drawn(learnt: Learnt, things: Sequence[ForeignThing], seed: int) -> tuple[Image.Image, Counter[str]]:
+def drawn(
+    learnt: RecognitionModel, things: Sequence[ForeignThing], seed: int
+) -> tuple[Image.Image, Counter[str]]:
     """All tables, and below them what the colours mean and how often each came."""
     rng, studio = np.random.default_rng(seed), Studio()
     panels, total = list[Picture](), Counter[str]()

@@ -19,13 +19,13 @@ from benchmarks.perception.foreign import matched
 from benchmarks.perception.foreign_frames import Stood, Studio
 from benchmarks.perception.simulated import LEAST_PIXELS
 from benchmarks.perception.table import Row
+from semmap.nodes.perception_node.exemplar_views import exemplar_view_of, find_shown_thing
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.projection import cloud_of
-from semmap.nodes.perception_node.pipeline import Learnt, look_at
-from semmap.nodes.perception_node.recognition import likeness
-from semmap.nodes.perception_node.recognition.lessons import Lesson, taught
-from semmap.nodes.perception_node.showing import shown_in, view_of
-from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.pipeline import RecognitionModel, observe_views
+from semmap.nodes.perception_node.recognition import similarity
+from semmap.nodes.perception_node.recognition.exemplars import Exemplar, with_exemplars
+from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
 from semmap.nodes.training.scenes.placements import spread
 
@@ -40,37 +40,37 @@ Frame = tuple[Cloud, NDArray[np.integer]]
 """What the camera sees, and (H, W) whose each pixel is, 0 for none."""
 
 
-def measure(folder: Path, tables: int, learnt: Learnt) -> list[Row]:
+def measure(folder: Path, tables: int, learnt: RecognitionModel) -> list[Row]:
     """Show each thing, and look for all that are on each table, one after another. No rows without things."""
     things = foreign_things(folder)
     if not things:
         print(f"{folder} holds no things: the rows of what is shown are left out")
         return []
     rng, studio = np.random.default_rng(_SEED), Studio()
-    lessons = _lessons(things, learnt, studio, rng)
-    likely = likeness.shipped()
-    knowing_all = taught(learnt, list(lessons.values()), likely)
+    exemplars = _exemplars(things, learnt, studio, rng)
+    likely = similarity.shipped()
+    knowing_all = with_exemplars(learnt, list(exemplars.values()), likely)
     alone, together, took_s = Counter[str](), Counter[str](), defaultdict[str, float](float)
     for _ in range(tables):
         stood = _table(things, rng)
         cloud, mask = _frame(studio, stood, float(rng.uniform(*_TOGETHER_M)), rng)
-        sight = see(cloud)
+        sight = segment_cloud(cloud)
         began_s = time.perf_counter()
-        look_at([sight], learnt)
+        observe_views([sight], learnt)
         took_s["bare"] += time.perf_counter() - began_s
         began_s = time.perf_counter()
-        every = look_at([sight], knowing_all)
+        every = observe_views([sight], knowing_all)
         took_s["all"] += time.perf_counter() - began_s
         seen = np.where(cloud.points_camera[..., 2] > 0, mask, 0)
         for n, one in enumerate(stood):
             if np.count_nonzero(mask == n + 1) < LEAST_PIXELS:
                 continue
             name = one.thing.name
-            lesson = lessons.get(name)
+            lesson = exemplars.get(name)
             alone["asked"] += 1
             if lesson is None:
                 continue
-            found = look_at([sight], taught(learnt, [lesson], likely))
+            found = observe_views([sight], with_exemplars(learnt, [lesson], likely))
             for tally, look in ((alone, found), (together, every)):
                 said = [observation.class_ for observation in look.observations.observations]
                 of = matched(seen, look.labels[0], len(stood), len(said))[n]
@@ -83,8 +83,8 @@ def measure(folder: Path, tables: int, learnt: Learnt) -> list[Row]:
         Row("shown once, recognised among 20", alone["right"] / asked, "", 0.85, 0.95),
         Row("shown once: found at all", alone["found"] / asked),
         Row("shown once: others called so, a look", alone["false"] / asked, less=True),
-        Row(f"all {len(lessons)} shown at once: recognised", together["right"] / asked),
-        Row(f"all {len(lessons)} shown at once: time of a look", took_s["all"] / took_s["bare"], less=True),
+        Row(f"all {len(exemplars)} shown at once: recognised", together["right"] / asked),
+        Row(f"all {len(exemplars)} shown at once: time of a look", took_s["all"] / took_s["bare"], less=True),
     ]
 
 
@@ -94,21 +94,21 @@ def _pieces(thing: NDArray[np.bool_], labels: NDArray[np.int32]) -> list[int]:
     return [int(m) - 1 for m in np.flatnonzero(on > 0.5 * total) if m]
 
 
-def _lessons(
-    things: Sequence[ForeignThing], learnt: Learnt, studio: Studio, rng: np.random.Generator
-) -> dict[str, Lesson]:
+def _exemplars(
+    things: Sequence[ForeignThing], learnt: RecognitionModel, studio: Studio, rng: np.random.Generator
+) -> dict[str, Exemplar]:
     """What one frame shows of each; nothing of what was not found there."""
     found = {}
     for number, thing in enumerate(things, 1):
         x, y, yaw = rng.uniform(-0.15, 0.15), rng.uniform(-0.15, 0.15), rng.uniform(-math.pi, math.pi)
         stood = [Stood(thing, float(x), float(y), _height(rng), float(yaw))]
         cloud, _ = _frame(studio, stood, float(rng.uniform(*_ALONE_M)), rng)
-        shown = shown_in(cloud, learnt)
+        shown = find_shown_thing(cloud, learnt)
         if shown is None:
             print(f"{thing.name} is not found where it stands alone")
             continue
-        view = view_of(shown, learnt)
-        found[thing.name] = Lesson(number, thing.name, (), view.features[None], view.size_m, "", 0)
+        view = exemplar_view_of(shown, learnt)
+        found[thing.name] = Exemplar(number, thing.name, (), view.features[None], view.size_m, "", 0)
     return found
 
 

@@ -15,11 +15,11 @@ from PIL import Image, ImageDraw, ImageFont
 from benchmarks.perception.recorded import data_folder
 from benchmarks.perception.rooms import rooms
 from benchmarks.perception.simulated import shots
-from semmap.nodes.perception_node.pipeline import Look, look
-from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.pipeline import FrameResult, observe_clouds
+from semmap.nodes.perception_node.recognition.recognition_model import shipped
 from semmap.nodes.perception_node.segmentation import segment
+from semmap.nodes.perception_node.segmentation.merge_model import MergeModel
 from semmap.nodes.perception_node.segmentation.merging import Judge
-from semmap.nodes.perception_node.segmentation.shipped_trees import MergeModel
 from semmap.nodes.training.segmentation.recorded_scenes import Scene, read_scenes
 from semmap.nodes.training.segmentation.teach import learn, lessons, made_up
 
@@ -49,13 +49,13 @@ def simulated_row(width: int) -> Picture:
     chosen = chain(*(rooms(1, seed, crowded=crowded) for seed, crowded in _ROOMS))
     panels = []
     for _, shot in shots(chosen, seed=3):
-        seen = look(shot.clouds, shipped())
+        seen = observe_clouds(shot.clouds, shipped())
         panels.append(_named(overlay(np.asarray(shot.clouds[0].colors), seen.labels[0]), seen))
     row = Image.fromarray(np.concatenate(panels, axis=1))
     return np.asarray(row.resize((width, row.height * width // row.width), Image.Resampling.LANCZOS))
 
 
-def _named(picture: Picture, seen: Look) -> Picture:
+def _named(picture: Picture, seen: FrameResult) -> Picture:
     """The class of each observation written in the middle of its pixels."""
     image = Image.fromarray(picture)
     draw, font = ImageDraw.Draw(image), ImageFont.load_default(20)

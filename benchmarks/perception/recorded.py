@@ -17,8 +17,8 @@ from scipy.optimize import linear_sum_assignment
 from benchmarks.perception.table import Row
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.segmentation import segment
+from semmap.nodes.perception_node.segmentation.merge_model import MergeModel, shipped
 from semmap.nodes.perception_node.segmentation.merging import Judge
-from semmap.nodes.perception_node.segmentation.shipped_trees import MergeModel, shipped
 from semmap.nodes.training.segmentation.recorded_scenes import Scene, read_scenes
 from semmap.nodes.training.segmentation.teach import Lessons, learn, lessons, made_up
 

@@ -16,8 +16,8 @@ from benchmarks.perception.baseline import clustered, guessed
 from benchmarks.perception.rooms import Room, rooms
 from benchmarks.perception.table import Row
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.pipeline import Look, look
-from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+from semmap.nodes.perception_node.pipeline import FrameResult, observe_clouds
+from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel
 from semmap.nodes.sim_node.models.model_table import MODELS
 from semmap.nodes.training.scenes.paint import Paint, black, one_colour
 from semmap.nodes.training.scenes.simulated_scenes import Item, Shot, Stage
@@ -32,7 +32,7 @@ SAME_IOU = 0.5
 SMALL_M = 0.3
 _SEEDS = {False: 20271, True: 20272}
 
-Perceive = Callable[[Sequence[Cloud]], Look]
+Perceive = Callable[[Sequence[Cloud]], FrameResult]
 
 
 @dataclass
@@ -89,7 +89,7 @@ def shots(
 class Looks:
     """What was perceived of each room, and how long it took [s]."""
 
-    looks: list[Look]
+    looks: list[FrameResult]
     seconds: list[float]
 
 
@@ -105,7 +105,7 @@ def looked(photographed: Iterable[tuple[Room, Shot]], perceive: Perceive, *, cam
 
 def score(
     photographed: Iterable[tuple[Room, Shot]],
-    looks: Iterable[Look],
+    looks: Iterable[FrameResult],
     judge: Judge,
     *,
     of: Collection[str] = tuple(MODELS),
@@ -117,7 +117,9 @@ def score(
     return total
 
 
-def _count(score: Score, room: Room, shot: Shot, look: Look, judge: Judge, of: Collection[str]) -> None:
+def _count(
+    score: Score, room: Room, shot: Shot, look: FrameResult, judge: Judge, of: Collection[str]
+) -> None:
     items = {item.name: item for item in room.items}
     truth = [items[body.name] for body in shot.bodies]
     poses = [body.pose for body in shot.bodies]
@@ -145,7 +147,7 @@ def _count(score: Score, room: Room, shot: Shot, look: Look, judge: Judge, of: C
             score.size_m.append(size_error_m(observation, sizes[n]))
 
 
-def overlap(shot: Shot, look: Look) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def overlap(shot: Shot, look: FrameResult) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Intersection over union (bodies, observations) of pixels in all pictures; visible pixels a body."""
     rows, columns = len(shot.bodies) + 1, len(look.observations.observations) + 1
     both = np.zeros((rows, columns))
@@ -169,10 +171,10 @@ def size_error_m(observation: Observation, truth: Size) -> float:
     return float(np.abs(np.subtract(said, true)).mean())
 
 
-def measure(scenes: int, learnt: Learnt) -> list[Row]:
+def measure(scenes: int, learnt: RecognitionModel) -> list[Row]:
     """All figures of so many easy and as many crowded rooms."""
     judge = Judge(class_of_models(MODELS), learnt.ancestors)
-    ours = partial(look, learnt=learnt)
+    ours = partial(observe_clouds, learnt=learnt)
     rows: list[Row] = []
     for crowded, name, reach, aim in ((False, "easy", 0.98, 0.99), (True, "crowded, touching", 0.93, 0.95)):
         seen = list(shots(rooms(scenes, _SEEDS[crowded], crowded=crowded), seed=1))
@@ -208,7 +210,7 @@ def measure(scenes: int, learnt: Learnt) -> list[Row]:
     return rows
 
 
-def measure_painted(scenes: int, learnt: Learnt) -> list[Row]:
+def measure_painted(scenes: int, learnt: RecognitionModel) -> list[Row]:
     """Our own models in easy rooms, all in black, and each in any one colour: what is right of all."""
     judge = Judge(class_of_models(MODELS), learnt.ancestors)
     rows = []
@@ -217,7 +219,7 @@ def measure_painted(scenes: int, learnt: Learnt) -> list[Row]:
         ("in one random colour", one_colour, 0.92, 0.97),
     ):
         seen = list(shots(rooms(scenes, _SEEDS[False], crowded=False), seed=1, paint=paint))
-        total = score(seen, looked(seen, partial(look, learnt=learnt)).looks, judge)
+        total = score(seen, looked(seen, partial(observe_clouds, learnt=learnt)).looks, judge)
         rows.append(Row(f"own models {name}: right", total.right / total.asked, "", reach, aim))
     return rows
 

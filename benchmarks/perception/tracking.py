@@ -20,7 +20,7 @@ from benchmarks.perception.rooms import THIN_M, THINGS
 from benchmarks.perception.table import Row
 from semmap.nodes.perception_node.config import TrackingConfig
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.pipeline import Learnt, Look, look
+from semmap.nodes.perception_node.pipeline import FrameResult, RecognitionModel, observe_clouds
 from semmap.nodes.perception_node.tracking.association import associate
 from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
 from semmap.nodes.perception_node.tracking.occupancy import occupancy_in
@@ -54,14 +54,14 @@ class Kept(NamedTuple):
     """How many the map had in the end."""
 
 
-def measure(moves: int, learnt: Learnt) -> list[Row]:
+def measure(moves: int, learnt: RecognitionModel) -> list[Row]:
     """The rows of the table."""
     classes = ClassHierarchy(
         {name: frozenset(above) for name, above in learnt.ancestors.items()}, {}, learnt.usual_m
     )
     stage = Stage()
     runs = [
-        identity(lambda clouds: look(clouds, learnt), classes, stage, moves=moves, seed=seed)
+        identity(lambda clouds: observe_clouds(clouds, learnt), classes, stage, moves=moves, seed=seed)
         for seed in _SEEDS
     ]
     shares = [run.kept / run.moves for run in runs]
@@ -120,7 +120,7 @@ class ObedientMap:
 
 
 def identity(
-    perceive: Callable[[Sequence[Cloud]], Look],
+    perceive: Callable[[Sequence[Cloud]], FrameResult],
     classes: ClassHierarchy,
     stage: Stage,
     *,

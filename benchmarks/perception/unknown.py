@@ -10,8 +10,8 @@ import numpy as np
 from benchmarks.perception.rooms import THINGS, rooms
 from benchmarks.perception.simulated import Judge, looked, score, shots
 from benchmarks.perception.table import Row
-from semmap.nodes.perception_node.pipeline import look
-from semmap.nodes.perception_node.recognition.shipped_votes import UNKNOWN
+from semmap.nodes.perception_node.pipeline import observe_clouds
+from semmap.nodes.perception_node.recognition.recognition_model import UNKNOWN
 from semmap.nodes.sim_node.models.model_table import MODELS
 from semmap.nodes.training.recognition.__main__ import learn
 from semmap.nodes.training.recognition.gathering import gather, read
@@ -33,7 +33,7 @@ def measure(scenes: int, samples: Path | None, training_scenes: int) -> list[Row
     )
     judge = Judge(class_of, learnt.ancestors)
     seen = list(shots(rooms(scenes, _SEED, crowded=False, things=kinds), seed=2))
-    total = score(seen, looked(seen, partial(look, learnt=learnt)).looks, judge, of=kinds)
+    total = score(seen, looked(seen, partial(observe_clouds, learnt=learnt)).looks, judge, of=kinds)
     unnamed = sum(said == UNKNOWN for _, said in total.wrong)
     return [
         Row(

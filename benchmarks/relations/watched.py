@@ -14,7 +14,7 @@ from msgspec import structs
 from benchmarks.perception.tracking import CAMERAS, TABLE_M, ObedientMap, things_on_a_table
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.perception_node.config import TrackingConfig
-from semmap.nodes.perception_node.pipeline import look, shipped
+from semmap.nodes.perception_node.pipeline import observe_clouds, shipped
 from semmap.nodes.perception_node.tracking.association import associate
 from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
 from semmap.nodes.perception_node.tracking.occupancy import occupancy_in
@@ -57,7 +57,7 @@ def at_rest(seconds: float, things: int = 20, seed: int = 11) -> Watched:
     changes = updates = 0
     for number in range(_SETTLING + round(seconds * LOOKS_A_SECOND)):
         clouds = stage.shoot(bodies, CAMERAS, rng).clouds
-        seen = look(clouds, learnt).observations.observations
+        seen = observe_clouds(clouds, learnt).observations.observations
         told = associate(known.entities, tracks, seen, occupancy_in(clouds), classes, TrackingConfig())
         tracks, before = told.tracks, dict(known.entities)
         for command in told.commands:

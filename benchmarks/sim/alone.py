@@ -40,7 +40,7 @@ def spawn_and_delete(count: int, trials: int = 40) -> list[Row]:
 
 
 def _growing(world: World, count: int) -> Row:
-    """One body after another, none deleted: every so often there is no berth left."""
+    """One body after another, none deleted: every so often there is no slot left."""
     orders = [order(f"more{i}", "chair", -2.0 - i, -2.0) for i in range(max(10, count // 4))]
     took = [timed(partial(world.spawn, [o])) for o in orders]
     return Row(f"spawn ever more from {count} bodies, mean", 1e3 * sum(took) / len(took), "ms")

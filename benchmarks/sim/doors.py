@@ -20,7 +20,7 @@ from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.testing import own_system
 from semmap.nodes.sim_node.models.library import Model, assemble, build
 from semmap.nodes.sim_node.models.parts import Vec3
-from semmap.nodes.sim_node.orders import ModelSource
+from semmap.nodes.sim_node.order_validation import ModelSource
 from semmap.nodes.sim_node.physics import sleep
 from semmap.nodes.sim_node.world import World
 from semmap.schemas import keys

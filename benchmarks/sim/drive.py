@@ -21,12 +21,12 @@ from semmap.nodes.extern.testing import own_system
 from semmap.nodes.perception_node.config import TrackingConfig
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.projection import cloud_of
+from semmap.nodes.perception_node.observer import Observer
 from semmap.nodes.perception_node.pipeline import shipped
 from semmap.nodes.perception_node.tracking.association import associate
 from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy, hierarchy_of
 from semmap.nodes.perception_node.tracking.occupancy import occupancy_in
 from semmap.nodes.perception_node.tracking.tracks import Tracks
-from semmap.nodes.perception_node.watching import Watching
 from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.sim_node.config import RobotConfig
 from semmap.nodes.sim_node.models.sources import Models
@@ -170,21 +170,21 @@ def _drive(
 ) -> Course:
     """Along a course, with a look at each stop."""
     learnt = shipped()
-    watching, hierarchy = Watching(learnt), hierarchy_of(classes, learnt.usual_m)
+    observer, hierarchy = Observer(learnt), hierarchy_of(classes, learnt.usual_m)
     believed, tracks, config = ObedientMap(), Tracks(), TrackingConfig()
     eye, stuck, frames, spent_s = Eye(), 0, 0, 0.0
     for at, yaw in course:
         world.drive(DriveBase(name=_ROBOT, to=(at,), yaw=yaw, speed=0.4))
         for cloud in _filmed(world, eye):
             started = time.process_time()
-            look = watching([cloud])
+            look = observer([cloud])
             told = associate(
                 believed.entities,
                 tracks,
                 look.observations.observations,
                 occupancy_in([cloud]),
                 hierarchy,
-                config.on_the_move if look.on_the_move else config,
+                config.for_moving_camera if look.camera_moves else config,
             )
             tracks = told.tracks
             for command in told.commands:

@@ -1,1 +1,1 @@
-"""What there is to draw, whoever draws it: figures, colours, surfaces, and the scene as it stands."""
+"""Rendering of map and scene for the page and for recordings, independent of a renderer."""

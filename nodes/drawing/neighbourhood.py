@@ -1,6 +1,6 @@
-"""Readable parts of the knowledge graph: what is next to some things, and all of it by places or classes.
+"""Readable parts of the knowledge graph: the neighbourhood of entities, or all of it by places or classes.
 
-All of a graph of a home is a hairball, so none of it is ever drawn whole.
+The full graph of a home is not readable, so it is never drawn.
 """
 
 from __future__ import annotations
@@ -12,21 +12,21 @@ from typing import Final, Literal, NamedTuple
 from semmap.schemas.entities import Entity
 
 Relations = Mapping[str, Iterable[tuple[str, str]]]
-"""By the name of an entity: a property and the name of the entity that it leads to."""
+"""By the name of an entity: a property and the name of the object entity."""
 Kind = Literal["centre", "entity", "place", "class", "more"]
 
 LOCATED_IN: Final = "isLocatedIn"
 _CENTRES: Final = 12
-"""Entities whose neighbourhood is drawn at once; of more, the whole is drawn by places."""
+"""Maximum number of entities whose neighbourhood is drawn; for more, the graph is drawn by places."""
 _FEW: Final = 14
-"""Neighbours of one entity in one direction; the others are counted."""
+"""Maximum number of neighbours of an entity in one direction; others are counted."""
 _MOST: Final = 60
 
 
-class Knot(NamedTuple):
-    """A node of the drawn graph. The `id` of an entity is its name; other ids hold a colon, as no name does.
+class GraphNode(NamedTuple):
+    """A node of the drawn graph. The `id` of an entity is its name; other ids contain a colon.
 
-    `hidden` is how many entities it stands for, beside or instead of itself.
+    `hidden` is how many further entities it stands for.
     """
 
     id: str
@@ -36,8 +36,8 @@ class Knot(NamedTuple):
     hidden: int = 0
 
 
-class Link(NamedTuple):
-    """What leads from one node to another; `label` has the properties, with commas."""
+class GraphEdge(NamedTuple):
+    """An edge between two nodes; `label` holds the properties, separated by commas."""
 
     source: str
     target: str
@@ -47,8 +47,8 @@ class Link(NamedTuple):
 class Neighbourhood(NamedTuple):
     """A graph small enough to read."""
 
-    knots: tuple[Knot, ...] = ()
-    links: tuple[Link, ...] = ()
+    knots: tuple[GraphNode, ...] = ()
+    links: tuple[GraphEdge, ...] = ()
 
 
 def around(
@@ -59,10 +59,10 @@ def around(
     unfolded: Iterable[str] = (),
     few: int = _FEW,
 ) -> Neighbourhood:
-    """These entities with their classes, and what they lead to and what leads to them.
+    """Return these entities with their classes and neighbours.
 
-    `unfolded` entities are shown with their own neighbours, too, if they are shown at all. Where one has more
-    than `few` of a kind, the others are one node that says how many.
+    `unfolded` entities, if shown, are shown with their own neighbours. More than `few` neighbours of a kind
+    are replaced by one node with their number.
     """
     shown = [name for name in dict.fromkeys(centres) if name in entities][:_CENTRES]
     drawing = _Drawing(entities)
@@ -80,9 +80,9 @@ def around(
 
 
 def by_place(entities: Mapping[str, Entity], relations: Relations) -> Neighbourhood:
-    """The places, with how many things are in each, and how they are connected.
+    """Return the places, the number of things in each, and how they are connected.
 
-    Where there are no places, the classes with their numbers.
+    Without places, returns the classes with their numbers.
     """
     places = {name: entity for name, entity in entities.items() if entity.place}
     if not places:
@@ -100,68 +100,68 @@ def by_place(entities: Mapping[str, Entity], relations: Relations) -> Neighbourh
     shown = sorted(places, key=lambda name: (-number[name], name))[:_MOST]
     knots = [_place_knot(places[name], number[name]) for name in shown]
     if elsewhere:
-        knots.append(Knot("more:elsewhere", f"{elsewhere} elsewhere", "more", "", elsewhere))
+        knots.append(GraphNode("more:elsewhere", f"{elsewhere} elsewhere", "more", "", elsewhere))
     return Neighbourhood(tuple(knots), _links(_between_places(shown, places, relations)))
 
 
 def by_class(entities: Mapping[str, Entity], unfolded: Iterable[str] = ()) -> Neighbourhood:
-    """The classes of the map with the number of their entities; those of `unfolded` classes one by one."""
+    """Return the classes of the map with their number of entities; `unfolded` classes list these."""
     number = Counter(entity.class_ for entity in entities.values())
     shown = [class_ for class_, _ in sorted(number.items(), key=lambda item: (-item[1], item[0]))[:_MOST]]
-    knots = [Knot(_class_id(c), f"{c} ({number[c]})", "class", c, number[c]) for c in shown]
+    knots = [GraphNode(_class_id(c), f"{c} ({number[c]})", "class", c, number[c]) for c in shown]
     links = []
     for class_ in dict.fromkeys(unfolded):
         members = sorted(name for name, entity in entities.items() if entity.class_ == class_)
         if class_ not in shown:
             continue
         for name in members[:_MOST]:
-            knots.append(Knot(name, name, "entity", class_))
-            links.append(Link(name, _class_id(class_), "is a"))
+            knots.append(GraphNode(name, name, "entity", class_))
+            links.append(GraphEdge(name, _class_id(class_), "is a"))
         if len(members) > _MOST:
             more = _more(_class_id(class_), len(members) - _MOST)
             knots.append(more)
-            links.append(Link(more.id, _class_id(class_), ""))
+            links.append(GraphEdge(more.id, _class_id(class_), ""))
     return Neighbourhood(tuple(knots), tuple(links))
 
 
 def _between_places(
     shown: Sequence[str], places: Mapping[str, Entity], relations: Relations
 ) -> dict[tuple[str, str], set[str]]:
-    """Each place in the smallest around it; and, once, what else is said of two that are side by side."""
+    """Return each place's smallest enclosing place, and other relations between adjacent places once."""
     pairs: dict[tuple[str, str], set[str]] = {}
     within = {
         frozenset((name, other))
         for name in shown
-        for said, other in relations.get(name, ())
-        if said == LOCATED_IN
+        for prop, other in relations.get(name, ())
+        if prop == LOCATED_IN
     }
     for name in shown:
         around_it = _smallest_around(name, places, relations)
         if around_it in shown:
             pairs[(name, str(around_it))] = {LOCATED_IN}
-        for said, other in relations.get(name, ()):
+        for prop, other in relations.get(name, ()):
             pair = (other, name) if (other, name) in pairs else (name, other)
             if other in shown and other != name and frozenset(pair) not in within:
-                pairs.setdefault(pair, set()).add(said)
+                pairs.setdefault(pair, set()).add(prop)
     return pairs
 
 
 def _smallest_around(name: str, places: Mapping[str, Entity], relations: Relations) -> str | None:
-    around_it = [p for said, p in relations.get(name, ()) if said == LOCATED_IN and p in places and p != name]
+    around_it = [p for prop, p in relations.get(name, ()) if prop == LOCATED_IN and p in places and p != name]
     return min(around_it, key=lambda place: (_floor_m2(places[place]), place), default=None)
 
 
-def _place_knot(place: Entity, number: int) -> Knot:
+def _place_knot(place: Entity, number: int) -> GraphNode:
     label = place.preferred_reference or place.name
-    return Knot(place.name, f"{label} ({number})" if number else label, "place", place.class_, number)
+    return GraphNode(place.name, f"{label} ({number})" if number else label, "place", place.class_, number)
 
 
 class _Drawing:
-    """A neighbourhood as it is put together, each node and link once."""
+    """A neighbourhood under construction, with each node and edge once."""
 
     def __init__(self, entities: Mapping[str, Entity]) -> None:
         self._entities = entities
-        self._knots: dict[str, Knot] = {}
+        self._knots: dict[str, GraphNode] = {}
         self._pairs: dict[tuple[str, str], set[str]] = {}
 
     @property
@@ -173,8 +173,8 @@ class _Drawing:
 
     def centre(self, name: str) -> None:
         class_ = self._entities[name].class_
-        self._knots[name] = Knot(name, name, "centre", class_)
-        self._knots.setdefault(_class_id(class_), Knot(_class_id(class_), class_, "class", class_))
+        self._knots[name] = GraphNode(name, name, "centre", class_)
+        self._knots.setdefault(_class_id(class_), GraphNode(_class_id(class_), class_, "class", class_))
         self._pairs.setdefault((name, _class_id(class_)), set()).add("is a")
 
     def neighbours(
@@ -191,34 +191,36 @@ class _Drawing:
             self._knots[more.id] = more
             self._pairs[(name, more.id) if outgoing else (more.id, name)] = set()
 
-    def _entity(self, name: str) -> Knot:
+    def _entity(self, name: str) -> GraphNode:
         entity = self._entities[name]
-        return Knot(name, name, "place" if entity.place else "entity", entity.class_)
+        return GraphNode(name, name, "place" if entity.place else "entity", entity.class_)
 
 
 def _incoming(entities: Mapping[str, Entity], relations: Relations) -> dict[str, dict[str, list[str]]]:
     found: dict[str, dict[str, list[str]]] = {}
     for name in entities:
-        for said, other in relations.get(name, ()):
+        for prop, other in relations.get(name, ()):
             if other in entities and other != name:
-                found.setdefault(other, {}).setdefault(name, []).append(said)
+                found.setdefault(other, {}).setdefault(name, []).append(prop)
     return found
 
 
 def _grouped(related: Iterable[tuple[str, str]], entities: Mapping[str, Entity]) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
-    for said, other in related:
+    for prop, other in related:
         if other in entities:
-            found.setdefault(other, []).append(said)
+            found.setdefault(other, []).append(prop)
     return found
 
 
-def _links(pairs: Mapping[tuple[str, str], Iterable[str]]) -> tuple[Link, ...]:
-    return tuple(Link(source, target, ", ".join(sorted(said))) for (source, target), said in pairs.items())
+def _links(pairs: Mapping[tuple[str, str], Iterable[str]]) -> tuple[GraphEdge, ...]:
+    return tuple(
+        GraphEdge(source, target, ", ".join(sorted(prop))) for (source, target), prop in pairs.items()
+    )
 
 
-def _more(of: str, number: int) -> Knot:
-    return Knot(f"more:{of}", f"{number} more", "more", "", number)
+def _more(of: str, number: int) -> GraphNode:
+    return GraphNode(f"more:{of}", f"{number} more", "more", "", number)
 
 
 def _class_id(class_: str) -> str:

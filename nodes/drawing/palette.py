@@ -1,4 +1,4 @@
-"""A colour for each class: the same in every recording and on the page, and bright enough on dark ground."""
+"""A colour for each class, the same in all recordings and on the page, and bright on a dark background."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _LIGHTNESS = (0.68, 0.75, 0.82)
 
 @cache
 def colour_of(class_name: str) -> Rgb:
-    """The colour of a class: hue and one of three shades from a hash of its name, as 8-bit sRGB."""
+    """Return the colour of a class as 8-bit sRGB: hue and one of three shades from a hash of its name."""
     digest = zlib.crc32(class_name.encode())
     hue_rad = 2.0 * math.pi * (digest >> 8) / (1 << 24)
     return _srgb_from_oklch(_LIGHTNESS[digest % len(_LIGHTNESS)], _CHROMA, hue_rad)
 
 
 def _srgb_from_oklch(lightness: float, chroma: float, hue_rad: float) -> Rgb:
-    """Oklab's equal steps look equal, so no hue shouts. The matrices are those of its definition."""
+    """Convert Oklch to sRGB. Oklab is perceptually uniform, so no hue stands out."""
     a, b = chroma * math.cos(hue_rad), chroma * math.sin(hue_rad)
     long = (lightness + 0.3963377774 * a + 0.2158037573 * b) ** 3
     medium = (lightness - 0.1055613458 * a - 0.0638541728 * b) ** 3

@@ -1,4 +1,4 @@
-"""The scene as it follows from the simulator's last snapshot and the poses since."""
+"""The scene, computed from the simulator's last snapshot and the poses published since."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from semmap.schemas.entities import Pose
 from semmap.schemas.scenes import Body, Poses, Scene
 
 _STIR = 2e-4
-"""A coordinate [m] or a quaternion's component that changed by less has not changed."""
+"""A change of a coordinate [m] or quaternion component below this is ignored."""
 _JOINT_STIR = 1e-3
-"""The same of a joint [rad, m]."""
+"""The same for a joint [rad, m]."""
 
 
 class SceneState:
-    """The bodies by name. `known` is false until a first snapshot."""
+    """The bodies by name. `known` is false before the first snapshot."""
 
     def __init__(self) -> None:
         self.known = False
@@ -30,39 +30,39 @@ class SceneState:
         self._rows: NDArray[np.float64] = np.empty((0, 7))
 
     def take(self, scene: Scene) -> None:
-        """Take over a snapshot."""
+        """Replace the state by a snapshot."""
         self.known = True
         self.bodies = {body.name: body for body in scene.bodies}
         self._run, self._version, self.sim_time_s = scene.run, scene.version, scene.sim_time_s
         self._names, self._rows = (), np.empty((0, 7))
 
     def matches(self, poses: Poses) -> bool:
-        """Whether `poses` speaks of the bodies of the last snapshot; if not, another is needed."""
+        """Return whether `poses` refers to the bodies of the last snapshot; if not, a new one is needed."""
         return self.known and (poses.run, poses.version) == (self._run, self._version)
 
     def follow(self, poses: Poses) -> Iterator[tuple[str, Pose]]:
-        """Take over new poses of known bodies, and tell which have moved, as a whole or in their joints."""
+        """Apply poses to known bodies, and yield those that moved, also in their joints."""
         self.sim_time_s = poses.sim_time_s
         rows = np.array(poses.poses, dtype=float).reshape(-1, 7)
         if poses.names != self._names:
-            stirred = np.arange(len(rows))
+            changed = np.arange(len(rows))
             self._names, self._rows = poses.names, rows
         else:
-            stirred = np.flatnonzero((np.abs(rows - self._rows) > _STIR).any(axis=1))
-            self._rows[stirred] = rows[stirred]
-        for i in stirred.tolist():
+            changed = np.flatnonzero((np.abs(rows - self._rows) > _STIR).any(axis=1))
+            self._rows[changed] = rows[changed]
+        for i in changed.tolist():
             body = self.bodies.get(poses.names[i])
             if body is not None:
                 x, y, z, *wxyz = rows[i].tolist()
                 pose = Pose(position_m=(x, y, z), orientation_wxyz=(wxyz[0], wxyz[1], wxyz[2], wxyz[3]))
                 self.bodies[body.name] = structs.replace(body, pose=pose)
-        moved = {poses.names[i] for i in stirred.tolist()} | set(self._follow_joints(poses))
+        moved = {poses.names[i] for i in changed.tolist()} | set(self._follow_joints(poses))
         for name in poses.names:
             if name in moved and name in self.bodies:
                 yield name, self.bodies[name].pose
 
     def _follow_joints(self, poses: Poses) -> Iterator[str]:
-        """Take over where joints stand, and tell of which bodies any has moved."""
+        """Apply joint positions, and yield the bodies of which a joint moved."""
         first = 0
         for name in poses.names if poses.joints else ():
             body = self.bodies.get(name)

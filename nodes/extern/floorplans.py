@@ -55,13 +55,13 @@ def write_floorplan(
         return (file,)
 
     from semmap.nodes.navigation import map_server
-    from semmap.nodes.navigation.grid import forbidden, occupancy
+    from semmap.nodes.navigation.grid import forbidden_mask, occupancy
 
     encode: Callable[[map_server.Pixels], bytes] = map_server.png if kind == ".png" else map_server.pgm
     grid = occupancy(plan, resolution, heights, furniture=furniture)
     pictures = [(file, map_server.pixels_of(grid))]
     if any(place.forbidden for place in plan.places):
-        mask = forbidden(plan, grid.frame)
+        mask = forbidden_mask(plan, grid.frame)
         pictures.append((file.with_name(f"{file.stem}_forbidden{file.suffix}"), map_server.mask_pixels(mask)))
     written: list[Path] = []
     for path, pixels in pictures:

@@ -88,11 +88,11 @@ def check(
     extras.require("semmap replay --check", "kb", "record")
     from semmap.nodes.kb_node.storage.journal import Journal
     from semmap.nodes.recorder.checking import check as compare
+    from semmap.nodes.recorder.intact_part import open_intact_part
     from semmap.nodes.recorder.recorded_commits import commits_of
-    from semmap.nodes.recorder.whole_part import whole_part
 
-    with whole_part(file) as whole:
-        if note := whole.told(file):
+    with open_intact_part(file) as whole:
+        if note := whole.describe(file):
             tell(note)
         recorded = commits_of(whole.path)
     with (

@@ -1,1 +1,1 @@
-"""Geometry on the floor plan that any node may use: convex polygons, and regions made up of them; pure."""
+"""Geometry on the floor plan: convex polygons, and regions made of them. Pure."""

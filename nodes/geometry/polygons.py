@@ -10,7 +10,7 @@ Polygon = Sequence[Point]
 
 
 def area(polygon: Polygon) -> float:
-    """Area [m^2]; 0 for fewer than three corners."""
+    """Return the area [m^2]; 0 for fewer than three corners."""
     doubled = 0.0
     x0, y0 = polygon[-1] if polygon else (0.0, 0.0)
     for x, y in polygon:
@@ -20,7 +20,7 @@ def area(polygon: Polygon) -> float:
 
 
 def hull(points: Sequence[Point]) -> list[Point]:
-    """The convex hull (Andrew's monotone chain)."""
+    """Return the convex hull (Andrew's monotone chain)."""
     ordered = sorted(set(points))
     if len(ordered) < 3:
         return ordered
@@ -39,7 +39,7 @@ def hull(points: Sequence[Point]) -> list[Point]:
 
 
 def clipped(subject: Polygon, by: Polygon) -> list[Point]:
-    """What two convex polygons have in common (Sutherland and Hodgman 1974)."""
+    """Return the intersection of two convex polygons (Sutherland and Hodgman 1974)."""
     rest = list(subject)
     ax, ay = by[-1]
     for bx, by_ in by:
@@ -62,7 +62,7 @@ def clipped(subject: Polygon, by: Polygon) -> list[Point]:
 
 
 def distance(a: Polygon, b: Polygon) -> float:
-    """The distance of two convex polygons [m]; 0 where they meet."""
+    """Return the distance of two convex polygons [m]; 0 if they meet."""
     if len(a) > 2 and len(b) > 2 and (contains(a, b[0]) or contains(b, a[0])):
         return 0.0
     least = math.inf
@@ -78,7 +78,7 @@ def distance(a: Polygon, b: Polygon) -> float:
 
 
 def contains(polygon: Polygon, point: Point) -> bool:
-    """Whether a point lies in a convex polygon, its border included."""
+    """Return whether a point lies in a convex polygon, including its border."""
     px, py = point
     ax, ay = polygon[-1]
     for bx, by in polygon:
@@ -89,7 +89,7 @@ def contains(polygon: Polygon, point: Point) -> bool:
 
 
 def covers(polygon: Polygon, points: Polygon) -> bool:
-    """Whether all of the points lie in a convex polygon, its border included."""
+    """Return whether all points lie in a convex polygon, including its border."""
     ax, ay = polygon[-1]
     for bx, by in polygon:
         ex, ey = bx - ax, by - ay

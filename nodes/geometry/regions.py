@@ -1,7 +1,7 @@
-"""Polygons with holes as convex pieces: what a place covers whose extent is no rectangle.
+"""Polygons with holes as convex pieces, for places whose extent is not a rectangle.
 
-The pieces are the trapezoids between the heights of corners (Chazelle and Incerpi 1984), those between the
-same two edges joined. So what relations measure of a polygon is the sum, or the least, over convex ones.
+The pieces are the trapezoids between the heights of corners (Chazelle and Incerpi 1984); those between the
+same two edges are joined. A measure of the polygon is the sum, or the minimum, over its pieces.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 from semmap.nodes.geometry.polygons import Point, Polygon, area, clipped, contains, distance
 
 _Edge = tuple[Point, Point]
-"""Its lower end first."""
+"""The lower end comes first."""
 
 
 class Piece(NamedTuple):
@@ -28,19 +28,19 @@ class Piece(NamedTuple):
 
 
 class Region:
-    """What some borders enclose, on the floor plan [m]; those within others are of holes."""
+    """The area enclosed by rings on the floor plan [m]; inner rings are holes."""
 
     def __init__(self, rings: Sequence[Sequence[Point]]) -> None:
         self.pieces: Final[tuple[Piece, ...]] = tuple(_pieces(rings))
-        """They overlap nowhere."""
+        """The pieces do not overlap."""
         self.area: Final = sum(area(piece.corners) for piece in self.pieces)
 
     def shared(self, polygon: Polygon, at: Point) -> float:
-        """The area that a convex polygon has in common with it, when its origin is `at` [m^2]."""
-        return sum(area(clipped(moved, piece.corners)) for moved, piece in self._beside(polygon, at))
+        """Return the area of the intersection with a convex polygon whose origin is `at` [m^2]."""
+        return sum(area(clipped(moved, piece.corners)) for moved, piece in self._pieces_near(polygon, at))
 
     def contains(self, point: Point) -> bool:
-        """Whether a point lies in it, its borders included."""
+        """Return whether a point lies in the region, including its borders."""
         x, y = point
         return any(
             piece.low_x <= x <= piece.high_x
@@ -50,12 +50,12 @@ class Region:
         )
 
     def distance(self, polygon: Polygon, at: Point) -> float:
-        """The distance to a convex polygon when its origin is `at` [m]; 0 where they meet."""
+        """Return the distance to a convex polygon whose origin is `at` [m]; 0 if they meet."""
         moved = [(x - at[0], y - at[1]) for x, y in polygon]
         return min((distance(moved, piece.corners) for piece in self.pieces), default=math.inf)
 
-    def _beside(self, polygon: Polygon, at: Point) -> list[tuple[list[Point], Piece]]:
-        """A polygon in the region's own frame, with each piece whose bounds it meets."""
+    def _pieces_near(self, polygon: Polygon, at: Point) -> list[tuple[list[Point], Piece]]:
+        """Return a polygon in the region's frame, with each piece whose bounds intersect its own."""
         dx, dy = at
         moved = [(x - dx, y - dy) for x, y in polygon]
         xs, ys = zip(*moved, strict=True)

@@ -1,1 +1,1 @@
-"""Plans for robots that drive: occupancy grids, rooms cut out of them, and ways; pure."""
+"""Navigation: occupancy grids, segmentation of rooms, and path planning. Pure."""

@@ -1,7 +1,7 @@
-"""Plans as GeoJSON: a feature each place, door and thing, in metres of the map frame.
+"""Plans as GeoJSON: one feature for each place, door and thing, in metres of the map frame.
 
-RFC 7946 wants longitudes and latitudes, which only those can work out who know where the map's origin is on
-Earth; a member `coordinates` of the collection says what these are.
+RFC 7946 requires longitude and latitude, which are unknown without the map's position on Earth. The member
+`coordinates` of the collection states the coordinate system.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from semmap.schemas.plans import Corners, Plan
 
 
 def geojson(plan: Plan) -> str:
-    """The document, its features by kind and name."""
+    """Return the document, with features by kind and name."""
     features = [
         *(
             _feature(

@@ -1,4 +1,4 @@
-"""Occupancy grids: square cells over the floor, rows from the least y on; arrays are (height, width)."""
+"""Occupancy grids: square cells over the floor, rows by increasing y; arrays are (height, width)."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ OCCUPIED: Final = 100
 MOST_CELLS: Final = 16_000_000
 _MARGIN_M: Final = 0.5
 _DOORWAY_M: Final = 0.4
-"""How thick a wall may be for a door to lead through it."""
+"""Maximum thickness of a wall that a door leads through."""
 _OWN_SHARE: Final = 0.4
-"""Of its cells, in which a place must be alone."""
+"""Minimum share of its cells that belong to no other place."""
 _TOUCH: Final = 1e-6
-"""What only touches a cell is not in it [m]."""
+"""Tolerance for outlines that only touch a cell [m]."""
 
 
 @dataclass(frozen=True)
 class Frame:
-    """Where a grid lies: the lower left corner of its first cell and the side of a cell [m]."""
+    """The position of a grid: the lower left corner of its first cell, and the side of a cell [m]."""
 
     x: float
     y: float
@@ -42,24 +42,25 @@ class Frame:
     height: int
 
     def mask(self) -> Mask:
-        """A mask of this grid with nothing in it."""
+        """Return an empty mask of this grid."""
         return np.zeros((self.height, self.width), dtype=bool)
 
     def cell(self, point: Point) -> tuple[int, int] | None:
-        """Row and column of the cell that a point is in; None outside."""
+        """Return row and column of the cell that contains a point; None outside the grid."""
         row = math.floor((point[1] - self.y) / self.resolution)
         column = math.floor((point[0] - self.x) / self.resolution)
         inside = 0 <= row < self.height and 0 <= column < self.width
         return (row, column) if inside else None
 
     def middle(self, row: int, column: int) -> Point:
-        """The middle of a cell."""
+        """Return the centre of a cell."""
         return self.x + (column + 0.5) * self.resolution, self.y + (row + 0.5) * self.resolution
 
     def add_convex(self, mask: Mask, corners: Sequence[Point], *, reach_m: float | None = None) -> None:
-        """Mark the cells that a convex outline, counterclockwise, has a part of.
+        """Mark the cells that overlap a convex outline with counterclockwise corners.
 
-        With `reach_m`, those whose middles it or a margin of that width around its sides contains.
+        With `reach_m`, marks the cells whose centres lie in the outline or a margin of this width around its
+        sides.
         """
         beyond = 0.0 if reach_m is None else max(reach_m, 0.0)
         xs, ys = zip(*corners, strict=True)
@@ -88,23 +89,23 @@ class Frame:
         mask[low:high, left:right] |= inside
 
     def add_rings(self, mask: Mask, rings: Sequence[Sequence[Point]]) -> None:
-        """Mark the cells whose middles are in a polygon."""
+        """Mark the cells whose centres lie in a polygon."""
         for piece in Region(rings).pieces:
             self.add_convex(mask, piece.corners, reach_m=0.0)
 
 
 @dataclass(frozen=True)
 class OccupancyGrid:
-    """What a robot finds on the floor: `cells` are `FREE`, `OCCUPIED` or `UNKNOWN`."""
+    """The occupancy of the floor: `cells` are `FREE`, `OCCUPIED` or `UNKNOWN`."""
 
     frame: Frame
     cells: Cells
 
 
 def frame_around(plan: Plan, resolution: float, most_cells: int = MOST_CELLS) -> Frame:
-    """The grid that all of a plan fits in, with a margin; its origin is a multiple of the resolution.
+    """Return a grid that covers a plan with a margin; its origin is a multiple of the resolution.
 
-    Raises Refused for a plan with nothing on it, and for one that would have too many cells.
+    Raises Refused for an empty plan, and for a grid of too many cells.
     """
     points = [
         point
@@ -117,7 +118,7 @@ def frame_around(plan: Plan, resolution: float, most_cells: int = MOST_CELLS) ->
         for point in outline
     ]
     if not points:
-        raise errors.Refused("there is nothing to plan on: no place has an extent, and no thing a size")
+        raise errors.Refused("the map has no place with an extent and no thing with a size")
     xs, ys = zip(*points, strict=True)
     x0, y0 = (math.floor((min(v) - _MARGIN_M) / resolution) * resolution for v in (xs, ys))
     width = math.ceil((max(xs) + _MARGIN_M - x0) / resolution)
@@ -125,14 +126,14 @@ def frame_around(plan: Plan, resolution: float, most_cells: int = MOST_CELLS) ->
     if width * height > most_cells:
         coarse = resolution * math.sqrt(width * height / most_cells)
         raise errors.Refused(
-            f"a grid of {width} x {height} cells is too large (at most {most_cells:,}); a resolution of"
-            f" {math.ceil(coarse * 100) / 100:g} m or more makes it small enough"
+            f"a grid of {width} x {height} cells is too large (maximum {most_cells:,} cells);"
+            f" use a resolution of at least {math.ceil(coarse * 100) / 100:g} m"
         )
     return Frame(round(x0, 9), round(y0, 9), resolution, width, height)
 
 
 def floor_mask(plan: Plan, frame: Frame) -> Mask:
-    """Where there is floor: in places and doorways; everywhere, if there are no places."""
+    """Return where there is floor: in places and doorways, or everywhere if there are no places."""
     floor = frame.mask()
     for place in plan.places:
         frame.add_rings(floor, place.rings)
@@ -145,7 +146,7 @@ def floor_mask(plan: Plan, frame: Frame) -> Mask:
 
 
 def doorway(door: PlannedThing) -> Sequence[Point]:
-    """What a door leads through: its footprint, stretched across its wall."""
+    """Return the outline that a door leads through: its footprint, stretched across its wall."""
     if len(door.footprint) != 4:
         return door.footprint
     a, b, c, d = door.footprint
@@ -160,12 +161,12 @@ def doorway(door: PlannedThing) -> Sequence[Point]:
 
 
 def floor_level(plan: Plan) -> float:
-    """The height of the floor that the plan is of: that of the lowest place [m]."""
+    """Return the height of the floor of the plan: that of the lowest place [m]."""
     return min((place.floor for place in plan.places), default=0.0)
 
 
 def wall_mask(plan: Plan, frame: Frame, heights: HeightRange) -> Mask:
-    """Where walls stand, those of the world and those of the map, between these heights above the floor."""
+    """Return where walls of world and map are, between these heights above the floor."""
     mask = frame.mask()
     low, high = (floor_level(plan) + h for h in heights)
     for wall in plan.walls:
@@ -175,7 +176,7 @@ def wall_mask(plan: Plan, frame: Frame, heights: HeightRange) -> Mask:
 
 
 def things_mask(plan: Plan, frame: Frame, heights: HeightRange, things: Iterable[PlannedThing]) -> Mask:
-    """Where things have a part between these heights above the floor."""
+    """Return where things are, between these heights above the floor."""
     mask = frame.mask()
     low, high = (floor_level(plan) + h for h in heights)
     for thing in things:
@@ -185,33 +186,33 @@ def things_mask(plan: Plan, frame: Frame, heights: HeightRange, things: Iterable
     return mask
 
 
-def in_the_way(plan: Plan) -> list[PlannedThing]:
-    """The things that may stand in the way: not doors, unless they are said to be closed."""
+def obstacle_things(plan: Plan) -> list[PlannedThing]:
+    """Return the things that may be obstacles: all but doors that are not known to be closed."""
     return [thing for thing in plan.things if not thing.door or thing.open is False]
 
 
 def occupancy(
     plan: Plan, resolution: float, heights: HeightRange, *, furniture: bool = True
 ) -> OccupancyGrid:
-    """The occupancy grid of a plan: walls and, with `furniture`, things as they stand.
+    """Return the occupancy grid of a plan: walls and, with `furniture`, things at their poses.
 
-    `heights` above the floor [m] are what of them is in the robot's way. Raises Refused, see `frame_around`.
+    Parts at `heights` above the floor [m] are obstacles. Raises Refused, see `frame_around`.
     """
     frame = frame_around(plan, resolution)
     cells = np.full((frame.height, frame.width), UNKNOWN, dtype=np.int8)
     cells[floor_mask(plan, frame)] = FREE
     cells[wall_mask(plan, frame, heights)] = OCCUPIED
-    in_way = in_the_way(plan) if furniture else [t for t in plan.things if t.class_ in _BUILT]
+    in_way = obstacle_things(plan) if furniture else [t for t in plan.things if t.class_ in _BUILT]
     cells[things_mask(plan, frame, heights, in_way)] = OCCUPIED
     return OccupancyGrid(frame, cells)
 
 
 _BUILT: Final = frozenset(("Wall", "Window", "Stairs"))
-"""The classes of things that are no furniture."""
+"""The classes of things that are parts of the building."""
 
 
-def forbidden(plan: Plan, frame: Frame) -> Mask:
-    """Where robots are to stay out."""
+def forbidden_mask(plan: Plan, frame: Frame) -> Mask:
+    """Return the keep-out zones for robots."""
     mask = frame.mask()
     for place in plan.places:
         if place.forbidden:
@@ -220,9 +221,9 @@ def forbidden(plan: Plan, frame: Frame) -> Mask:
 
 
 def rooms_by_cell(plan: Plan, frame: Frame) -> NDArray[np.int32]:
-    """(height, width) which place each cell is in, the smallest that is no part of a room; -1 for none.
+    """Return for each cell (height, width) its place: the smallest that is not part of a room; -1 for none.
 
-    What is mostly made up of other places, as a flat is of its rooms, is no place to be in.
+    A place that consists mostly of other places, as a flat does of its rooms, is ignored.
     """
     found = np.full((frame.height, frame.width), -1, dtype=np.int32)
     sizes: dict[int, int] = {}
@@ -242,8 +243,8 @@ def _area(place: PlannedPlace) -> float:
     return Region(place.rings).area
 
 
-def widened(mask: Mask, reach_m: float, resolution: float) -> Mask:
-    """A mask, and all cells whose middles are nearer than `reach_m` to that of one in it."""
+def inflated(mask: Mask, reach_m: float, resolution: float) -> Mask:
+    """Return a mask inflated by `reach_m`, measured between the centres of cells."""
     reach = reach_m / resolution
     rows = math.floor(reach)
     if rows < 1:

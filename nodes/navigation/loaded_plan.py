@@ -1,4 +1,4 @@
-"""The rooms and doors of a map server's plan, as a scene that can be loaded: places to be named."""
+"""Converts a map server's plan to a scene of rooms and doors that can be loaded."""
 
 from __future__ import annotations
 
@@ -9,45 +9,45 @@ from typing import Final
 import msgspec
 
 from semmap.nodes.geometry.polygons import Point
-from semmap.nodes.navigation.map_server import Described, Pixels, grid_of
-from semmap.nodes.navigation.rooms import Cut, cut
+from semmap.nodes.navigation.map_server import MapDescription, Pixels, grid_of
+from semmap.nodes.navigation.rooms import RoomSegmentation, segment_rooms
 from semmap.schemas import errors, scene_files
 from semmap.schemas.polygons import simple, wkt
 from semmap.schemas.scene_files import SceneFile
 
 _DOOR_M: Final = (0.06, 2.08)
-"""How thick and how high a door is."""
+"""Thickness and height of a door."""
 _DIGITS: Final = 3
 
 
 @dataclass(frozen=True)
 class LoadedPlan:
-    """What a plan falls into: a scene of rooms and doors, and a line on each."""
+    """The result for a plan: a scene of rooms and doors, and a line of text on each."""
 
     scene: SceneFile
     lines: tuple[str, ...]
 
     @property
     def content(self) -> bytes:
-        """The scene as a file."""
+        """Return the scene as a file."""
         return msgspec.json.encode(self.scene)
 
 
-def loaded_plan(described: Described, pixels: Pixels, name: str) -> LoadedPlan:
-    """The rooms of a plan as places, and the passages between them as doors.
+def loaded_plan(described: MapDescription, pixels: Pixels, name: str) -> LoadedPlan:
+    """Return the rooms of a plan as places, and the passages between them as doors.
 
-    Raises BadFile for a plan without free space, or whose rooms are all too small.
+    Raises BadFile for a plan without free space, or with rooms that are all too small.
     """
-    found = cut(grid_of(described, pixels))
+    found = segment_rooms(grid_of(described, pixels))
     if not found.rooms:
         raise errors.BadFile(
-            f"{name} has no room in it: nothing free is larger than 2 square metres; look at its thresholds,"
-            " resolution and negate"
+            f"{name} has no free area of more than 2 square metres; check its thresholds, resolution"
+            " and negate"
         )
     return _scene(found, described)
 
 
-def _scene(found: Cut, described: Described) -> LoadedPlan:
+def _scene(found: RoomSegmentation, described: MapDescription) -> LoadedPlan:
     x0, y0, yaw = described.origin
     c, s = math.cos(yaw), math.sin(yaw)
 

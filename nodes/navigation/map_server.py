@@ -1,7 +1,6 @@
-"""Occupancy grids as ROS's map server keeps them: a YAML file and an image, PNG or PGM.
+"""Occupancy grids in the format of the ROS map server: a YAML file and an image, PNG or PGM.
 
-The first row of the image is the one with the greatest y. Dark is occupied, light is free,
-the rest unknown.
+The first row of the image has the greatest y. Dark is occupied, light is free, other values are unknown.
 """
 
 from __future__ import annotations
@@ -33,15 +32,15 @@ Pixels = NDArray[np.uint8]
 
 _WHITE, _GREY, _BLACK = 254, 205, 0
 _OCCUPIED_FROM, _FREE_TO = 0.65, 0.196
-"""With these, grey is unknown: (255 - 205) / 255 is just above the second."""
+"""With these thresholds grey is unknown: (255 - 205) / 255 is just above the second."""
 _COARSEST_M: Final = 10.0
 _GAP = rb"((?:\s+|#[^\n]*\n)+)"
 _PGM_HEAD = re.compile(rb"P([25])" + _GAP + rb"(\d+)" + _GAP + rb"(\d+)" + _GAP + rb"(\d+)\s")
 
 
 @dataclass(frozen=True)
-class Described:
-    """What the YAML file says of an image: `origin` is the pose of its lower left corner [m, m, rad]."""
+class MapDescription:
+    """The content of the YAML file: `origin` is the pose of the image's lower left corner [m, m, rad]."""
 
     image: str
     resolution: float
@@ -53,7 +52,7 @@ class Described:
 
 
 def yaml_of(image: str, frame: Frame) -> str:
-    """The YAML file that goes with an image of this grid."""
+    """Return the YAML file for an image of this grid."""
     return (
         f"image: {image}\nmode: trinary\nresolution: {frame.resolution:g}\n"
         f"origin: [{frame.x:g}, {frame.y:g}, 0]\nnegate: 0\n"
@@ -62,7 +61,7 @@ def yaml_of(image: str, frame: Frame) -> str:
 
 
 def pixels_of(grid: OccupancyGrid) -> Pixels:
-    """The image of a grid."""
+    """Return the image of a grid."""
     pixels = np.full(grid.cells.shape, _GREY, dtype=np.uint8)
     pixels[grid.cells == FREE] = _WHITE
     pixels[grid.cells == OCCUPIED] = _BLACK
@@ -70,12 +69,12 @@ def pixels_of(grid: OccupancyGrid) -> Pixels:
 
 
 def mask_pixels(mask: Mask) -> Pixels:
-    """The image of a mask: what is in it is black."""
+    """Return the image of a mask, which is black."""
     return np.where(mask, _BLACK, _WHITE).astype(np.uint8)[::-1]
 
 
 def png(pixels: Pixels) -> bytes:
-    """A PNG file of grey pixels (height, width)."""
+    """Encode grey pixels (height, width) as PNG."""
     height, width = pixels.shape
     rows = np.zeros((height, width + 1), dtype=np.uint8)  # each begins with its filter: none
     rows[:, 1:] = pixels
@@ -88,37 +87,39 @@ def png(pixels: Pixels) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", body) + chunk(b"IEND", b"")
 
 
-def read_yaml(text: str, name: str) -> Described:
-    """What a map server's YAML file says. Raises BadFile."""
-    said = dict(_entries(text, name))
-    if "image" not in said or "resolution" not in said:
+def read_yaml(text: str, name: str) -> MapDescription:
+    """Parse a map server's YAML file. Raises BadFile."""
+    entries = dict(_entries(text, name))
+    if "image" not in entries or "resolution" not in entries:
         raise errors.BadFile(
-            f"{name} is not the description of a map: it takes at least image: FILE and resolution: METRES"
+            f"{name} is not a map description; it requires image: FILE and resolution: METRES"
         )
-    resolution = _number(said, "resolution", name)
+    resolution = _number(entries, "resolution", name)
     if not 0.0 < resolution <= _COARSEST_M:
-        raise errors.BadFile(f"{name}: the resolution is {resolution:g}; it is metres a pixel, over 0")
-    origin = _origin(said.get("origin", "[0, 0, 0]"), name)
-    mode = said.get("mode", "trinary").lower()
+        raise errors.BadFile(
+            f"{name}: invalid resolution {resolution:g}; it must be metres per pixel, over 0"
+        )
+    origin = _origin(entries.get("origin", "[0, 0, 0]"), name)
+    mode = entries.get("mode", "trinary").lower()
     if mode not in ("trinary", "scale", "raw"):
-        raise errors.BadFile(f"{name}: the mode '{mode}' is none of trinary, scale and raw")
+        raise errors.BadFile(f"{name}: invalid mode '{mode}'; use trinary, scale or raw")
     thresholds = {}
     for key, usual in (("occupied_thresh", _OCCUPIED_FROM), ("free_thresh", _FREE_TO)):
-        thresholds[key] = _number(said, key, name) if key in said else usual
+        thresholds[key] = _number(entries, key, name) if key in entries else usual
     if not 0.0 <= thresholds["free_thresh"] < thresholds["occupied_thresh"] <= 1.0:
         raise errors.BadFile(f"{name}: free_thresh must be below occupied_thresh, both from 0 to 1")
-    return Described(
-        image=said["image"],
+    return MapDescription(
+        image=entries["image"],
         resolution=resolution,
         origin=origin,
-        negate=said.get("negate", "0").lower() in ("1", "true", "yes"),
+        negate=entries.get("negate", "0").lower() in ("1", "true", "yes"),
         mode=mode,
         **thresholds,
     )
 
 
 def _entries(text: str, name: str) -> Mapping[str, str]:
-    """The top-level `key: value` lines; a list may be one item a line."""
+    """Parse the top-level `key: value` lines; a list may have one item per line."""
     found: dict[str, str] = {}
     key = ""
     for line in text.splitlines():
@@ -131,19 +132,19 @@ def _entries(text: str, name: str) -> Mapping[str, str]:
             continue
         pair = re.fullmatch(r"([A-Za-z_]\w*)\s*:\s*(.*)", bare)
         if pair is None:
-            raise errors.BadFile(f"{name} is not the description of a map: it has the line '{bare[:60]}'")
+            raise errors.BadFile(f"{name} is not a map description: invalid line '{bare[:60]}'")
         key = pair[1]
         found[key] = pair[2].strip().strip("'\"")
     return found
 
 
-def _number(said: Mapping[str, str], key: str, name: str) -> float:
+def _number(entries: Mapping[str, str], key: str, name: str) -> float:
     try:
-        value = float(said[key])
+        value = float(entries[key])
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise errors.BadFile(f"{name}: {key} is '{said[key]}', which is no number")
+        raise errors.BadFile(f"{name}: {key} '{entries[key]}' is not a number")
     return value
 
 
@@ -154,12 +155,12 @@ def _origin(text: str, name: str) -> tuple[float, float, float]:
         if len(rest) > 1 or not all(map(math.isfinite, (x, y, yaw))):
             raise ValueError
     except ValueError:
-        raise errors.BadFile(f"{name}: the origin is '{text}'; it is three numbers, [x, y, yaw]") from None
+        raise errors.BadFile(f"{name}: invalid origin '{text}'; it must be [x, y, yaw]") from None
     return x, y, yaw
 
 
 def read_image(content: bytes, name: str, decode: Callable[[bytes], Pixels]) -> Pixels:
-    """The grey pixels (height, width) of a PGM file, or of a PNG file, which `decode` reads.
+    """Return the grey pixels (height, width) of a PGM file, or of a PNG file that `decode` reads.
 
     Raises BadFile.
     """
@@ -167,13 +168,13 @@ def read_image(content: bytes, name: str, decode: Callable[[bytes], Pixels]) -> 
         return _pgm(content, name)
     if content[:8] == b"\x89PNG\r\n\x1a\n":
         return decode(content)
-    raise errors.BadFile(f"{name} is neither PNG nor PGM, which are the images of a map that can be read")
+    raise errors.BadFile(f"{name} is not a PNG or PGM image")
 
 
 def _pgm(content: bytes, name: str) -> Pixels:
     head = _PGM_HEAD.match(content)
     if head is None:
-        raise errors.BadFile(f"{name} is not a PGM file: its head is broken")
+        raise errors.BadFile(f"{name} is not a PGM file: invalid header")
     width, height, most = int(head[3]), int(head[5]), int(head[7])
     if not (width > 0 and height > 0 and width * height <= MOST_CELLS and 0 < most < 65536):
         raise errors.BadFile(f"{name} is {width} x {height}; a map has at most {MOST_CELLS:,} pixels")
@@ -186,11 +187,11 @@ def _pgm(content: bytes, name: str) -> Pixels:
             values = np.frombuffer(body, kind, count=width * height).astype(np.float64)
         return (values.reshape(height, width) * (255.0 / most)).round().clip(0, 255).astype(np.uint8)
     except ValueError:
-        raise errors.BadFile(f"{name} ends before its {width} x {height} pixels do") from None
+        raise errors.BadFile(f"{name} is truncated: it has fewer than {width} x {height} pixels") from None
 
 
-def grid_of(described: Described, pixels: Pixels) -> OccupancyGrid:
-    """The grid of an image in its own frame: not turned, with its lower left corner at (0, 0)."""
+def grid_of(described: MapDescription, pixels: Pixels) -> OccupancyGrid:
+    """Return the grid of an image in its own frame: not rotated, lower left corner at (0, 0)."""
     shade = pixels.astype(np.float64) / 255.0
     occupied = shade if described.negate else 1.0 - shade
     if described.mode == "raw":
@@ -205,6 +206,6 @@ def grid_of(described: Described, pixels: Pixels) -> OccupancyGrid:
 
 
 def pgm(pixels: Pixels) -> bytes:
-    """A PGM file of grey pixels (height, width)."""
+    """Encode grey pixels (height, width) as PGM."""
     height, width = pixels.shape
     return b"P5\n%d %d\n255\n" % (width, height) + pixels.tobytes()

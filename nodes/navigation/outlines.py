@@ -1,4 +1,4 @@
-"""The outlines of masks, as simple polygons with few corners."""
+"""The outlines of masks as simple polygons with few corners."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from semmap.schemas.errors import BadRequest
 from semmap.schemas.polygons import Point, Polygon, signed_area, simple
 
 _OFF: Final = (1.1, 0.8, 0.5, 0.0)
-"""By how many cells corners may be off that are left out; fewer where the border would cross itself."""
+"""Tolerances of simplification in cells, tried in order until the border does not cross itself."""
 _MOST_OFF: Final = 8.0
 _LEAST_HOLE_M2: Final = 1.0
 
 
 def outline_of(mask: Mask, resolution: float) -> Polygon | None:
-    """The polygon around the largest piece of a mask [m]; its first cell has its lower left corner at (0, 0).
+    """Return the polygon around the largest piece of a mask [m]; the corner of the first cell is (0, 0).
 
-    Corners are left out as long as none is off by more than about a cell. None for an empty mask.
+    The polygon is simplified with a tolerance of about one cell. Returns None for an empty mask.
     """
     rings = _rings(mask)
     if not rings:
@@ -36,13 +36,13 @@ def outline_of(mask: Mask, resolution: float) -> Polygon | None:
             return simple([found[0], *(ring for ring in found[1:] if len(ring) > 2)])
         except BadRequest:
             continue
-    xs, ys = zip(*outer, strict=True)  # too ragged for any: the box around it
+    xs, ys = zip(*outer, strict=True)  # too ragged for any tolerance: the box around it
     box = [(min(xs), min(ys)), (max(xs), min(ys)), (max(xs), max(ys)), (min(xs), max(ys))]
     return simple([_scaled(box, resolution)])
 
 
 def _rings(mask: Mask) -> list[list[Point]]:
-    """The borders along the sides of cells, what is in the mask to the left; corners (column, row)."""
+    """Return the borders along the sides of cells, with the mask on the left; corners are (column, row)."""
     padded = np.pad(mask, 1)
     following: dict[tuple[int, int], list[tuple[int, int]]] = {}
     inside = padded[1:-1, 1:-1]
@@ -63,13 +63,13 @@ def _rings(mask: Mask) -> list[list[Point]]:
         came = (0, 0)
         at = start
         while True:
-            ways = following[at]
-            if len(ways) > 1:  # two cells touch at a corner: keep to the same cell
+            next_corners = following[at]
+            if len(next_corners) > 1:  # two cells touch at a corner: stay with the same cell
                 left = (-came[1], came[0])
                 turn = (at[0] + left[0], at[1] + left[1])
-                ways.sort(key=turn.__ne__)
-            to = ways.pop(0)
-            if not ways:
+                next_corners.sort(key=turn.__ne__)
+            to = next_corners.pop(0)
+            if not next_corners:
                 del following[at]
             came = (to[0] - at[0], to[1] - at[1])
             at = to
@@ -81,7 +81,7 @@ def _rings(mask: Mask) -> list[list[Point]]:
 
 
 def _straight(ring: list[Point]) -> list[Point]:
-    """Without corners on a straight line."""
+    """Remove corners on straight lines."""
     kept = []
     for k, (x, y) in enumerate(ring):
         (ax, ay), (bx, by) = ring[k - 1], ring[(k + 1) % len(ring)]
@@ -91,7 +91,7 @@ def _straight(ring: list[Point]) -> list[Point]:
 
 
 def _simplified(ring: list[Point], tolerance: float) -> list[Point]:
-    """Douglas and Peucker (1973), between the two corners that are furthest apart."""
+    """Simplify a ring (Douglas and Peucker 1973), split at its two most distant corners."""
     if tolerance <= 0.0 or len(ring) < 5:
         return ring
     first = min(range(len(ring)), key=lambda k: ring[k])

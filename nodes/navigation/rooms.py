@@ -1,10 +1,10 @@
-"""Rooms cut out of an occupancy grid: free space falls apart where it is as narrow as a door.
+"""Segmentation of an occupancy grid into rooms: free space is cut where it is as narrow as a door.
 
-Each free cell has a clearance, its distance to the nearest obstacle. Cells are let in from the widest on, so
-that each room begins at its middle; where two of them meet, the free space there is a neck, of the clearance
-that the meeting cell has. A neck that is as narrow as a door, plainly narrower than both sides, and a gap in
-a wall (`jambs.py`), is the border of two rooms; over any other they are one. The order is fixed, so the same
-plan makes the same rooms.
+Each free cell has a clearance, its distance to the nearest obstacle. Cells are added from the widest on, so
+each room starts at its middle. Where two rooms meet, the free space is a neck with the clearance of the
+meeting cell. A neck separates two rooms if it is as narrow as a door, clearly narrower than both sides, and a
+gap in a wall (`jambs.py`); otherwise the rooms are merged. The order is fixed, so the result is
+deterministic.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ WIDEST_DOOR_M: Final = 1.3
 LEAST_ROOM_M2: Final = 2.0
 _NARROWED: Final = 0.9
 _BEYOND_M: Final = 0.7
-"""A neck has less than that share of the clearance that there is within so far, on both sides."""
+"""A neck has less than the share `_NARROWED` of the maximum clearance within this distance, on both sides."""
 _SPECK_M: Final = 0.12
-"""Obstacles smaller than this across are noise."""
+"""Obstacles smaller than this are noise."""
 _LARGEST_ISLAND_M: Final = 3.0
 _THICKEST_WALL_M: Final = 0.35
 _LEAST_DOOR_M: Final = 0.4
@@ -39,7 +39,7 @@ _LEAST_DOOR_M: Final = 0.4
 
 @dataclass(frozen=True)
 class Room:
-    """A room: its polygon and its area [m^2], in the grid's own frame."""
+    """A room: its polygon and its area [m^2], in the grid's frame."""
 
     polygon: Polygon
     area_m2: float
@@ -47,9 +47,9 @@ class Room:
 
 @dataclass(frozen=True)
 class Doorway:
-    """A passage between two rooms, by their places in the list: its middle, its width [m], its yaw [rad].
+    """A passage between two rooms, given by index: its middle, its width [m] and its yaw [rad].
 
-    The yaw is that of the way through it.
+    The yaw is the direction through the passage.
     """
 
     rooms: tuple[int, int]
@@ -59,25 +59,25 @@ class Doorway:
 
 
 @dataclass(frozen=True)
-class Cut:
-    """What a plan falls into; rooms in the order of their middles, from the lower left on."""
+class RoomSegmentation:
+    """The rooms of a plan, ordered by their middles from the lower left, and their doorways."""
 
     rooms: tuple[Room, ...]
     doorways: tuple[Doorway, ...]
 
 
-def cut(
+def segment_rooms(
     grid: OccupancyGrid, *, widest_door_m: float = WIDEST_DOOR_M, least_room_m2: float = LEAST_ROOM_M2
-) -> Cut:
-    """The rooms of a grid, and the passages between them.
+) -> RoomSegmentation:
+    """Return the rooms of a grid, and the passages between them.
 
-    A passage is at most `widest_door_m` wide; what is smaller than `least_room_m2` belongs to a neighbour, or
-    if it has none to no room.
+    A passage is at most `widest_door_m` wide. An area smaller than `least_room_m2` is merged with a
+    neighbour, or ignored if it has none.
     """
     resolution = grid.frame.resolution
     free = _without_specks(grid.cells, resolution)
     if not free.any():
-        return Cut((), ())
+        return RoomSegmentation((), ())
     free |= _islands(free, resolution)
     clearance = ndimage.distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1] * resolution
     labels = _basins(clearance, widest_door_m / 2.0, resolution, Jambs(free, resolution))
@@ -86,7 +86,7 @@ def cut(
 
 
 def _without_specks(cells: NDArray[np.int8], resolution: float) -> Mask:
-    """The free cells, and obstacles that are too small to be any."""
+    """Return the free cells, including obstacles that are too small."""
     free: Mask = cells == FREE
     most = max(1, round((_SPECK_M / resolution) ** 2))
     numbered, count = ndimage.label(~free)
@@ -103,7 +103,7 @@ def _without_specks(cells: NDArray[np.int8], resolution: float) -> Mask:
 
 
 def _islands(free: Mask, resolution: float) -> Mask:
-    """What stands about, no wall beside it, and is thicker than one: furniture, which makes no necks."""
+    """Return free-standing obstacles that are thicker than a wall: furniture, which makes no necks."""
     numbered, count = ndimage.label(~free, np.ones((3, 3)))
     if not count:
         return np.zeros_like(free)
@@ -121,7 +121,7 @@ def _islands(free: Mask, resolution: float) -> Mask:
 
 
 def _basins(clearance: NDArray[np.float64], most_m: float, resolution: float, jambs: Jambs) -> Labels:
-    """The basin that each free cell belongs to, from 1 on; 0 for what is not free."""
+    """Return the basin of each free cell, from 1; 0 for cells that are not free."""
     height, width = clearance.shape
     across = width + 2
     padded = np.zeros((height + 2, across))
@@ -151,7 +151,7 @@ def _basins(clearance: NDArray[np.float64], most_m: float, resolution: float, ja
     ]
 
     def is_neck(cell: int, value: float, pair: tuple[int, int]) -> bool:
-        """Whether it is plainly wider a step further, on both sides, and a wall ends at it."""
+        """Return whether both sides are clearly wider nearby, and a wall ends at the cell."""
         most = dict.fromkeys(pair, 0.0)
         for step in disc:
             there = cell + step
@@ -196,7 +196,7 @@ def _basins(clearance: NDArray[np.float64], most_m: float, resolution: float, ja
 
 
 def _without_small(labels: Labels, clearance: NDArray[np.float64], least: int) -> Labels:
-    """What is too small for a room belongs to the neighbour that it opens to the widest."""
+    """Merge areas too small for a room with the neighbour that has the widest opening to them."""
     labels = labels.copy()
     while True:
         sizes = np.bincount(labels.ravel())
@@ -214,7 +214,7 @@ def _without_small(labels: Labels, clearance: NDArray[np.float64], least: int) -
         labels[labels == one] = -max(widest)[1]
 
 
-def _described(labels: Labels, free: Mask, grid: OccupancyGrid) -> Cut:
+def _described(labels: Labels, free: Mask, grid: OccupancyGrid) -> RoomSegmentation:
     resolution = grid.frame.resolution
     found: list[tuple[tuple[float, float], int, Room]] = []
     for k in [int(k) for k in np.unique(labels) if k]:
@@ -227,11 +227,11 @@ def _described(labels: Labels, free: Mask, grid: OccupancyGrid) -> Cut:
         found.append((middle, k, Room(polygon, polygon.area_m2)))
     found.sort(key=lambda entry: (entry[0], entry[1]))
     place = {k: number for number, (_, k, _) in enumerate(found)}
-    return Cut(tuple(room for _, _, room in found), tuple(_doorways(labels, place, resolution)))
+    return RoomSegmentation(tuple(room for _, _, room in found), tuple(_doorways(labels, place, resolution)))
 
 
 def _filled(mask: Mask, grid: OccupancyGrid) -> Mask:
-    """A room with what stands in it: what it encloses, but for other rooms and what is large and unknown."""
+    """Return a room with the obstacles that it encloses, without other rooms and large unknown areas."""
     filled: Mask = ndimage.binary_fill_holes(mask)
     holes, count = ndimage.label(filled & ~mask)
     for k in range(1, count + 1):
@@ -244,7 +244,7 @@ def _filled(mask: Mask, grid: OccupancyGrid) -> Mask:
 
 
 def _doorways(labels: Labels, place: dict[int, int], resolution: float) -> list[Doorway]:
-    """Where two rooms meet: cells of the one beside cells of the other, those that hang together."""
+    """Return where two rooms meet: connected cells of one that are adjacent to the other."""
     touching: dict[tuple[int, int], list[tuple[float, float]]] = {}
     for dy, dx in ((0, 1), (1, 0), (1, 1), (1, -1)):
         one = labels[: labels.shape[0] - dy, max(0, -dx) : labels.shape[1] - max(0, dx)]
@@ -276,7 +276,7 @@ def _doorways(labels: Labels, place: dict[int, int], resolution: float) -> list[
 
 
 def _groups(spots: list[tuple[float, float]]) -> list[list[tuple[float, float]]]:
-    """Those that are within two cells of one another, together."""
+    """Group spots that are within two cells of one another."""
     left = sorted(set(spots))
     groups: list[list[tuple[float, float]]] = []
     while left:

@@ -1,4 +1,4 @@
-"""The shortest way over the free cells of a grid: A* to eight neighbours, then straight where one can see."""
+"""Shortest paths over the free cells of a grid: A* with eight neighbours, then shortcuts in line of sight."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _STEPS: Final = tuple(
 _DIAGONALLY: Final = math.sqrt(2.0) - 1.0
 
 
-def shortest(free: Mask, starts: Iterable[Cell], goals: Iterable[Cell]) -> list[Cell] | None:
-    """The cells of a shortest way from one of the starts to one of the goals; None without any.
+def shortest_path(free: Mask, starts: Iterable[Cell], goals: Iterable[Cell]) -> list[Cell] | None:
+    """Return the cells of a shortest path from a start to a goal; None if there is no path.
 
-    It squeezes past no corner: to go diagonally, both cells beside the step must be free. Of ways of one
-    length it is always the same.
+    A diagonal step requires both adjacent cells to be free. Among paths of equal length, the result is
+    deterministic.
     """
     height, width = free.shape
     across = width + 2
@@ -41,7 +41,7 @@ def shortest(free: Mask, starts: Iterable[Cell], goals: Iterable[Cell]) -> list[
     steps = [(dy * across + dx, dy * across, dx, cost) for dy, dx, cost in _STEPS]
 
     def rest(cell: int) -> float:
-        """At least so far from the goals: octile distance to the rectangle around them."""
+        """Return a lower bound of the distance to the goals: octile distance to their bounding rectangle."""
         row, column = divmod(cell, across)
         dy = max(low - row, row - high, 0)
         dx = max(left - column, column - right, 0)
@@ -87,19 +87,19 @@ def _back(cell: int, before: dict[int, int], across: int) -> list[Cell]:
     return [(c // across - 1, c % across - 1) for c in reversed(found)]
 
 
-def straightened(cells: Sequence[Cell], free: Mask) -> list[Cell]:
-    """The corners that are left of a way when each is joined to the furthest that can be seen from it."""
+def without_detours(cells: Sequence[Cell], free: Mask) -> list[Cell]:
+    """Return the corners of a path after connecting each to the farthest one in line of sight."""
     kept = [cells[0]]
     at = 0
     while at < len(cells) - 1:
         step, furthest = 1, at + 1
-        while at + step < len(cells) and is_seen(cells[at], cells[at + step], free):
+        while at + step < len(cells) and in_line_of_sight(cells[at], cells[at + step], free):
             furthest = at + step
             step *= 2
         low, high = furthest, min(len(cells) - 1, at + step)
         while low < high:
             middle = (low + high + 1) // 2
-            if is_seen(cells[at], cells[middle], free):
+            if in_line_of_sight(cells[at], cells[middle], free):
                 low = middle
             else:
                 high = middle - 1
@@ -108,8 +108,8 @@ def straightened(cells: Sequence[Cell], free: Mask) -> list[Cell]:
     return kept
 
 
-def is_seen(one: Cell, other: Cell, free: Mask) -> bool:
-    """Whether all cells that the line between two cells' middles passes through are free."""
+def in_line_of_sight(one: Cell, other: Cell, free: Mask) -> bool:
+    """Return whether all cells on the line between the centres of two cells are free."""
     (y0, x0), (y1, x1) = one, other
     count = 2 * max(abs(y1 - y0), abs(x1 - x0)) + 1
     shares = np.linspace(0.0, 1.0, max(count * 2, 2))

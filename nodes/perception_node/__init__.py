@@ -1,12 +1,11 @@
-"""Perception: from RGB-D frames to observations, and from those to commands.
+"""Perception: from RGB-D frames to observations, and from observations to commands.
 
-In the order in which a frame passes through:
-
-- frames: `frame_worker`, `frames`, `projection`, `cloud`; from files: `files/`
-- one picture, taken apart: `segmentation/`, `furniture`, `segments`, `sights`
-- all pictures of one moment (a look), put together: `pipeline` over `disputes`, `fusion`, `things`, `boxes`,
-  and `recognition/`
-- look after look: `association` over `matching` (`costs`, `overlap`, `occupancy`) and `tracks` (`votes`,
-  `class_hierarchy`); `map_updates` says what the map is to be told
-- on the wire: `node`, `segmented_cloud`
+The subpackages, in the order in which a frame passes through them:
+- `input/` reads frames from cameras and files, and projects them to point clouds.
+- `segmentation/` splits one cloud into planes and objects.
+- `views/` combines the segments of all cameras of one moment to things.
+- `recognition/` assigns classes and estimates complete boxes. `pipeline` combines these steps.
+- `fitting/` aligns the models of classes with things.
+- `tracking/` associates observations with entities and computes updates of the map.
+- `node` is the process on the network.
 """

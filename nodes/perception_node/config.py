@@ -13,60 +13,61 @@ from semmap.nodes.bus import Network
 
 @dataclass(frozen=True)
 class TrackingConfig:
-    """When the map is told what was seen. A look is what all cameras see at one moment."""
+    """When the map is updated from observations. A frame is what all cameras see at one moment."""
 
-    confirm_looks: int = 3
-    """Looks in which a thing must be seen at rest before it is an entity."""
-    clear_looks: int = 2
-    """The same for one that no picture's edge cuts, and whose class is as sure as `clear`."""
+    confirm_frames: int = 3
+    """Frames in which a thing must be seen at rest before it becomes an entity."""
+    clear_frames: int = 2
+    """The same for a thing that no image edge cuts, and whose class has the probability `clear`."""
     clear: float = 0.8
-    part_looks: int = 3
-    """The same for one that a picture's edge cuts."""
-    vanished_looks: int = 1
-    """Looks in a row in which its place must be seen empty before a thing is looked for elsewhere."""
-    rest_looks: int = 2
-    """Looks in which a known entity must be seen elsewhere, at rest, before it has moved."""
-    nudge_looks: int = 8
-    """The same where it is still half in its place, which is not seen empty: it may only seem so."""
-    kept_looks: int = 40
-    """The same where what it would have left of its place is filled: a part of it may have been seen."""
+    part_frames: int = 3
+    """The same for a thing that is cut by an image edge."""
+    vanished_frames: int = 1
+    """Consecutive frames in which a place must be empty before the thing is searched elsewhere."""
+    rest_frames: int = 2
+    """Frames in which a known entity must be seen elsewhere, at rest, before it counts as moved."""
+    nudge_frames: int = 8
+    """The same if it overlaps its old place, which is not seen empty: the motion may be an error."""
+    kept_frames: int = 40
+    """The same if the remainder of its old place is filled: only a part may have been seen."""
     pushed_m: float = math.inf
-    """How far from its place a large thing that has vanished is found again in one of the same kind."""
-    odd_looks: int = 15
-    """Looks in a row in which a thing of another size fills its place, before an entity is gone."""
-    gone_looks: int = 10
-    """Looks in a row in which an entity should be seen and is not, before it is gone."""
+    """Maximum distance at which a large vanished thing is found again in another of the same kind."""
+    odd_frames: int = 15
+    """Consecutive frames in which a thing of another size fills its place before an entity is gone."""
+    gone_frames: int = 10
+    """Consecutive frames in which an entity should be visible and is not, before it is gone."""
     still_m: float = 0.02
-    """What moves less from one look to the next is at rest."""
+    """A thing that moves less than this between frames is at rest."""
     moved_m: float = 0.03
     turned_rad: float = math.radians(20.0)
-    """An entity that is off by more than these has moved."""
+    """An entity has moved if its pose differs by more than `moved_m` or `turned_rad`."""
     resized: float = 0.25
-    """An extent that is off by more than this share of it is another size."""
+    """A size has changed if an extent differs by more than this share."""
     when_gone: Literal["remove", "mark"] = "remove"
-    """What becomes of an entity of perception's own that is gone; an operator's is always marked."""
+    """What happens to a lost entity that perception created. An operator's entity is always marked."""
 
     @property
-    def on_the_move(self) -> TrackingConfig:
-        """For looks of which a camera moves: it sees more soon, and other things of the same kind.
+    def for_moving_camera(self) -> TrackingConfig:
+        """Return the settings for frames of which a camera moves.
 
-        A chair that comes into its picture two metres from one that has gone is another.
+        Such a camera soon sees more of a cut thing, and other things of the same kind. A chair that appears
+        two metres from a vanished one is another chair.
         """
         return replace(
             self,
-            part_looks=2 * self.part_looks,
-            vanished_looks=self.vanished_looks + 2,
+            part_frames=2 * self.part_frames,
+            vanished_frames=self.vanished_frames + 2,
             pushed_m=min(self.pushed_m, 0.6),
         )
 
 
 @dataclass(frozen=True)
 class PerceptionConfig:
-    """How the node looks, and how it reaches the others."""
+    """Settings of the perception node."""
 
     tracking: TrackingConfig = field(default_factory=TrackingConfig)
     network: Network = field(default_factory=Network)
     labels: Mapping[str, str] = field(default_factory=dict)
-    """From the labels of a detector of one's own to classes; class names need no entry."""
+    """Maps the labels of an external detector to classes. Class names need no entry."""
     lessons: Path | None = None
-    """The file in which what people show is kept; without one it is forgotten at the end."""
+    """The file of exemplars. Without it, exemplars are lost at exit."""

@@ -1,4 +1,4 @@
-"""Datasets: what each of many frames shows, one after another."""
+"""Datasets: observations of each of many frames."""
 
 from __future__ import annotations
 
@@ -13,21 +13,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.detector import Detector
+from semmap.nodes.perception_node.fitting.fit_observations import fit_all
 from semmap.nodes.perception_node.fitting.model_surfaces import ClassSurfaces
-from semmap.nodes.perception_node.fitting.things import all_fitted
 from semmap.nodes.perception_node.input.files.frame_folders import FileFrame, read_frame
-from semmap.nodes.perception_node.pipeline import Learnt, look
+from semmap.nodes.perception_node.pipeline import RecognitionModel, observe_clouds
 from semmap.schemas.errors import SemmapError
 from semmap.schemas.perception import FrameRow, Observation, SeenInFrame
 
 _AHEAD = 2
-"""So many frames a core are under way at once."""
+"""Number of frames in progress per core."""
 
 
-class Told(NamedTuple):
-    """A frame's row, and (H, W) n where `row.objects[n - 1]` is seen, 0 for none; None on an error.
+class DatasetFrame(NamedTuple):
+    """The row of one frame and its label image; the labels are None on an error.
 
-    `unknown_labels`: what a detector said that is no class here.
+    In `labels` (H, W), n is a pixel of `row.objects[n - 1]`, and 0 is background. `unknown_labels` are labels
+    of a detector that match no class.
     """
 
     row: FrameRow
@@ -35,55 +36,57 @@ class Told(NamedTuple):
     unknown_labels: tuple[str, ...] = ()
 
 
-def perceived(
+def perceive_folders(
     folders: Sequence[Path],
-    learnt: Learnt,
+    learnt: RecognitionModel,
     detector: Detector | None = None,
     surfaces: ClassSurfaces | None = None,
-) -> Iterator[Told]:
-    """What the frames in these folders show, in their order; what is wrong with one is told in its row.
+) -> Iterator[DatasetFrame]:
+    """Yield the observations of the frames in these folders, in order. An error of a frame is in its row.
 
-    With `surfaces` the models of classes are fitted to the things of each.
+    With `surfaces`, the models of classes are fitted to the things of each frame.
     """
     cores = os.cpu_count() or 1
-    under_way: deque[Future[Told]] = deque()
+    under_way: deque[Future[DatasetFrame]] = deque()
     with ThreadPoolExecutor(cores) as threads:
         for folder in folders:
-            under_way.append(threads.submit(_told, folder, learnt, detector, surfaces))
+            under_way.append(threads.submit(_perceive, folder, learnt, detector, surfaces))
             if len(under_way) >= _AHEAD * cores:
                 yield under_way.popleft().result()
         while under_way:
             yield under_way.popleft().result()
 
 
-def _told(folder: Path, learnt: Learnt, detector: Detector | None, surfaces: ClassSurfaces | None) -> Told:
+def _perceive(
+    folder: Path, learnt: RecognitionModel, detector: Detector | None, surfaces: ClassSurfaces | None
+) -> DatasetFrame:
     try:
         frame = read_frame(folder)
         masks = None
         if detector is not None:
             masks = detector.masks_of(folder / detector.file, frame.shape).thinned(frame.step)
     except SemmapError as error:
-        return Told(FrameRow(frame=folder.name, error=error.text), None)
-    seen = look([frame.cloud], learnt, [masks], None if detector is None else detector.labels)
+        return DatasetFrame(FrameRow(frame=folder.name, error=error.text), None)
+    seen = observe_clouds([frame.cloud], learnt, [masks], None if detector is None else detector.labels)
     labels = _whole(seen.labels[0], frame)
     boxes = _boxes(labels, len(seen.observations.observations))
-    told = seen.observations.observations
+    observations = seen.observations.observations
     if surfaces is not None:
-        told = all_fitted([frame.cloud], seen, surfaces)
-    rows = zip(told, boxes, strict=True)
-    return Told(
+        observations = fit_all([frame.cloud], seen, surfaces)
+    rows = zip(observations, boxes, strict=True)
+    return DatasetFrame(
         FrameRow(frame=folder.name, objects=tuple(_object(*row) for row in rows)), labels, seen.unknown_labels
     )
 
 
 def _whole(labels: NDArray[np.int32], frame: FileFrame) -> NDArray[np.int32]:
-    """Labels of every `step`-th pixel as labels of all."""
+    """Expand labels of every `step`-th pixel to all pixels."""
     height, width = frame.shape
     return labels.repeat(frame.step, axis=0).repeat(frame.step, axis=1)[:height, :width]
 
 
 def _boxes(labels: NDArray[np.int32], count: int) -> list[tuple[int, int, int, int]]:
-    """First column and row of each label, and those after the last; four zeros for one that is nowhere."""
+    """Return first column and row of each label, and those after the last; four zeros for an absent label."""
     found: list[tuple[int, int, int, int]] = []
     for n in range(1, count + 1):
         rows, columns = (np.flatnonzero((labels == n).any(axis=axis)) for axis in (1, 0))

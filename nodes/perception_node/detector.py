@@ -1,4 +1,4 @@
-"""A detector of one's own: what it left in files beside the pictures."""
+"""The output of an external detector, stored in files next to the images."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from pathlib import Path
 
 from semmap.nodes.perception_node.input.files.mask_files import read_masks
 from semmap.nodes.perception_node.input.masks import Masks
-from semmap.nodes.perception_node.recognition.told_names import Labels
+from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
 
 
 @dataclass(frozen=True)
 class Detector:
-    """Its file, or its name in each folder of a dataset, and what its labels mean here.
+    """The file of a detector, or its name in each folder of a dataset, and a map of its labels.
 
-    `alone`: there is nothing to be found but what it has found.
+    With `alone`, only the detector's masks are things.
     """
 
     file: Path
-    labels: Labels
+    labels: LabelMap
     alone: bool = False
 
     def masks_of(self, file: Path, shape: tuple[int, ...]) -> Masks:
-        """The masks in a file for a picture of this shape (H, W). Raises BadFile."""
+        """Read the masks for an image of this shape (H, W) from a file. Raises BadFile."""
         height, width = shape
         return replace(read_masks(file, height, width), alone=self.alone)

@@ -1,4 +1,4 @@
-"""From clouds to observations."""
+"""From point clouds to observations."""
 
 from __future__ import annotations
 
@@ -11,89 +11,103 @@ from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.masks import Masks
+from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
 from semmap.nodes.perception_node.recognition.features import features_of
-from semmap.nodes.perception_node.recognition.pieces import put_together
+from semmap.nodes.perception_node.recognition.part_joining import join_parts
 from semmap.nodes.perception_node.recognition.recognise import recognise
-from semmap.nodes.perception_node.recognition.shipped_votes import Learnt, shipped
-from semmap.nodes.perception_node.recognition.told_names import Labels
-from semmap.nodes.perception_node.recognition.vote import leaves
-from semmap.nodes.perception_node.views.bases import supports_of_things
-from semmap.nodes.perception_node.views.disputes import settled
-from semmap.nodes.perception_node.views.feet import supports_at_feet
-from semmap.nodes.perception_node.views.furniture_planes import with_what_hangs_below
-from semmap.nodes.perception_node.views.fusion import Member, fuse, held_for_one
+from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel, shipped
+from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
+from semmap.nodes.perception_node.views.foot_supports import supports_at_feet
+from semmap.nodes.perception_node.views.furniture_planes import join_legs
+from semmap.nodes.perception_node.views.fusion import Member, group_segments, same_thing_logits
 from semmap.nodes.perception_node.views.masked import with_masks
 from semmap.nodes.perception_node.views.merged_thing import Thing, thing_of
-from semmap.nodes.perception_node.views.remembered import Recalled, Remembered, completed
-from semmap.nodes.perception_node.views.segmented_view import Sight, see
+from semmap.nodes.perception_node.views.object_supports import supports_of_things
+from semmap.nodes.perception_node.views.segment_memory import Recalled, SegmentMemory, completed
+from semmap.nodes.perception_node.views.segmented_view import SegmentedView, segment_cloud
 from semmap.nodes.perception_node.views.segments import Segment
+from semmap.nodes.perception_node.views.split_segments import resolve_splits
 from semmap.nodes.perception_node.views.supports import Support
 from semmap.schemas.perception import CameraView, Observation, Observations
 
-__all__ = ["Learnt", "Look", "look", "look_at", "observe", "one_by_one", "parts_in", "shipped"]
+__all__ = [
+    "FrameResult",
+    "RecognitionModel",
+    "observe",
+    "observe_clouds",
+    "observe_views",
+    "parts_in",
+    "recognise_segments",
+    "shipped",
+]
 
-_NOTHING = Remembered()
+_NOTHING = SegmentMemory()
 
 
 @dataclass(frozen=True)
-class Look:
-    """What one look gave: the observations, and for each cloud (H, W) whose pixel belongs to which of them.
+class FrameResult:
+    """The result of one frame: the observations, and for each cloud a label image (H, W).
 
-    In `labels` 0 is background and n stands for `observations.observations[n - 1]`. `unknown_labels`: what a
-    detector said that is no class here. `remembered` is what the next look is to know of this one and those
-    before it. `things`: of which each observation is.
+    In `labels`, 0 is background and n stands for `observations.observations[n - 1]`. `unknown_labels` are
+    labels of a detector that match no class. `remembered` is the memory for the next frame. `things` are the
+    things of the observations, in the same order.
     """
 
     observations: Observations
     labels: tuple[NDArray[np.int32], ...]
     unknown_labels: tuple[str, ...] = ()
-    remembered: Remembered = _NOTHING
+    remembered: SegmentMemory = _NOTHING
     things: tuple[Thing, ...] = ()
 
     @property
-    def on_the_move(self) -> bool:
-        """Whether a camera of this look is one that moves."""
+    def camera_moves(self) -> bool:
+        """Return whether a camera of this frame moves."""
         return any(view.camera in self.remembered.moving for view in self.observations.views)
 
 
-def observe(clouds: Sequence[Cloud], learnt: Learnt) -> Observations:
-    """What these clouds, taken at the same time, show in the map frame; see `look`."""
-    return look(clouds, learnt).observations
+def observe(clouds: Sequence[Cloud], learnt: RecognitionModel) -> Observations:
+    """Return the observations of clouds taken at the same time, in the map frame; see `observe_clouds`."""
+    return observe_clouds(clouds, learnt).observations
 
 
-def look(
+def observe_clouds(
     clouds: Sequence[Cloud],
-    learnt: Learnt,
+    learnt: RecognitionModel,
     masks: Sequence[Masks | None] = (),
-    labels: Labels | None = None,
-    before: Remembered = _NOTHING,
-) -> Look:
-    """Find the things that clouds, taken at the same time, show; what several of them see is one thing.
+    labels: LabelMap | None = None,
+    before: SegmentMemory = _NOTHING,
+) -> FrameResult:
+    """Find the things in clouds taken at the same time. A thing seen by several cameras is one observation.
 
-    `masks`: of each cloud what somebody else's detector found in it; `labels`: what its labels mean here.
-    What a moving camera's picture cuts off is completed by what was remembered `before`. Each cloud is taken
-    apart by a thread of its own: NumPy and SciPy let others work meanwhile. Raises ValueError for masks of
-    another size than the picture.
+    `masks` are the detections of an external detector for each cloud, and `labels` maps their labels to
+    classes. Parts that the image edge of a moving camera cuts off are completed from the memory `before`.
+    Each cloud is segmented on its own thread, since NumPy and SciPy release the GIL. Raises ValueError for
+    masks of another size than the image.
     """
     with ThreadPoolExecutor(max(1, len(clouds))) as threads:
-        sights = list(threads.map(_seen, clouds, [*masks] or [None] * len(clouds)))
-    labels = labels or Labels(learnt)
-    return replace(look_at(sights, learnt, labels, before), unknown_labels=labels.unknown(masks))
+        sights = list(threads.map(_segment_cloud, clouds, [*masks] or [None] * len(clouds)))
+    labels = labels or LabelMap(learnt)
+    return replace(observe_views(sights, learnt, labels, before), unknown_labels=labels.unknown(masks))
 
 
-def _seen(cloud: Cloud, masks: Masks | None) -> Sight:
-    sight = see(cloud)
+def _segment_cloud(cloud: Cloud, masks: Masks | None) -> SegmentedView:
+    sight = segment_cloud(cloud)
     return sight if masks is None else with_masks(sight, masks)
 
 
-def look_at(
-    sights: Sequence[Sight], learnt: Learnt, labels: Labels | None = None, before: Remembered = _NOTHING
-) -> Look:
-    """The same for clouds that were taken apart already."""
+def observe_views(
+    sights: Sequence[SegmentedView],
+    learnt: RecognitionModel,
+    labels: LabelMap | None = None,
+    before: SegmentMemory = _NOTHING,
+) -> FrameResult:
+    """Find the things in clouds that are segmented already; see `observe_clouds`."""
     parts = parts_in(sights)
     recalled = before.recalled(sights, parts.labels)
-    parts = parts.put_on_feet([s for s in sights if s.cloud.camera in before.moving]).completed(recalled)
-    things, chances, members = put_together(parts.things, parts.held_for_one, learnt, parts.join)
+    parts = parts.with_foot_supports([s for s in sights if s.cloud.camera in before.moving]).completed(
+        recalled
+    )
+    things, chances, members = join_parts(parts.things, parts.same_thing_logits, learnt, parts.join)
     found = recognise(things, chances, learnt, labels)
     kept = [n for n, observation in enumerate(found) if observation is not None]
     observations = Observations(
@@ -105,7 +119,7 @@ def look_at(
     for number, n in enumerate(kept, 1):
         numbers[np.array(members[n]) + 1] = number
     elsewhere = [rest for rest, thing in recalled if not thing]
-    return Look(
+    return FrameResult(
         observations,
         tuple(numbers[label] for label in parts.labels),
         remembered=before.after(sights, [thing.segments for thing in things], elsewhere),
@@ -113,37 +127,40 @@ def look_at(
     )
 
 
-def one_by_one(sight: Sight, learnt: Learnt, labels: Labels | None = None) -> dict[int, Observation | None]:
-    """What each label of one sight is taken for, by itself; None for clutter. Table tops are left out."""
+def recognise_segments(
+    sight: SegmentedView, learnt: RecognitionModel, labels: LabelMap | None = None
+) -> dict[int, Observation | None]:
+    """Recognise each label of one view by itself; None for clutter. Table tops are omitted."""
     segments = [segment for segment in sight.segments if not segment.carrier]
     if not segments:
         return {}
     things = [thing_of([segment], sight.supports) for segment in segments]
-    found = recognise(things, leaves(learnt, features_of(things)), learnt, labels)
+    found = recognise(things, leaf_probabilities(learnt, features_of(things)), learnt, labels)
     return {segment.label: observation for segment, observation in zip(segments, found, strict=True)}
 
 
 @dataclass(frozen=True)
 class Parts:
-    """What sights together show, before anything is recognised.
+    """The things of several views before recognition.
 
-    `labels`: of each sight (H, W) whose a pixel is, counted from 1, 0 for none. `held_for_one`: (2, N, N),
-    see `fusion`. `supports`: what things may stand on.
+    `labels`: for each view (H, W) the number of the thing, from 1, 0 for none. `same_thing_logits`: (2, N,
+    N), see `fusion`. `supports`: surfaces on which things may stand.
     """
 
     things: list[Thing]
     labels: tuple[NDArray[np.int32], ...]
-    held_for_one: NDArray[np.float64]
+    same_thing_logits: NDArray[np.float64]
     supports: Sequence[Support]
 
     def join(self, a: Thing, b: Thing) -> Thing:
-        """Two of them as one."""
+        """Return two things merged into one."""
         return thing_of((*a.segments, *b.segments), self.supports)
 
-    def put_on_feet(self, sights: Sequence[Sight]) -> Parts:
-        """With what these sights show around the feet of what seems to hang in the air as supports, too.
+    def with_foot_supports(self, sights: Sequence[SegmentedView]) -> Parts:
+        """Return the parts with additional supports for things that seem to float.
 
-        And with the tops of things below it. Without sights nothing is asked.
+        These are surfaces that the views show around their feet, and the tops of things below. Without views,
+        nothing changes.
         """
         if not sights:
             return self
@@ -156,7 +173,7 @@ class Parts:
         )
 
     def completed(self, recalled: Sequence[Recalled]) -> Parts:
-        """With what is remembered of those that a picture's edge cuts."""
+        """Complete the things that an image edge cuts from memory."""
         rests: dict[int, list[Segment]] = {}
         for rest, number in recalled:
             if number and not self.things[number - 1].whole:
@@ -167,23 +184,25 @@ class Parts:
         return replace(self, things=things)
 
 
-def parts_in(sights: Sequence[Sight]) -> Parts:
-    """What several cameras see of one thing is one part."""
-    sights = settled(sights)
+def parts_in(sights: Sequence[SegmentedView]) -> Parts:
+    """Return the things of several views; segments of one thing in several views are merged."""
+    sights = resolve_splits(sights)
     groups = groups_in(sights)
     supports = [support for sight in sights for support in sight.supports]
     things = [thing_of([sights[view].segments[n] for view, n in group], supports) for group in groups]
-    return Parts(things, _labels(sights, groups), held_for_one(sights, groups), supports)
+    return Parts(things, _labels(sights, groups), same_thing_logits(sights, groups), supports)
 
 
-def groups_in(sights: Sequence[Sight]) -> list[list[Member]]:
-    """The segments of each thing."""
-    groups = fuse(sights)
-    bodies = with_what_hangs_below([[sights[v].segments[n] for v, n in group] for group in groups])
+def groups_in(sights: Sequence[SegmentedView]) -> list[list[Member]]:
+    """Return the segments of each thing."""
+    groups = group_segments(sights)
+    bodies = join_legs([[sights[v].segments[n] for v, n in group] for group in groups])
     return [[member for number in body for member in groups[number]] for body in bodies]
 
 
-def _labels(sights: Sequence[Sight], groups: Sequence[Sequence[Member]]) -> tuple[NDArray[np.int32], ...]:
+def _labels(
+    sights: Sequence[SegmentedView], groups: Sequence[Sequence[Member]]
+) -> tuple[NDArray[np.int32], ...]:
     numbers = [np.zeros(int(sight.labels.max(initial=0)) + 1, np.int32) for sight in sights]
     for number, group in enumerate(groups, 1):
         for view, n in group:
@@ -191,7 +210,7 @@ def _labels(sights: Sequence[Sight], groups: Sequence[Sequence[Member]]) -> tupl
     return tuple(number[sight.labels] for number, sight in zip(numbers, sights, strict=True))
 
 
-def _view(sight: Sight) -> CameraView:
+def _view(sight: SegmentedView) -> CameraView:
     cloud = sight.cloud
     height, width = cloud.points_camera.shape[:2]
     return CameraView(

@@ -1,4 +1,4 @@
-"""The points of a look for viewers: in the map frame, thinned out, each with its observation."""
+"""The points of a frame for viewers: in the map frame, subsampled, each with its observation."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.pipeline import Look
+from semmap.nodes.perception_node.pipeline import FrameResult
 from semmap.nodes.perception_node.views.segments import in_map
 from semmap.schemas.perception import SegmentedCloud
 
 MOST_POINTS = 20_000
 
 
-def segmented_cloud(clouds: Sequence[Cloud], look: Look) -> SegmentedCloud:
-    """All clouds of a look as one."""
+def segmented_cloud(clouds: Sequence[Cloud], look: FrameResult) -> SegmentedCloud:
+    """Combine all clouds of a frame into one message."""
     total = sum(cloud.points_camera.size // 3 for cloud in clouds)
     step = max(1, -(-total // MOST_POINTS))
     parts = [_thinned(cloud, labels, step) for cloud, labels in zip(clouds, look.labels, strict=True)]

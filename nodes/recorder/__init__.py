@@ -1,5 +1,6 @@
 """Records the scene, the knowledge graph and every commit with Rerun, into a file and to live viewers.
 
-`state/` holds what is known of relations and of the scene; `drawing/` what of it is drawn, and how;
-`recording.py` is the file, `commit_text.py` what it says of commits; `replay.py` opens it in the viewer.
+`map_relations.py` holds the relations of the map, and `drawing/` converts the state to Rerun archetypes.
+`recording.py` writes the file, `commit_text.py` formats commits, and `replay.py` opens a recording in the
+viewer.
 """

@@ -1,4 +1,4 @@
-"""Whether the commits of a recording are those of a journal."""
+"""Compares the commits of a recording with those of a journal."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _SHOWN: Final = 80
 
 
 class Verdict(NamedTuple):
-    """What came of it.
+    """The result of a comparison.
 
-    `is_same`: every recorded commit that could be compared is the journal's. `is_whole`: from the first
-    recorded commit on, the recording has all of them.
+    `is_same`: every recorded commit that could be compared equals the journal's. `is_whole`: the recording
+    has all commits since its first one.
     """
 
     is_same: bool
@@ -31,50 +31,50 @@ def check(
 ) -> Verdict:
     """Compare the commits of a recording, in order, with those of a journal.
 
-    The journal has the commits from `first` to `last`; `commit_of(seq)` is one of them, whole. The first
-    difference is named, or all commits that the recording lacks.
+    The journal has the commits from `first` to `last`, and `commit_of(seq)` returns one of them in full. The
+    text names the first difference, or all commits that the recording lacks.
     """
     there = [commit for commit in recorded if commit.seq >= first]
     for commit in there:
         if commit.seq > last:
-            return _another(f"commit {commit.seq} is not in the journal, whose last one is {last}")
+            return _different(f"commit {commit.seq} is not in the journal, whose last one is {last}")
         if difference := _difference(commit, commit_of(commit.seq)):
-            return _another(f"commit {commit.seq} is another one: {difference}")
+            return _different(f"commit {commit.seq} differs: {difference}")
     seqs = [commit.seq for commit in there]
     if (twice := next((a for a, b in pairwise(seqs) if a == b), None)) is not None:
-        return _another(f"commit {twice} is recorded twice, and not the same")
+        return _different(f"commit {twice} is recorded twice, with different content")
     if seqs:
-        told = [f"{wording.counted(len(seqs), 'commit is', 'commits are')} as in the journal{_span(seqs)}"]
+        texts = [f"{wording.counted(len(seqs), 'commit is', 'commits are')} as in the journal{_span(seqs)}"]
     else:
-        told = ["there are no commits in the recording"] if not recorded else []
+        texts = ["the recording has no commits"] if not recorded else []
     begins = recorded[0].seq if recorded else first
     missing = sorted({*range(max(begins, first), last + 1)} - {*seqs})
     if missing:
-        told.append(f"the recording lacks {_ranges(missing)}")
+        texts.append(f"the recording lacks {_ranges(missing)}")
     if begins > first:
-        told.append(f"it begins after {_ranges(range(first, begins))}")
+        texts.append(f"it begins after {_ranges(range(first, begins))}")
     if gone := len(recorded) - len(there):
-        told.append(
-            f"{wording.counted(gone, 'commit', 'commits')} before commit {first} cannot be compared, because"
-            " the journal was compacted"
+        texts.append(
+            f"{wording.counted(gone, 'commit', 'commits')} before commit {first} cannot be compared,"
+            " because the journal was compacted"
         )
-    return Verdict(is_same=True, is_whole=not missing, text="; ".join(told))
+    return Verdict(is_same=True, is_whole=not missing, text="; ".join(texts))
 
 
-def _another(text: str) -> Verdict:
+def _different(text: str) -> Verdict:
     return Verdict(is_same=False, is_whole=False, text=text)
 
 
 def _ranges(seqs: Sequence[int]) -> str:
-    """`commit 3`, `commits 2 to 4 and 7`; `seqs` rise."""
+    """Return `commit 3` or `commits 2 to 4 and 7`; `seqs` must be sorted."""
     runs: list[list[int]] = []
     for seq in seqs:
         if runs and runs[-1][1] == seq - 1:
             runs[-1][1] = seq
         else:
             runs.append([seq, seq])
-    told = [str(a) if a == b else f"{a} to {b}" for a, b in runs]
-    return f"{'commit' if len(seqs) == 1 else 'commits'} {wording.few(told)}"
+    texts = [str(a) if a == b else f"{a} to {b}" for a, b in runs]
+    return f"{'commit' if len(seqs) == 1 else 'commits'} {wording.few(texts)}"
 
 
 def _span(seqs: Sequence[int]) -> str:
@@ -84,23 +84,23 @@ def _span(seqs: Sequence[int]) -> str:
 
 
 def _difference(recorded: RecordedCommit, commit: Commit) -> str:
-    """What is otherwise in a recorded commit; empty where nothing is.
+    """Describe the first difference of a recorded commit; empty if there is none.
 
-    Of a very large commit, which is recorded without its triples and entities, those are not compared.
+    A very large commit is recorded without its triples and entities, so these are not compared.
     """
     for field in _FIELDS:
-        said, journalled = getattr(recorded, field), getattr(commit, field)
-        if said != journalled:
-            return f"{field} is {_short(said)} in the recording, and {_short(journalled)} in the journal"
+        value, journalled = getattr(recorded, field), getattr(commit, field)
+        if value != journalled:
+            return f"{field} is {_short(value)} in the recording and {_short(journalled)} in the journal"
     if not (recorded.inserted or recorded.retracted or recorded.changed or recorded.removed):
         if commit.abridged is not None or len(commit.inserted) + len(commit.retracted) > 0:
-            return "" if _is_large(commit) else "the recording lacks what it changes"
+            return "" if _is_large(commit) else "the recording lacks its changes"
         return ""
     return (
-        _of_sets("inserted triples", recorded.inserted, commit.inserted)
-        or _of_sets("retracted triples", recorded.retracted, commit.retracted)
-        or _of_sets("changed entities", recorded.changed, [entity.name for entity in commit.changed])
-        or _of_sets("removed entities", recorded.removed, [gone.name for gone in commit.removed])
+        _of_sets("inserted triple", recorded.inserted, commit.inserted)
+        or _of_sets("retracted triple", recorded.retracted, commit.retracted)
+        or _of_sets("changed entity", recorded.changed, [entity.name for entity in commit.changed])
+        or _of_sets("removed entity", recorded.removed, [gone.name for gone in commit.removed])
     )
 
 
@@ -112,9 +112,9 @@ def _of_sets(what: str, recorded: Sequence[Any], journalled: Sequence[Any]) -> s
     if {*recorded} == {*journalled}:
         return ""
     if only := sorted({*recorded} - {*journalled}):
-        return f"of its {what} {_short(only[0])} is not in the journal"
+        return f"{what} {_short(only[0])} is not in the journal"
     lacking = sorted({*journalled} - {*recorded})
-    return f"of its {what} {_short(lacking[0])} is not in the recording"
+    return f"{what} {_short(lacking[0])} is not in the recording"
 
 
 def _short(value: Any) -> str:

@@ -1,4 +1,4 @@
-"""Commits as text: one line for the log, a page of Markdown for the viewer."""
+"""Formats commits as text: one line for the log, a page of Markdown for the viewer."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Triple
 
 _LINES = 40
-"""A page shows as many triples; the recording holds them all."""
+"""Maximum number of triples on a page. The recording holds all of them."""
 
 
 def headline(commit: Commit) -> str:
-    """What a commit did, in one line: `12  operator ann: add beer1 (+9 -0)`."""
+    """Summarise a commit in one line: `12  operator ann: add beer1 (+9 -0)`."""
     who = f"{commit.source} {commit.agent}".strip()
     why = commit.reason or _entities(commit)
     extent = commit.extent
@@ -23,7 +23,7 @@ def headline(commit: Commit) -> str:
 
 
 def page(commit: Commit) -> str:
-    """The whole commit as Markdown: who, when, why, the entities it touched, its notes, the triples."""
+    """Format a commit as Markdown: source, time, reason, changed entities, notes and triples."""
     when = datetime.fromtimestamp(commit.stamp_ns / 1e9, UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
     who = f"**{commit.source}** {commit.agent}".strip()
     sure = "" if commit.confidence is None else f" · confidence {commit.confidence:.2f}"

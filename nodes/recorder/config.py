@@ -9,15 +9,15 @@ from semmap.nodes.bus import Network
 from semmap.nodes.recorder.retention import KEEP_ALL, Retention
 
 LIVE_VIEW = "127.0.0.1:9876"
-"""Where Rerun viewers look for a live recording when nothing else is said."""
+"""The address that Rerun viewers connect to by default."""
 
 
 @dataclass(frozen=True)
 class RecorderConfig:
-    """`path` is the .rrd file to write; `serve` the address for live viewers, None for none.
+    """The settings of the recorder.
 
-    `keep` is how much is kept of the recordings in that folder. `after` is the last commit that an earlier
-    recording has, where this one goes on from there.
+    `path` is the .rrd file, and `serve` the address for live viewers or None. `keep` limits the recordings
+    kept in the folder of `path`. `after` is the last commit of an earlier recording that this one continues.
     """
 
     path: Path

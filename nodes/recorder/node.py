@@ -1,4 +1,4 @@
-"""The recorder on the wire: it follows the map, the poses, and what is seen."""
+"""The recorder node: it subscribes to the map, the poses and perception."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from concurrent.futures import Future
 from semmap.nodes.drawing.scene_state import SceneState
 from semmap.nodes.drawing.surfaces import Kind
 from semmap.nodes.recorder.config import RecorderConfig
+from semmap.nodes.recorder.drawing.drawn_scene import DrawnScene
 from semmap.nodes.recorder.drawing.graph import graph_of
-from semmap.nodes.recorder.drawing.stage import Stage
-from semmap.nodes.recorder.growth import LOOK_S, Growth
+from semmap.nodes.recorder.file_monitor import CHECK_S, FileMonitor
+from semmap.nodes.recorder.map_relations import Relations, changed_subjects, missed_commits
 from semmap.nodes.recorder.perception_recorder import PerceptionRecorder
 from semmap.nodes.recorder.recording import Recording, free_to_serve, open_recording
 from semmap.nodes.recorder.retention import KEEP_ALL, Retention, recordings
-from semmap.nodes.recorder.state.map_relations import Relations, missed, subjects
 from semmap.nodes.runtime.following import Begun, Follower
 from semmap.nodes.runtime.loop import Node, open_node
 from semmap.nodes.runtime.map_replica import MapReplica
@@ -28,15 +28,15 @@ from semmap.schemas.scenes import Poses, Scene, SceneQuery, SurfaceQuery, Surfac
 
 log = logging.getLogger(__name__)
 
-_TIDY_S = 10.0
+_RETENTION_S = 10.0
 _SCENE_LOST_S = 10.0
-"""A simulator that says nothing for so long is gone; making thousands of bodies takes seconds."""
-_RECALLED_AT_ONCE = 20
-_SURFACES_AT_ONCE = 50
+"""A simulator that sends no poses for this long is gone. Creating thousands of bodies takes seconds."""
+_COMMITS_A_REQUEST = 20
+_SURFACES_A_REQUEST = 50
 
 
 class Recorder:
-    """Binds the recording to the wire."""
+    """Connects the recording to the network."""
 
     def __init__(
         self,
@@ -46,16 +46,19 @@ class Recorder:
         keep: Retention = KEEP_ALL,
         after: int | None = None,
     ) -> None:
-        """`live` says in words where it is seen live; `keep` and `after` are those of the configuration."""
+        """Register the subscribers.
+
+        `live` describes the live view; `keep` and `after` are as in the configuration.
+        """
         self._node = node
         self._recording = recording
         self._live = live
-        self._stage = Stage(recording)
+        self._drawn = DrawnScene(recording)
         self._map = MapReplica[Commit]()
         self._relations = Relations()
-        self._related = False
-        self._asking_stars = False
-        self._since_asked: list[Commit] = []
+        self._has_relations = False
+        self._requesting_relations = False
+        self._commits_since_request: list[Commit] = []
         self._unknown: list[Commit] = []
         self._scene = SceneState()
         self._arranged = False
@@ -65,85 +68,89 @@ class Recorder:
         node.follow(keys.POSES, self._on_poses)
         node.follow_newest(keys.LIVE_POSES, self._on_live)
         node.every(0.5, self._tick)
-        self._growth, self._amiss = Growth(recording.path), ""
+        self._file_monitor, self._problem = FileMonitor(recording.path), ""
         self._keep, self._after, self._begun_s = keep, after, time.time()
         self.is_full = False
-        node.every(LOOK_S, self._look_after_the_file)
-        node.every(_TIDY_S, self._tidy)
-        PerceptionRecorder(node, recording, self._at)
+        node.every(CHECK_S, self._check_file)
+        node.every(_RETENTION_S, self._apply_retention)
+        PerceptionRecorder(node, recording, self._set_time)
 
     # The map
 
     def _on_commit(self, commit: Commit, known: bool) -> None:
-        """Record it at once, whatever is known of the map; the map follows in order."""
-        self._at(commit.stamp_ns, commit.seq)
+        """Record a commit immediately. The map is updated in order."""
+        self._set_time(commit.stamp_ns, commit.seq)
         self._recording.commit(commit)
         self._relations.take(commit)
-        if self._asking_stars:
-            self._since_asked.append(commit)
+        if self._requesting_relations:
+            self._commits_since_request.append(commit)
         if not known:
             self._unknown.append(commit)
-        elif self._related:
+        elif self._has_relations:
             self._show_commit(commit)
 
     def _show_commit(self, commit: Commit) -> None:
         touched = sorted(commit.names)
-        self._stage.show(touched, self._map.entities, self._scene.bodies, simulated=self._scene.known)
-        self._shown(touched or subjects(commit.places))
+        self._drawn.show(touched, self._map.entities, self._scene.bodies, simulated=self._scene.known)
+        self._show_graph(touched or changed_subjects(commit.places))
 
     def _on_map(self, begun: Begun) -> None:
         first = begun.before < 0
         before = begun.before if not first else begun.seq - 1 if self._after is None else self._after
-        lost = missed(before, begun.seq, self._unknown)
+        lost = missed_commits(before, begun.seq, self._unknown)
         self._unknown.clear()
-        self._at(time.time_ns(), self._map.seq)
+        self._set_time(time.time_ns(), self._map.seq)
         if first or begun.seq < begun.before:
             known = wording.entities(len(self._map.entities))
             self._recording.note(f"{self._map.seq}  the recording continues from here with {known}")
-        self._recall(lost)
-        self._related = False
-        self._ask_stars()
+        self._fetch_commits(lost)
+        self._has_relations = False
+        self._request_relations()
 
-    def _ask_stars(self) -> None:
-        """Ask for the relations; commits that come meanwhile may be newer than they."""
-        if self._asking_stars:
+    def _request_relations(self) -> None:
+        """Request the entity triples. Commits that arrive before the reply may be newer."""
+        if self._requesting_relations:
             return
-        if len(self._map.entities) > MANY_ENTITIES:  # more stars than a message holds
-            self._related = True
+        if len(self._map.entities) > MANY_ENTITIES:  # more triples than a message holds
+            self._has_relations = True
             self._relations.begin(())
-            self._recording.note(f"of more than {MANY_ENTITIES} entities the relations are not drawn")
+            self._recording.note(f"relations are not drawn for more than {MANY_ENTITIES} entities")
             self._show_all()
-            self._shown()
+            self._show_graph()
             return
-        self._asking_stars = True
+        self._requesting_relations = True
 
-        def on_stars(future: Future[tuple[Star, ...]]) -> None:
-            since, self._since_asked, self._asking_stars = self._since_asked, [], False
+        def on_triples(future: Future[tuple[Star, ...]]) -> None:
+            since, self._commits_since_request, self._requesting_relations = (
+                self._commits_since_request,
+                [],
+                False,
+            )
             if future.exception() is not None:
-                return  # it is asked again at the next tick
-            self._related = True
+                return  # retried at the next tick
+            self._has_relations = True
             self._relations.begin(future.result())
             for commit in since:
                 self._relations.take(commit)
-            self._at(time.time_ns(), self._map.seq)
+            self._set_time(time.time_ns(), self._map.seq)
             self._show_all()
-            self._shown()
+            self._show_graph()
 
         query = StarQuery(names=tuple(self._map.entities))
-        self._node.ask_later(keys.BRIDGE, query).add_done_callback(on_stars)
+        self._node.ask_later(keys.BRIDGE, query).add_done_callback(on_triples)
 
-    def _recall(self, seqs: list[int]) -> None:
-        """Record what was committed while nobody listened, and the commit that the recording starts with."""
-        for start in range(0, len(seqs), _RECALLED_AT_ONCE):
-            some = tuple(seqs[start : start + _RECALLED_AT_ONCE])
-            self._node.ask_later(keys.BRIDGE, Recall(seqs=some)).add_done_callback(self._on_recalled)
+    def _fetch_commits(self, seqs: list[int]) -> None:
+        """Record commits that were missed, and the one that the recording starts with."""
+        for start in range(0, len(seqs), _COMMITS_A_REQUEST):
+            some = tuple(seqs[start : start + _COMMITS_A_REQUEST])
+            self._node.ask_later(keys.BRIDGE, Recall(seqs=some)).add_done_callback(self._on_commits)
 
-    def _on_recalled(self, future: Future[tuple[Commit, ...]]) -> None:
+    def _on_commits(self, future: Future[tuple[Commit, ...]]) -> None:
         if (error := future.exception()) is not None:
             self._recording.note(f"some commits could not be recorded: {error}", warning=True)
             return
         for commit in future.result():
-            self._at(commit.stamp_ns, commit.seq)
+            self._set_time(commit.stamp_ns, commit.seq)
             self._recording.commit(commit)
 
     # The scene
@@ -153,20 +160,20 @@ class Recorder:
         if not self._scene.matches(poses):
             self._fetch_scene()
             return
-        self._at(poses.stamp_ns)
+        self._set_time(poses.stamp_ns)
         jointed = []
         for name, pose in self._scene.follow(poses):
-            self._stage.move(name, pose)
+            self._drawn.move(name, pose)
             if self._scene.bodies[name].joints:
                 jointed.append(name)
-        self._stage.show(jointed, self._map.entities, self._scene.bodies, simulated=True)
+        self._drawn.show(jointed, self._map.entities, self._scene.bodies, simulated=True)
 
     def _on_live(self, live: LivePoses) -> None:
-        """Of what is tracked from elsewhere; the simulator's own poses come by themselves."""
-        self._at(live.stamp_ns)
+        """Move entities that are tracked from a stream. The simulator publishes its own poses."""
+        self._set_time(live.stamp_ns)
         for name, seen in live.entities.items():
             if seen.source == "stream":
-                self._stage.move(name, seen.pose)
+                self._drawn.move(name, seen.pose)
 
     def _fetch_scene(self) -> None:
         if self._fetching_scene:
@@ -178,91 +185,93 @@ class Recorder:
             if future.exception() is None:
                 scene = future.result()
                 self._scene.take(scene)
-                self._at(scene.stamp_ns)
+                self._set_time(scene.stamp_ns)
                 self._show_all()
                 self._fetch_surfaces()
 
         self._node.ask_later(keys.SIM, SceneQuery()).add_done_callback(on_scene)
 
     def _fetch_surfaces(self) -> None:
-        """Ask what the bodies look like, as far as that was never told."""
-        wanted = list(self._stage.surfaces.wanted(self._scene.bodies.values()).items())
-        for start in range(0, len(wanted), _SURFACES_AT_ONCE):
-            self._fetch_some_surfaces(dict(wanted[start : start + _SURFACES_AT_ONCE]))
+        """Request surfaces of bodies that were not requested yet."""
+        wanted = list(self._drawn.surfaces.wanted(self._scene.bodies.values()).items())
+        for start in range(0, len(wanted), _SURFACES_A_REQUEST):
+            self._fetch_some_surfaces(dict(wanted[start : start + _SURFACES_A_REQUEST]))
 
     def _fetch_some_surfaces(self, kinds: dict[str, Kind]) -> None:
         def on_surfaces(future: Future[Surfaces]) -> None:
             if future.exception() is not None:
-                self._stage.surfaces.give_up(kinds.values())
+                self._drawn.surfaces.reset_requests(kinds.values())
                 return
             for name, surface in future.result().surfaces.items():
-                self._stage.surfaces.take(kinds[name], surface)
-            self._at(time.time_ns())
+                self._drawn.surfaces.take(kinds[name], surface)
+            self._set_time(time.time_ns())
             self._show_all()
 
         query = SurfaceQuery(names=tuple(kinds))
         self._node.ask_later(keys.SIM, query).add_done_callback(on_surfaces)
 
     def _tick(self) -> None:
-        if self._map.seq >= 0 and not self._related:
-            self._ask_stars()
+        if self._map.seq >= 0 and not self._has_relations:
+            self._request_relations()
         if self._scene.known and time.monotonic() - self._poses_at > _SCENE_LOST_S:
             self._scene = SceneState()
-            self._at(time.time_ns())
+            self._set_time(time.time_ns())
             self._show_all()
 
-    def _look_after_the_file(self) -> None:
-        """Whoever looks at the status is told of a recording that is not written, for as long as it is so."""
-        before, self._amiss = self._amiss, self._growth.amiss(self._recording.logged)
-        if self._amiss and not before:
-            self._node.report(self._amiss)
-        if self._amiss != before:
+    def _check_file(self) -> None:
+        """Report in the status that the recording is not written, for as long as this lasts."""
+        before, self._problem = self._problem, self._file_monitor.find_problem(self._recording.logged)
+        if self._problem and not before:
+            self._node.report(self._problem)
+        if self._problem != before:
             self._describe()
 
-    def _tidy(self) -> None:
-        """Delete what need not be kept, and let another file be begun when this one is large or old."""
+    def _apply_retention(self) -> None:
+        """Delete old recordings, and request a new file if this one is too large or old."""
         path, now_s = self._recording.path, time.time()
         by_path = {file.path: file for file in recordings(path.parent)}
         if (current := by_path.pop(path, None)) is None:
             return
         for file in self._keep.surplus(by_path.values(), current, now_s):
             file.path.unlink(missing_ok=True)
-            log.info("deleted %s, as --record-keep says", file.path)
+            log.info("deleted %s (--record-keep)", file.path)
         if self._map.seq >= 0 and self._keep.is_full(current, self._begun_s, now_s):
             self.is_full = True
             self._node.stop()
 
     @property
     def recorded(self) -> int:
-        """The last commit that is in the recording."""
+        """Return the last recorded commit."""
         return self._map.seq
 
     # Both
 
-    def _at(self, stamp_ns: int, seq: int | None = None) -> None:
-        """What is recorded from now on is of this time."""
-        self._recording.at(max(0, self._map.seq) if seq is None else seq, stamp_ns, self._scene.sim_time_s)
+    def _set_time(self, stamp_ns: int, seq: int | None = None) -> None:
+        """Set the time of the following records."""
+        self._recording.set_time(
+            max(0, self._map.seq) if seq is None else seq, stamp_ns, self._scene.sim_time_s
+        )
 
     def _show_all(self) -> None:
-        self._stage.show_all(self._map.entities, self._scene.bodies, simulated=self._scene.known)
+        self._drawn.show_all(self._map.entities, self._scene.bodies, simulated=self._scene.known)
 
-    def _shown(self, touched: Collection[str] = ()) -> None:
+    def _show_graph(self, touched: Collection[str] = ()) -> None:
         relations = self._relations.between(self._map.entities)
-        self._stage.show_graph(graph_of(self._map.entities, relations, touched))
+        self._drawn.show_graph(graph_of(self._map.entities, relations, touched))
         if not self._arranged and self._map.entities:
             self._arranged = True
-            self._recording.arrange(self._stage.poses)
+            self._recording.arrange(self._drawn.poses)
         self._describe()
 
     def _describe(self) -> None:
         into = f"into {self._recording.path.name}, {self._live}"
-        self._node.ready(f"commit {self._map.seq}, {self._amiss or into}")
+        self._node.ready(f"commit {self._map.seq}, {self._problem or into}")
 
 
 def run(config: RecorderConfig) -> int | None:
-    """Record until stopped, which is answered with None, or until another file is to be begun.
+    """Record until stopped, and return None, or until a new file must be started.
 
-    Then the answer is the last commit that this one has. Raises BadFile when the file cannot be written.
+    In the second case, returns the last recorded commit. Raises BadFile if the file cannot be written.
     """
     serve = config.serve if config.serve is not None and free_to_serve(config.serve) else None
     live = f"live at {serve}" if serve else "no live view"

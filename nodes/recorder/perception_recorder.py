@@ -1,4 +1,4 @@
-"""Records what cameras and perception publish; images and clouds at a low rate."""
+"""Records the output of cameras and perception; images and clouds at a low rate."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from semmap.schemas.scenes import CameraFrame
 
 log = logging.getLogger(__name__)
 
-_PICTURE_S = 1.0
-"""A camera's picture is recorded no more often."""
+_IMAGE_S = 1.0
+"""Minimum time between two recorded images of a camera."""
 
 
 class PerceptionRecorder:
-    """Binds the drawing of what is seen to the wire."""
+    """Subscribes to perception and records it."""
 
     def __init__(self, node: Node, recording: Recording, at: Callable[[int], None]) -> None:
-        """`at(stamp_ns)` says of when what is recorded next is."""
+        """Register the subscribers. `at(stamp_ns)` sets the time of the next record."""
         self._recording = recording
         self._at = at
         self._seen = Observations(stamp_ns=0, views=(), observations=())
-        self._pictures: dict[str, tuple[CameraFrame, Callable[[], bytes]]] = {}
+        self._images: dict[str, tuple[CameraFrame, Callable[[], bytes]]] = {}
         self._arranged: set[str] = set()
         node.follow(keys.OBSERVATIONS, self._on_observations)
         node.follow(keys.CLOUD, self._on_cloud)
         bus.follow_cameras(node.session, "rgb", self._keep, log.warning)
-        node.every(_PICTURE_S, self._draw_pictures)
+        node.every(_IMAGE_S, self._draw_images)
 
     def _on_observations(self, seen: Observations) -> None:
         self._seen = seen
@@ -44,16 +44,16 @@ class PerceptionRecorder:
         self._recording.show(archetypes.CLOUD, archetypes.points_of(cloud, self._seen))
 
     def _keep(self, frame: CameraFrame, read: Callable[[], bytes]) -> None:
-        """On a thread of Zenoh's: only the newest picture of each camera is kept."""
-        self._pictures[frame.camera] = (frame, read)
+        """Keep the newest image of each camera. Called on a thread of Zenoh."""
+        self._images[frame.camera] = (frame, read)
 
-    def _draw_pictures(self) -> None:
-        for camera in list(self._pictures):
-            frame, read = self._pictures.pop(camera)
+    def _draw_images(self) -> None:
+        for camera in list(self._images):
+            frame, read = self._images.pop(camera)
             try:
-                drawn, pose = archetypes.picture_of(frame, read()), archetypes.camera_pose(frame)
+                drawn, pose = archetypes.image_of(frame, read()), archetypes.camera_pose(frame)
             except ValueError as error:
-                log.warning("camera %s: cannot record its image: %s", camera, error)
+                log.warning("camera %s: cannot record image: %s", camera, error)
                 continue
             self._at(frame.stamp_ns)
             self._recording.show(archetypes.camera_path(camera), *drawn)

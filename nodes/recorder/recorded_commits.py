@@ -1,4 +1,4 @@
-"""Reads the commits of a recording, for programs."""
+"""Reads the commits of a recording, for use in programs."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from semmap.nodes.recorder.intact_part import chunks, open_intact_part
 from semmap.nodes.recorder.recording import COMMIT_FIELDS, COMMITS
-from semmap.nodes.recorder.whole_part import chunks, whole_part
 from semmap.schemas.explanations import Triple
 
 log = logging.getLogger(__name__)
@@ -17,10 +17,10 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class RecordedCommit:
-    """What a recording says of one commit. `changed` and `removed` are names of entities.
+    """One commit of a recording. `changed` and `removed` are names of entities.
 
-    `came` and `went` are facts of where things are that were computed; of a commit that was recorded
-    afterwards, from the journal, they are not known, and empty.
+    `came` and `went` are computed spatial facts. They are unknown, and empty, for a commit that was recorded
+    later from the journal.
     """
 
     seq: int
@@ -38,21 +38,20 @@ class RecordedCommit:
 
 
 def read_commits(path: Path) -> list[RecordedCommit]:
-    """All commits in a recording, by number. Raises BadFile.
+    """Return all commits in a recording, by number. Raises BadFile.
 
-    One that was both heard and recalled counts once. Where the file ends within a message, because it grows
-    or its writer was killed, or is damaged, the commits up to there are given, and a warning tells how much
-    is left out.
+    A commit that was recorded twice counts once. If the file is truncated or damaged, the commits of its
+    intact part are returned, and a warning says how much is ignored.
     """
-    with whole_part(path) as whole:
-        if told := whole.told(path):
-            log.warning("%s", told)
+    with open_intact_part(path) as whole:
+        if text := whole.describe(path):
+            log.warning("%s", text)
         return commits_of(whole.path)
 
 
 def commits_of(path: Path) -> list[RecordedCommit]:
-    """All commits in a recording that can be read to its end, by number."""
-    return sorted(_once_each(_commits(path)), key=lambda commit: (commit.seq, commit.stamp_ns))
+    """Return all commits in an intact recording, by number."""
+    return sorted(_deduplicated(_commits(path)), key=lambda commit: (commit.seq, commit.stamp_ns))
 
 
 def _commits(path: Path) -> Iterator[RecordedCommit]:
@@ -61,8 +60,8 @@ def _commits(path: Path) -> Iterator[RecordedCommit]:
             yield from map(_commit_of, _rows(chunk.to_record_batch()))
 
 
-def _once_each(commits: Iterable[RecordedCommit]) -> set[RecordedCommit]:
-    """Without those that were recorded twice: the one that tells what was computed is kept."""
+def _deduplicated(commits: Iterable[RecordedCommit]) -> set[RecordedCommit]:
+    """Remove commits that were recorded twice; the record with computed facts is kept."""
     found: dict[RecordedCommit, RecordedCommit] = {}
     for commit in commits:
         if commit not in found or commit.came or commit.went:
@@ -99,6 +98,6 @@ def _commit_of(row: dict[str, Any]) -> RecordedCommit:
 
 
 def _triple(line: str) -> Triple:
-    """The triple of a line of N-Triples; only the object may hold spaces."""
+    """Parse a triple from a line of N-Triples. Only the object may contain spaces."""
     subject, predicate, object_ = line.removesuffix(" .").split(" ", 2)
     return (subject, predicate, object_)

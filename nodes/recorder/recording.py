@@ -1,4 +1,4 @@
-"""The recording: an .rrd file, streamed to live viewers at the same time."""
+"""The recording: an .rrd file, also streamed to live viewers."""
 
 from __future__ import annotations
 
@@ -28,28 +28,28 @@ APPLICATION = "semmap"
 COMMITS = "commits"
 COMMIT_LOG = "commits/log"
 COMMIT_FIELDS = "semmap.Commit"
-"""The archetype that holds a commit's fields for programs; `reading.read_commits` reads them."""
+"""The archetype with a commit's fields for programs; see `recorded_commits.read_commits`."""
 
 _LATENCY_S = 0.5
-"""What a kill can lose, and how far a live viewer lags."""
+"""Data that a kill can lose, and the lag of a live viewer."""
 _LIVE_MEMORY = "256MiB"
 
 
 class Recording:
-    """What was drawn and said, when. Timelines: `commit` (sequence), `time` (wall), `sim_time`."""
+    """The recorded drawing and log. Timelines: `commit` (sequence), `time` (wall), `sim_time`."""
 
     def __init__(self, path: Path, stream: rr.RecordingStream) -> None:
         self.path = path
         self.logged = 0
-        """How often something was recorded."""
+        """The number of records so far."""
         self._stream = stream
         self._in_view: list[Pose] = []
         self._cameras: list[str] = []
         self.arrange()
         stream.log("map", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
 
-    def at(self, seq: int, stamp_ns: int, sim_time_s: float | None) -> None:
-        """When what follows is: after commit `seq`, at this wall time and this simulated time."""
+    def set_time(self, seq: int, stamp_ns: int, sim_time_s: float | None) -> None:
+        """Set the time of the following records: after commit `seq`, at this wall time and simulated time."""
         self._stream.reset_time()
         self._stream.set_time("commit", sequence=seq)
         self._stream.set_time("time", timestamp=stamp_ns / 1e9)
@@ -57,25 +57,25 @@ class Recording:
             self._stream.set_time("sim_time", duration=sim_time_s)
 
     def arrange(self, poses: Iterable[Pose] = (), cameras: Iterable[str] = ()) -> None:
-        """Arrange the viewer so that it looks at these poses too, and shows the pictures of these cameras."""
+        """Extend the layout of the viewer by these poses and camera images."""
         self._in_view.extend(poses)
         self._cameras = sorted({*self._cameras, *cameras})
         self._stream.send_blueprint(layout(bounds_of(self._in_view), self._cameras))
 
     def draw(self, name: str, figure: Figure, pose: Pose) -> None:
-        """Draw a figure where it stands."""
+        """Draw a figure at a pose."""
         self._log(["map", figure.group, name], *shape_of(figure), _transform(pose))
 
     def move(self, name: str, figure: Figure, pose: Pose) -> None:
-        """Put a figure somewhere else."""
+        """Move a figure to a pose."""
         self._log(["map", figure.group, name], _transform(pose))
 
     def erase(self, name: str, figure: Figure) -> None:
-        """Take a figure away."""
+        """Remove a figure."""
         self._log(["map", figure.group, name], rr.Clear(recursive=False))
 
     def show(self, path: str, *archetypes: rr.AsComponents) -> None:
-        """Draw what perception saw."""
+        """Draw results of perception."""
         self._log(path, *archetypes)
 
     def graph(self, graph: Neighbourhood) -> None:
@@ -83,7 +83,7 @@ class Recording:
         self._log("graph", *nodes_and_edges(graph))
 
     def commit(self, commit: Commit) -> None:
-        """Record a commit: a page and a line to read, and its fields for programs."""
+        """Record a commit: as a page, as a log line, and as fields for programs."""
         self._log(
             COMMITS,
             rr.TextDocument(commit_text.page(commit), media_type=rr.MediaType.MARKDOWN),
@@ -96,7 +96,7 @@ class Recording:
         self._stream.log(path, *archetypes)
 
     def note(self, text: str, *, warning: bool = False) -> None:
-        """Say something about the recording itself."""
+        """Log a note on the recording itself."""
         level = rr.TextLogLevel.WARN if warning else rr.TextLogLevel.INFO
         self._log(COMMIT_LOG, rr.TextLog(text, level=level))
 
@@ -127,12 +127,12 @@ def _fields(commit: Commit) -> dict[str, NDArray[Any]]:
 
 
 def _line(triple: Triple) -> str:
-    """A triple as a line of N-Triples."""
+    """Format a triple as a line of N-Triples."""
     return " ".join((*triple, "."))
 
 
 def free_to_serve(address: str) -> bool:
-    """Whether `address` (`host:port`) can be listened on. Rerun itself only logs when it cannot."""
+    """Return whether `address` (`host:port`) is free. Rerun itself only logs an error."""
     host, _, port = address.rpartition(":")
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -144,10 +144,7 @@ def free_to_serve(address: str) -> bool:
 
 
 def create(path: Path) -> Path:
-    """Make an empty file at `path` or, never to write over another, at that name with a number.
-
-    Raises BadFile.
-    """
+    """Create an empty file at `path`, or under a numbered name if `path` exists. Raises BadFile."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         for number in itertools.count(1):
@@ -156,15 +153,15 @@ def create(path: Path) -> Path:
                 break
         candidate.touch(exist_ok=False)
     except OSError as error:
-        raise errors.BadFile(f"cannot write the recording {path}: {error.strerror}") from None
+        raise errors.BadFile(f"cannot write recording {path}: {error.strerror}") from None
     return candidate
 
 
 @contextmanager
 def open_recording(path: Path, serve: str | None) -> Iterator[Recording]:
-    """A recording into `path`, also served to live viewers at `serve`; complete when closed.
+    """Open a recording to `path`, also served to live viewers at `serve`. It is complete when closed.
 
-    Raises BadFile when the file cannot be written.
+    Raises BadFile if the file cannot be written.
     """
     path = create(path)
     batches = rr.ChunkBatcherConfig(flush_tick=_LATENCY_S)

@@ -1,1 +1,1 @@
-"""The simulator: a MuJoCo world with cameras, controlled by the map and by hand."""
+"""The simulator: a MuJoCo world with cameras, controlled by the coordinator or interactively."""

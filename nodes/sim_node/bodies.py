@@ -22,11 +22,11 @@ _BALL = int(mujoco.mjtJoint.mjJNT_BALL)
 
 @dataclass(kw_only=True)
 class BodyRecord:
-    """One body of the scene; what moves is in MuJoCo's data, not here.
+    """The static data of one body of the scene; its motion is in MuJoCo's data.
 
-    `origin_m` is the bottom centre in the frame of the MuJoCo body. `ordered` is the pose that the map
-    (or the world file) gave it. `masks` are contype and conaffinity of each geom while it is solid.
-    `joints` stand where they were ordered to, `joint_names` are their names in MuJoCo.
+    `origin_m` is the bottom centre in the frame of the MuJoCo body. `ordered` is the pose from the map or the
+    world file. `masks` are contype and conaffinity of each geom while the body collides. `joints` have their
+    ordered positions, and `joint_names` are their names in MuJoCo.
     """
 
     name: str
@@ -40,29 +40,29 @@ class BodyRecord:
     masks: list[tuple[int, int]]
     ghost: bool = False
     in_the_way: str = ""
-    """What fills the place of a ghost."""
+    """The body that occupies the place of a non-colliding body."""
     commit: int = 0
     shape_commit: int = 0
     joints: tuple[Joint, ...] = ()
     joint_names: tuple[str, ...] = ()
     joint_commit: int = 0
     part_of: str = ""
-    """The body of a world that it is part of, which carries it."""
+    """The body of a world file of which it is a part."""
     anchored: bool = False
-    """Held by a joint or by what it is part of: nobody can put it elsewhere."""
+    """Whether a joint or its parent body fixes it, so that it cannot be moved manually."""
     robot: bool = False
     held_by: str = ""
     grip: Pose | None = None
-    """Where it is held, in the frame of the bottom centre of the body that holds it."""
+    """Its pose in the frame of the bottom centre of the body to which it is attached."""
     grip_commit: int = -1
 
     @property
     def static(self) -> bool:
-        """Held where it is: no free joint."""
+        """Return whether it has no free joint."""
         return self.fixed or self.ghost
 
     def message(self, pose: Pose, *, resting: bool, positions: Iterable[float] = ()) -> Body:
-        """The body as others are told of it; `positions` are those of its joints now."""
+        """Return the message for the body; `positions` are the current positions of its joints."""
         return Body(
             name=self.name,
             class_=self.class_,
@@ -91,14 +91,15 @@ class BodyRecord:
 
 @dataclass(frozen=True)
 class BodyIndex:
-    """Where each body is in the arrays of one compiled model; N bodies in the order of `names` and `records`.
+    """The positions of bodies in the arrays of a compiled model.
 
-    `qpos` and `dof` (N,) are the addresses of the free joint, -1 for a static body; `tree` (N,) is the
-    kinematic tree, -1 for what cannot move. `ghost` (N,) tells the ghosts.
+    The N bodies are in the order of `names` and `records`. `qpos` and `dof` (N,) are the addresses of the
+    free joint, -1 for a static body. `tree` (N,) is the kinematic tree, -1 for a static body. `ghost` (N,)
+    marks non-colliding bodies.
 
-    The J joints of bodies come in the order of the bodies: `joint` (J,) is each one's number in the model,
-    `joint_body` its body's row, `joint_qpos` and `joint_dof` its addresses, `joint_ball` tells ball joints,
-    and `joint_row` has its place here by its name in MuJoCo.
+    The J joints of bodies are ordered by body. `joint` (J,) is the number in the model, `joint_body` the row
+    of the body, `joint_qpos` and `joint_dof` the addresses. `joint_ball` marks ball joints, and `joint_row`
+    maps names in MuJoCo to rows.
     """
 
     names: tuple[str, ...]
@@ -119,7 +120,7 @@ class BodyIndex:
 
     @staticmethod
     def of(model: mujoco.MjModel, records: Mapping[str, BodyRecord], numbers: Mapping[str, int]) -> BodyIndex:
-        """Look every record's body up in `model`, given their `numbers` there."""
+        """Build the index of the records' bodies in `model`, given their `numbers` there."""
         names = tuple(records)
         body = np.array([numbers[name] for name in names], dtype=np.int64)
         static = np.array([records[name].static for name in names], dtype=bool)
@@ -146,14 +147,14 @@ class BodyIndex:
         )
 
     def positions(self, data: mujoco.MjData) -> Floats:
-        """(J,) where each joint stands [rad, m]; a ball joint's is the angle from its reference."""
+        """Return (J,) joint positions [rad, m]; for a ball joint, the angle from its reference."""
         positions = data.qpos[self.joint_qpos]
         if self.joint_ball.any():
             positions[self.joint_ball] = 2.0 * np.arccos(np.minimum(1.0, np.abs(positions[self.joint_ball])))
         return np.asarray(positions)
 
     def poses(self, data: mujoco.MjData) -> Floats:
-        """(N, 7): bottom centre [m] and quaternion wxyz of each body, map frame."""
+        """Return (N, 7) bottom centre [m] and quaternion wxyz of each body, map frame."""
         frames = np.concatenate([data.xpos[self.body], data.xquat[self.body]], axis=1)
         free = self.qpos >= 0
         frames[free] = data.qpos[self.qpos[free, None] + np.arange(7)]
@@ -168,20 +169,20 @@ def _at(addresses: NDArray[np.int32], joint: Ints) -> Ints:
 
 
 def rotated(quaternions: Floats, vectors: Floats) -> Floats:
-    """(N, 3) vectors, each rotated by its quaternion wxyz (N, 4)."""
+    """Return vectors (N, 3), each rotated by its quaternion wxyz (N, 4)."""
     w, axis = quaternions[:, :1], quaternions[:, 1:]
     twice = 2.0 * _cross(axis, vectors)
     return vectors + w * twice + _cross(axis, twice)
 
 
 def _cross(a: Floats, b: Floats) -> Floats:
-    """Like np.cross, a tenth of its time for few vectors."""
+    """Return the cross product; for few vectors ten times as fast as np.cross."""
     (ax, ay, az), (bx, by, bz) = a.T, b.T
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
 
 
 def frame_of(pose: Pose, origin_m: Vec3) -> tuple[Floats, Floats]:
-    """Position (3,) and quaternion (4,) of the MuJoCo body whose bottom centre is at `pose`."""
+    """Return position (3,) and quaternion (4,) of the MuJoCo body whose bottom centre is at `pose`."""
     quaternion = np.asarray(pose.orientation_wxyz, dtype=float)
     quaternion = quaternion / np.linalg.norm(quaternion)
     position = np.asarray(pose.position_m) - rotation_matrix(quaternion) @ np.asarray(origin_m)
@@ -189,7 +190,7 @@ def frame_of(pose: Pose, origin_m: Vec3) -> tuple[Floats, Floats]:
 
 
 def pose_of(row: Floats) -> Pose:
-    """One row of `BodyIndex.poses` as a message."""
+    """Return one row of `BodyIndex.poses` as a message."""
     x, y, z, *quaternion = (float(value) for value in row)
     return Pose(
         position_m=(x, y, z), orientation_wxyz=(quaternion[0], quaternion[1], quaternion[2], quaternion[3])

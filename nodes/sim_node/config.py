@@ -10,7 +10,7 @@ from semmap.nodes.bus import RESTART_S, Network
 
 @dataclass(frozen=True)
 class CameraConfig:
-    """How the cameras of the world publish; a rate of 0 means they do not."""
+    """How the cameras of the world publish; a rate of 0 disables them."""
 
     rate_hz: float = 0.0
     width: int = 640
@@ -18,12 +18,12 @@ class CameraConfig:
     noise: bool = False
     segments: bool = False
     graphics: bool = True
-    """OpenGL where it is to be had; False casts rays."""
+    """Whether to use OpenGL if available; otherwise rays are cast."""
 
 
 @dataclass(frozen=True)
 class RobotConfig:
-    """A robot's MJCF file, its name as an entity, and where it stands until the map says otherwise.
+    """A robot's MJCF file, its entity name, and its initial pose.
 
     `at_m` is a point on the floor [m, map frame].
     """
@@ -36,7 +36,11 @@ class RobotConfig:
 
 @dataclass(frozen=True)
 class SimConfig:
-    """`world` is an MJCF or JSON scene, None a bare floor; `models` a folder of files (`models.sources`)."""
+    """The settings of the simulator.
+
+    `world` is an MJCF or JSON scene, or None for a bare floor. `models` is a folder of model files
+    (`models.sources`).
+    """
 
     world: Path | None = None
     models: Path | None = None
@@ -44,9 +48,9 @@ class SimConfig:
     cameras: CameraConfig = field(default_factory=CameraConfig)
     network: Network = field(default_factory=Network)
     data: Path | None = None
-    """The system's data folder, where model files may be, too."""
+    """The system's data folder, which may also contain model files."""
     patience_s: float = RESTART_S
-    """Seconds to wait for the knowledge base, where the world is one that names classes."""
+    """Time to wait for the knowledge base, if the world file names classes [s]."""
     still: bool = False
-    """Time is paused from the start: bodies stand where they are ordered to."""
+    """Whether to start with paused time: bodies stay at their ordered poses."""
     robot: RobotConfig | None = None

@@ -1,4 +1,4 @@
-"""The simulator on the wire: `semmap/sim/<verb>` in, poses and camera pictures out."""
+"""The simulator node: serves `semmap/sim/<verb>`, and publishes poses and camera images."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.runtime.loop import Node, open_node
 from semmap.nodes.sim_node.config import SimConfig
 from semmap.nodes.sim_node.models.sources import Models
-from semmap.nodes.sim_node.robots.courses import Outcome
-from semmap.nodes.sim_node.vision.studio import Plane, Still, Studio
+from semmap.nodes.sim_node.robots.base_controller import Outcome
+from semmap.nodes.sim_node.vision.video_renderer import Plane, SceneSnapshot, VideoRenderer
 from semmap.nodes.sim_node.vision.view import FROM_ABOVE, View, camera_view, overview
 from semmap.nodes.sim_node.window import Window
 from semmap.nodes.sim_node.world_file import names_classes, open_world
@@ -62,15 +62,15 @@ _PLANES: dict[str, Literal["rgb", "depth", "segments"]] = {
     "segments16": "segments",
 }
 _BODY_STEPS = 5_000
-"""So many steps of single bodies take a tenth of a second or two; after that others have their turn."""
+"""This many steps of single bodies take 0.1 to 0.2 s; then other work is done."""
 
 _SHOWN = 6
 _LAG_S = 0.05
-"""Time that could not be simulated as fast as it passed is dropped beyond this."""
+"""Lag of the simulated time beyond which time is dropped."""
 
 
 class Simulator:
-    """Binds the world to the wire; the node's thread owns the world."""
+    """Connects the world to the network; the node's thread owns the world."""
 
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
@@ -82,10 +82,10 @@ class Simulator:
         self._paused = config.still
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
-        self._studio = Studio(config.cameras, bus.watched(node.session, keys.SEGMENTS))
+        self._renderer = VideoRenderer(config.cameras, bus.watched(node.session, keys.SEGMENTS))
         self._planes: dict[str, Any] = {}
         self._driving: dict[str, Future[Driven]] = {}
-        """Who waits for the end of a robot's course."""
+        """The pending replies to drive commands, by robot."""
         node.serve(
             keys.SIM,
             by_verb(
@@ -103,7 +103,7 @@ class Simulator:
                 PictureQuery.answered_by(self._picture),
                 SurfaceQuery.answered_by(self._surfaces),
                 WallsQuery.answered_by(self._walls),
-                WorldQuery.answered_by(self._surface_of_the_world),
+                WorldQuery.answered_by(self._world_surface),
             ),
         )
         self._window = Window(self._world) if config.window else None
@@ -112,11 +112,11 @@ class Simulator:
         node.every(_ADVANCE_S, self._advance)
         node.every(_PUBLISH_S, self._publish)
         if config.cameras.rate_hz > 0.0:
-            node.every(1.0 / config.cameras.rate_hz, self._film)
+            node.every(1.0 / config.cameras.rate_hz, self._render_cameras)
         node.ready(self._summary())
 
     def _classes(self, config: SimConfig) -> ClassNames:
-        """What the TBox says of classes, if the world is a file that names bodies by class."""
+        """Return the TBox's classes, if the world file names bodies by class."""
         if not names_classes(config.world):
             return ClassNames()
         self._node.describe("waiting for the knowledge base")
@@ -125,21 +125,21 @@ class Simulator:
                 keys.BRIDGE, Classes(), timeout_s=bus.TIMEOUT_S, patience_s=config.patience_s, beating=True
             )
         except errors.NoAnswer:
-            self._node.report("the knowledge base is not answering; using models named like the classes")
+            self._node.report("no response from the knowledge base; using models named like the classes")
             return ClassNames()
         return ClassNames(found)
 
     def close(self) -> None:
-        """Let go of the studio's thread and of the window."""
-        self._studio.close()
+        """Stop the renderer and close the window."""
+        self._renderer.close()
         if self._window is not None:
             self._window.close()
 
     def _spawn(self, message: Spawn) -> Spawned:
-        return self._told(self._world.spawn(message.bodies))
+        return self._published(self._world.spawn(message.bodies))
 
     def _delete(self, message: Delete) -> Deleted:
-        return self._told(self._world.delete(message.names))
+        return self._published(self._world.delete(message.names))
 
     def _move(self, message: MoveBodies) -> BodiesMoved:
         return self._timed(self._world.move(message.placements))
@@ -148,19 +148,19 @@ class Simulator:
         return self._timed(self._world.move_joints(message.orders))
 
     def _grip(self, message: Grip) -> Gripped:
-        return self._told(self._world.grip(message.orders))
+        return self._published(self._world.grip(message.orders))
 
     def _drive(self, message: DriveBase) -> Driven | Future[Driven]:
         self._world.drive(message)
-        self._tell_ended()
+        self._report_ended()
         if not message.wait or not message.to or self._paused:
             return self._timed(self._driven(message.name, "driving" if message.to else "stopped"))
         future: Future[Driven] = Future()
         self._driving[message.name] = future
         return future
 
-    def _tell_ended(self) -> None:
-        """Answer those who wait for the end of a course."""
+    def _report_ended(self) -> None:
+        """Reply to drive commands that ended."""
         for name, outcome in self._world.ended().items():
             future = self._driving.pop(name, None)
             if future is not None:
@@ -170,9 +170,9 @@ class Simulator:
         return Driven(name=name, outcome=outcome, pose=self._world.pose(name))
 
     def _timed(self, reply: Timed) -> Timed:
-        """Publish what has changed, and add to the reply when it was done and whether time is paused."""
-        stamp_ns = time.time_ns()  # poses that are published from here on are newer
-        return self._told(structs.replace(reply, paused=self._paused, stamp_ns=stamp_ns))
+        """Publish the poses, and add time stamp and pause state to the reply."""
+        stamp_ns = time.time_ns()  # later poses have newer stamps
+        return self._published(structs.replace(reply, paused=self._paused, stamp_ns=stamp_ns))
 
     def _snapshot(self, _: SceneQuery) -> Scene:
         return self._world.scene()
@@ -192,7 +192,7 @@ class Simulator:
         return Done(text=f"time is {state}")
 
     def _release_waiting(self) -> None:
-        """Answer those who wait for the end of a course, which does not come while time is paused."""
+        """Reply to drive commands, which cannot end while time is paused."""
         waiting, self._driving = self._driving, {}
         for name, future in waiting.items():
             future.set_result(self._timed(self._driven(name, "driving")))
@@ -203,39 +203,39 @@ class Simulator:
         timestep_s, before_s = float(self._world.model.opt.timestep), self._now_s
         end_s = before_s + max(message.seconds, timestep_s)
         while (left_s := end_s - self._now_s) > timestep_s / 2:
-            self._world.step(min(left_s, _PUBLISH_S, self._turn_s()))
-            self._node.tick()  # it may take minutes, and who is silent so long is replaced
+            self._world.step(min(left_s, _PUBLISH_S, self._slice_s()))
+            self._node.tick()  # a long step must not stop the heartbeat
         passed_s = round(self._now_s - before_s, 6)
-        return self._told(Done(text=f"advanced by {passed_s:g} s to {self._now_s:.2f} s"))
+        return self._published(Done(text=f"advanced by {passed_s:g} s to {self._now_s:.2f} s"))
 
     @property
     def _now_s(self) -> float:
-        """The simulated time."""
+        """Return the simulated time."""
         return float(self._world.data.time)
 
     def _reset(self, _: Reset) -> Done:
         count = self._world.reset()
-        return self._told(Done(text=f"put back to the ordered poses: {wording.bodies(count)}"))
+        return self._published(Done(text=f"reset to the ordered poses: {wording.bodies(count)}"))
 
     def _picture(self, query: PictureQuery) -> Future[Picture]:
         box = None if query.box is None else (np.array(query.box[0]), np.array(query.box[1]))
         labels = self._world.tops(box) if query.labels else {}
-        return self._studio.paint(self._still(), self._view(query), labels)
+        return self._renderer.render_picture(self._scene_snapshot(), self._view(query), labels)
 
     def _surfaces(self, query: SurfaceQuery) -> Surfaces:
         return self._world.surfaces(query.names)
 
-    def _surface_of_the_world(self, _: WorldQuery) -> Surface:
+    def _world_surface(self, _: WorldQuery) -> Surface:
         return self._world.surface()
 
     def _walls(self, _: WallsQuery) -> tuple[Outline, ...]:
         return self._world.walls()
 
-    def _still(self) -> Still:
-        return Still(*self._world.snapshot())
+    def _scene_snapshot(self) -> SceneSnapshot:
+        return SceneSnapshot(*self._world.snapshot())
 
-    def _film(self) -> None:
-        self._studio.film(self._still, self._publish_plane)
+    def _render_cameras(self) -> None:
+        self._renderer.render_cameras(self._scene_snapshot, self._publish_plane)
 
     def _publish_plane(self, plane: Plane) -> None:
         frame, pixels = plane
@@ -254,8 +254,8 @@ class Simulator:
         low, high = world.extent()
         return overview(low, high, query.width, query.height)
 
-    def _told(self, reply: Reply) -> Reply:
-        """Publish at once what has changed, so that nobody waits for the next round."""
+    def _published(self, reply: Reply) -> Reply:
+        """Publish the poses immediately, so that subscribers do not wait for the next period."""
         self._publish()
         self._node.describe(self._summary())
         return reply
@@ -264,14 +264,14 @@ class Simulator:
         now = time.monotonic()
         if not self._paused:
             before = self._world.joints_at_rest
-            self._world.step(min(now - self._clock_s, _LAG_S, self._turn_s()))
+            self._world.step(min(now - self._clock_s, _LAG_S, self._slice_s()))
             if self._world.joints_at_rest > before:
-                self._publish()  # whoever waits for the end of a motion hears of it at once
+                self._publish()  # the end of a motion is published immediately
         self._clock_s = now
-        self._tell_ended()
+        self._report_ended()
 
-    def _turn_s(self) -> float:
-        """As much simulated time as can be worked out in one go without falling silent."""
+    def _slice_s(self) -> float:
+        """Return the simulated time that can be computed without delaying other work."""
         timestep_s = float(self._world.model.opt.timestep)
         return timestep_s * max(1, _BODY_STEPS // max(1, self._world.awake))
 
@@ -282,7 +282,9 @@ class Simulator:
     def _summary(self) -> str:
         state = ", paused" if self._paused else ""
         world = self._world
-        bodies = f"{wording.bodies(len(world))} in " if len(world) else ""  # at first the map's are to come
+        bodies = (
+            f"{wording.bodies(len(world))} in " if len(world) else ""
+        )  # the map's bodies are not spawned yet
         ignored = f"; declared but ignored: {_few(world.ignored)}" if world.ignored else ""
         return f"{bodies}{world.name}{state}{ignored}"
 
@@ -293,7 +295,7 @@ def _few(words: Sequence[str]) -> str:
 
 
 def run(config: SimConfig) -> None:
-    """Serve until stopped."""
+    """Run the node until it is stopped."""
     with open_node("sim_node", config.network) as node:
         simulator = Simulator(node, config)
         try:

@@ -1,4 +1,4 @@
-"""MuJoCo's interactive viewer: look around; double click selects a body, Ctrl-drag moves it."""
+"""MuJoCo's interactive viewer: double click selects a body, Ctrl-drag applies a force."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from semmap.nodes.sim_node.world import World
 from semmap.schemas.errors import BadRequest
 
 _LABEL_M = 0.3
-_LABEL_LENGTH = 99  # what MuJoCo has room for
+_LABEL_LENGTH = 99  # MuJoCo's limit
 
 
 class Window:
-    """Open until closed. What the mouse does becomes forces in the world's data."""
+    """The viewer window. Mouse forces are applied to the world's data."""
 
     def __init__(self, world: World) -> None:
-        """Raises BadRequest where there is no display."""
+        """Open the window. Raises BadRequest without a display."""
         _require_display()
-        from mujoco import viewer  # loads GLFW, which only those need who have a display
+        from mujoco import viewer  # loads GLFW, which requires a display
 
         self._world = world
         self._shown = world.model
@@ -32,7 +32,7 @@ class Window:
             mujoco.mjv_defaultFreeCamera(world.model, self._viewer.cam)
 
     def refresh(self) -> None:
-        """Show the world as it is now, and take over what the mouse does."""
+        """Draw the current world, and apply mouse forces."""
         if not self._viewer.is_running():
             return
         if self._world.model is not self._shown:
@@ -46,7 +46,10 @@ class Window:
         self._viewer.sync()
 
     def _label(self) -> None:
-        """Write its name above the selected body: names in the model are those of its compilation."""
+        """Draw the name above the selected body.
+
+        Names in the MuJoCo model may be outdated, since bodies are written into existing slots.
+        """
         world, scene, number = self._world, self._viewer.user_scn, self._viewer.perturb.select
         (name,) = world.names_of(np.array([number])) if 0 < number < world.model.nbody else ("",)
         scene.ngeom = int(bool(name))
@@ -63,14 +66,14 @@ class Window:
             label.label = name[:_LABEL_LENGTH]
 
     def close(self) -> None:
-        """Close it, and wait until the last frame is drawn; the process cannot end before."""
+        """Close the window and wait for the last frame, since the process cannot exit before."""
         self._viewer.close()
         for thread in self._threads:
             thread.join(timeout=5.0)
 
 
 def _require_display() -> None:
-    """Ask first: without a display the viewer's thread dies and its caller waits for ever."""
+    """Raise BadRequest without a display: the viewer would hang."""
     import glfw
 
     with warnings.catch_warnings():

@@ -1,4 +1,4 @@
-"""The simulated world: bodies are spawned, deleted and moved by hand; they fall, rest and sleep."""
+"""The simulated world: bodies are spawned, deleted and moved; they fall, come to rest and sleep."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ import mujoco
 import numpy as np
 from msgspec import structs
 
-from semmap.nodes.sim_node import orders
+from semmap.nodes.sim_node import order_validation
 from semmap.nodes.sim_node.bodies import Floats, Ints, pose_of
 from semmap.nodes.sim_node.models.facets import surface_of
 from semmap.nodes.sim_node.models.library import build as library_model
 from semmap.nodes.sim_node.models.world_surface import body_surface, world_surface
-from semmap.nodes.sim_node.orders import ModelSource
+from semmap.nodes.sim_node.order_validation import ModelSource
 from semmap.nodes.sim_node.physics import base_scene, build
 from semmap.nodes.sim_node.physics.engine import Engine
 from semmap.nodes.sim_node.physics.walls import walls
 from semmap.nodes.sim_node.placement.settling import Settling
-from semmap.nodes.sim_node.robots.courses import ACTUATORS, Outcome, actuators
+from semmap.nodes.sim_node.robots.base_controller import ACTUATORS, Outcome, actuators
 from semmap.nodes.sim_node.vision.view import bulk, camera_names, optical_pose, overview
 from semmap.schemas import wording
 from semmap.schemas.entities import Pose, relative
@@ -50,7 +50,7 @@ from semmap.schemas.scenes import (
 
 
 class World:
-    """A MuJoCo scene whose bodies come and go.
+    """A MuJoCo scene whose bodies are created and deleted at run time.
 
     Positions are bottom centres in the map frame, which is MuJoCo's world frame. One thread owns a World.
     """
@@ -61,74 +61,75 @@ class World:
         *,
         name: str = "empty",
         models: ModelSource = library_model,
-        meanwhile: Callable[[], None] = lambda: None,
+        while_waiting: Callable[[], None] = lambda: None,
         is_class: Callable[[str], bool] = lambda word: False,
     ) -> None:
-        """Start from a scene that compiles (`groundwork`), or from a bare floor.
+        """Start from a scene that compiles, or from a bare floor.
 
-        `meanwhile` is called again and again while models are read and compiled. It may let time pass
-        (`step`), and ask for `poses` and a `snapshot`: newcomers are not yet there. `is_class` tells words
-        that name classes: a part of one of the world's bodies that is called so is a body of its own.
+        `while_waiting` is called repeatedly while models are read and compiled. It may call `step`, `poses`
+        and `snapshot`, which do not include new bodies yet. `is_class` returns whether a word names a class:
+        parts of the world's bodies with such names become bodies.
         """
         ground = ground or base_scene.bare_floor()
         self.ignored = base_scene.ignored(ground)
-        """What the world declares in vain, each with the reason."""
-        self._engine = Engine(ground, meanwhile, is_class)
+        """Declarations of the world file without effect, each with the reason."""
+        self._engine = Engine(ground, while_waiting, is_class)
         self.left_out = self._engine.left_out
-        """The bodies of the world that are only parts of others, each by name or by what it is part of."""
+        """Bodies of the world file that are only parts of others, by name or by their parent."""
         self._settling = Settling(self._engine)
-        self._models, self._meanwhile = models, meanwhile
+        self._models, self._while_waiting = models, while_waiting
         self.name = name
         self.run = uuid.uuid4().hex[:12]
         self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
 
     @property
     def model(self) -> mujoco.MjModel:
-        """The compiled model; spawn and delete change it, or put another in its place."""
+        """Return the compiled model. Spawning and deleting change or replace it."""
         return self._engine.model
 
     @property
     def data(self) -> mujoco.MjData:
-        """The state that goes with `model`."""
+        """Return the state of `model`."""
         return self._engine.data
 
     @property
     def asleep(self) -> bool:
-        """Nothing moves: every body sleeps, and none is about to be woken."""
+        """Return whether every body sleeps and none is about to wake."""
         return self._engine.asleep
 
     @property
     def awake(self) -> int:
-        """About how many bodies do not sleep: a step costs time in proportion."""
+        """Return the approximate number of awake bodies; the time of a step is proportional to it."""
         return self._engine.awake
 
     @property
     def joints_at_rest(self) -> int:
-        """How many joints belong to bodies that rest."""
+        """Return the number of joints of resting bodies."""
         engine = self._engine
         return int(np.count_nonzero(engine.resting[engine.index.joint_body]))
 
-    # what is asked
+    # Commands
 
     def spawn(self, ordered: Sequence[BodyOrder]) -> Spawned:
-        """Make bodies, all in one go; what cannot be made is told in `failed`, name by name."""
-        newcomers, failed = build.aside(
-            lambda: orders.newcomers(ordered, self._models, self._engine.has), self._meanwhile
+        """Create bodies in one step; rejected ones are in `failed`, by name."""
+        newcomers, failed = build.run_in_background(
+            lambda: order_validation.validate_spawn(ordered, self._models, self._engine.has),
+            self._while_waiting,
         )
         if newcomers:
             self._settling.add(newcomers)
         return Spawned(bodies=self._bodies(newcomers), failed=failed)
 
     def delete(self, names: Sequence[str]) -> Deleted:
-        """Take bodies away, all in one go; names that are not there are passed over."""
+        """Delete bodies in one step; unknown names are ignored."""
         gone = [name for name in dict.fromkeys(names) if name in self._engine.records]
         if gone:
             self._settling.remove(gone)
         return Deleted(names=tuple(gone))
 
     def move(self, placements: Sequence[Placement]) -> BodiesMoved:
-        """Put bodies elsewhere as a hand would: there at once, with no speed, then left to physics."""
-        accepted, failed = orders.moves(placements, self._engine.records)
+        """Move bodies instantly and without speed, and leave them to physics."""
+        accepted, failed = order_validation.validate_moves(placements, self._engine.records)
         records = self._engine.records
         for placement in placements:
             if placement.commit is not None and placement.name in records:
@@ -136,15 +137,15 @@ class World:
         for placement in accepted:
             if placement.commit is not None:
                 records[placement.name].ordered = placement.pose
-            self._has_begun(placement.name)
-            self._engine.courses.stop(self.model, self.data, placement.name, "stopped")
+            self._mark_used(placement.name)
+            self._engine.base_controller.stop(self.model, self.data, placement.name, "stopped")
         moved = {placement.name: placement.pose for placement in accepted}
         self._settling.put(moved)
         return BodiesMoved(bodies=self._bodies(moved), failed=failed)
 
     def move_joints(self, ordered: Sequence[JointOrder]) -> JointsMoving:
-        """Begin to move joints as a hand would; time has to pass until they are there."""
-        targets, failed = orders.joint_targets(ordered, self._engine.records)
+        """Start to move joints; they arrive after some simulated time."""
+        targets, failed = order_validation.joint_targets(ordered, self._engine.records)
         for order in ordered:
             if order.name in targets and order.commit is not None:
                 self._engine.records[order.name].joint_commit = order.commit
@@ -153,9 +154,9 @@ class World:
         return JointsMoving(bodies=self._bodies(targets), failed=failed)
 
     def grip(self, ordered: Sequence[GripOrder]) -> Gripped:
-        """Have bodies held by others, or let go where they are."""
+        """Attach bodies to others, or detach them."""
         records = self._engine.records
-        accepted, failed = orders.grips(ordered, records)
+        accepted, failed = order_validation.validate_grips(ordered, records)
         changed = []
         for order in accepted:
             record = records[order.name]
@@ -173,9 +174,9 @@ class World:
         return Gripped(bodies=self._bodies(order.name for order in accepted), failed=failed)
 
     def mark_robot(self, name: str) -> None:
-        """This body is a robot, and so are those that are part of it; its joints open nothing.
+        """Mark a body and its parts as a robot, whose joints do not open anything.
 
-        Nobody has told it yet where to stand.
+        The robot has no pose from the map yet.
         """
         records = self._engine.records
         for record in records.values():  # wholes come before their parts
@@ -184,8 +185,8 @@ class World:
                 record.robot, record.commit = True, -1
                 record.joints = tuple(structs.replace(joint, closed=None) for joint in record.joints)
 
-    def _has_begun(self, name: str) -> None:
-        """Note that a body was placed, moved or driven; of a robot, its parts with it."""
+    def _mark_used(self, name: str) -> None:
+        """Record that a body was placed, moved or driven; for a robot, also its parts."""
         records = self._engine.records
         records[name].commit = max(0, records[name].commit)
         if records[name].robot:
@@ -194,9 +195,9 @@ class World:
                     record.commit = max(0, record.commit)
 
     def drive(self, order: DriveBase) -> None:
-        """Begin a course, or, without points, end one.
+        """Start a drive command, or stop the robot if there are no points.
 
-        Raises Refused for what is no body, or cannot drive, and says why.
+        Raises Refused for an unknown body, or one that cannot drive.
         """
         engine, name = self._engine, order.name
         if name not in engine.records:
@@ -205,36 +206,34 @@ class World:
             wanted = ", ".join(ACTUATORS)
             raise Refused(f"{name} cannot drive: its model has no velocity actuators named {wanted}")
         if engine.records[name].static:
-            raise Refused(
-                f"{name} cannot drive: it is held where it is, because another body is in its place"
-            )
+            raise Refused(f"{name} cannot drive: another body occupies its place")
         if order.to and self.pose(name).upright < UPRIGHT:
             raise Refused(f"{name} {wording.fallen(name, self.pose(name))}")
         if not order.to:
-            engine.courses.stop(engine.model, engine.data, name, "stopped")
+            engine.base_controller.stop(engine.model, engine.data, name, "stopped")
             return
         for x, y in order.to:
-            if math.hypot(x, y) > orders.REACH_M:
-                raise Refused(f"({x:g}, {y:g}) is too far; the limit is {orders.REACH_M:.0f} m")
-        self._has_begun(name)
+            if math.hypot(x, y) > order_validation.REACH_M:
+                raise Refused(f"({x:g}, {y:g}) is too far; the limit is {order_validation.REACH_M:.0f} m")
+        self._mark_used(name)
         engine.drive_base(name, order.to, order.yaw, order.speed)
 
     def ended(self) -> dict[str, Outcome]:
-        """How courses ended since this was asked last, by robot."""
-        ended = dict(self._engine.courses.ended)
-        self._engine.courses.ended.clear()
+        """Return the outcomes of drive commands that ended since the last call, by robot."""
+        ended = dict(self._engine.base_controller.ended)
+        self._engine.base_controller.ended.clear()
         return ended
 
     def pose(self, name: str) -> Pose:
-        """Where a body is."""
+        """Return the pose of a body."""
         return pose_of(self._engine.poses()[self._engine.index.row[name]])
 
     def step(self, duration_s: float) -> None:
-        """Let `duration_s` of simulated time pass; it costs nothing while everything sleeps."""
+        """Advance the simulated time by `duration_s`; this takes no time while everything sleeps."""
         self._settling.step(duration_s)
 
     def reset(self) -> int:
-        """Back to the map: each body goes where it was last ordered to be; answers how many there are."""
+        """Move each body to its last ordered pose; return the number of bodies."""
         self._engine.set_joints([name for name, record in self._engine.records.items() if record.joints])
         self._settling.put(
             {
@@ -245,33 +244,33 @@ class World:
         )
         return len(self)
 
-    def look_over(self) -> None:
-        """Let the bare floor's camera see all bodies from as near as can be."""
+    def aim_overview_camera(self) -> None:
+        """Aim the bare floor's camera so that all bodies just fit."""
         view = overview(*self.extent(), 4, 3, fovy_rad=base_scene.OVERVIEW_FOVY_RAD)
         self._engine.aim(base_scene.OVERVIEW, view)
 
-    # what is told
+    # Queries
 
     def __len__(self) -> int:
-        """How many bodies there are."""
+        """Return the number of bodies."""
         return len(self._engine.records)
 
     def extent(self) -> tuple[Floats, Floats]:
-        """Lowest and highest corner, each (3,) [m], of the box around all bodies but those far off."""
-        stage = self._engine.stage()
-        felt = np.isfinite(stage.body_low).all(axis=1)
-        return bulk(stage.body_low[felt], stage.body_high[felt])
+        """Return lowest and highest corner, each (3,) [m], of the box around all bodies but outliers."""
+        obstacles = self._engine.obstacles()
+        felt = np.isfinite(obstacles.body_low).all(axis=1)
+        return bulk(obstacles.body_low[felt], obstacles.body_high[felt])
 
     def walls(self) -> tuple[Outline, ...]:
-        """What of the world itself stands in the way, seen from above."""
+        """Return the outlines of the world's static geometry, seen from above."""
         return walls(self.model, self.data, set(self._engine.index.body.tolist()))
 
     def tops(self, box: tuple[Floats, Floats] | None = None) -> dict[str, Floats]:
-        """The middle of the top (3,) [m] of each entity's body; only of those whose middle is in the box."""
-        stage, index = self._engine.stage(), self._engine.index
+        """Return the centre of the top (3,) [m] of each entity's body whose centre is in the box."""
+        obstacles, index = self._engine.obstacles(), self._engine.index
         found = {}
         for name, row in index.row.items():
-            low, high = stage.body_low[row], stage.body_high[row]
+            low, high = obstacles.body_low[row], obstacles.body_high[row]
             middle = (low + high) / 2.0
             if not self._engine.records[name].entity or not np.isfinite(middle).all():
                 continue
@@ -280,7 +279,7 @@ class World:
         return found
 
     def poses(self) -> Poses:
-        """Where all bodies are."""
+        """Return the poses of all bodies."""
         engine = self._engine
         return Poses(
             run=self.run,
@@ -296,7 +295,7 @@ class World:
         )
 
     def scene(self) -> Scene:
-        """Every body as it is now."""
+        """Return the current state of every body."""
         return Scene(
             run=self.run,
             version=self._settling.version,
@@ -308,7 +307,7 @@ class World:
         )
 
     def surfaces(self, names: Iterable[str]) -> Surfaces:
-        """What bodies look like; those of the world's own as their parts stand just now."""
+        """Return the surfaces of bodies; those of the world file with their parts as they are now."""
         there = {name: row for row, name in enumerate(self._engine.index.names)}
         whose, poses = self.body_names(), self._engine.poses()
         found: dict[str, Surface | None] = {}
@@ -320,18 +319,21 @@ class World:
         return Surfaces(surfaces={name: surface for name, surface in found.items() if surface is not None})
 
     def surface(self) -> Surface:
-        """What the world itself looks like, apart from bodies."""
+        """Return the surface of the world without bodies."""
         return world_surface(self.model, self.data, self.body_names())
 
     def snapshot(self) -> tuple[mujoco.MjModel, mujoco.MjData, list[str]]:
-        """Copies of the model and its state, and `body_names`; the model is shared until it changes."""
+        """Return copies of the model and its state, and `body_names`.
+
+        The copy of the model is shared until the model changes.
+        """
         if self._copied != self._engine.revision:
             self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
         model, names = self._copy
         return model, copy.copy(self.data), names
 
     def cameras(self) -> tuple[CameraPose, ...]:
-        """Where the cameras of the world are, and which bodies carry them."""
+        """Return the poses of the world's cameras, and the bodies that carry them."""
         model, data = self.model, self.data
         carriers = self.names_of(model.cam_bodyid)
         return tuple(
@@ -340,11 +342,11 @@ class World:
         )
 
     def body_names(self) -> list[str]:
-        """(ngeom,) for each geom of `model` the name of the body that it belongs to, or ""."""
+        """Return (ngeom,) for each geom of `model` the name of its body, or ""."""
         return self.names_of(self.model.geom_bodyid)
 
     def names_of(self, numbers: Ints) -> list[str]:
-        """For each of these bodies of `model` the name of the body that it is, or is a part of, or ""."""
+        """Return for each of these bodies of `model` the name of its body or parent, or ""."""
         names = np.full(self.model.nbody, "", dtype=object)
         names[self._engine.index.body] = self._engine.index.names
         for body in np.flatnonzero(names == ""):  # wholes have lower numbers than their parts

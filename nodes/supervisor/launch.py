@@ -149,7 +149,7 @@ def _sim_node(settings: Settings) -> None:
 
 def _perception_node(settings: Settings) -> None:
     from semmap.nodes.perception_node.config import PerceptionConfig, TrackingConfig
-    from semmap.nodes.perception_node.lesson_book import FILENAME
+    from semmap.nodes.perception_node.exemplar_store import FILENAME
     from semmap.nodes.perception_node.node import run
 
     tracking = TrackingConfig(when_gone=settings.when_gone)

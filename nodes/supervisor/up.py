@@ -305,17 +305,17 @@ class _Foreground:
         """Say which of the files in `--models` are nobody's model, and what models could not bring along."""
         if self._settings.models is None or not self._settings.sim:
             return
-        from semmap.nodes.sim_node.models.sources import passed_over  # and with it MuJoCo
+        from semmap.nodes.sim_node.models.sources import ignored_files  # and with it MuJoCo
         from semmap.nodes.sim_node.models.write_shapes import own_notes
 
         folder = Path(self._settings.models)
         with contextlib.suppress(errors.SemmapError, OSError):
             classes = bus.ask(session, keys.CMD, Classes.VERB, Classes(), reply_type(Classes))
             names = {name for c in classes for name in (c.model, *varieties_of(c.model))}
-            if passed_over(folder, names):
+            if ignored_files(folder, names):
                 listed = bus.ask(session, keys.CMD, List.VERB, List(), reply_type(List))
                 names |= {entity.model for entity in listed if isinstance(entity, Entity)}
-            if strange := passed_over(folder, names):
+            if strange := ignored_files(folder, names):
                 said = f"ignored, because no class has a model of that name: {', '.join(strange)}"
                 self._say(f"{'models':<{_COLUMN}} {said}")
             for note in own_notes(folder, names):

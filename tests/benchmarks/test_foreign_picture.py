@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from benchmarks.perception.foreign_picture import ACROSS, TABLES, drawn, tables
-from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.recognition.recognition_model import shipped
 from semmap.nodes.training.scenes.foreign_things import foreign_things
 
 SIZE_M = (0.12, 0.08, 0.2)

@@ -1,6 +1,6 @@
 import math
 
-from semmap.nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of, still
+from semmap.nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, is_still, pose_of
 from semmap.schemas.entities import orientation_from_yaw
 from tests.recorder.messages import body, entity, pose
 
@@ -23,14 +23,14 @@ def test_without_a_simulator_the_map_is_drawn():
 def test_an_entity_that_the_simulator_lacks_is_only_believed():
     figure = figure_of(entity("c"), None, simulated=True)
     assert figure is not None
-    assert figure.look == "believed"
+    assert figure.appearance == "believed"
 
 
 def test_ghosts_furniture_and_places():
     ghost = figure_of(entity("c"), body("c", ghost=True), simulated=True)
     furniture = figure_of(None, body("wall", class_=None, entity=False), simulated=True)
     place = figure_of(entity("k", "Kitchen", place=True, preferred_reference="kitchen"), None, simulated=True)
-    assert [f and (f.look, f.group, f.label) for f in (ghost, furniture, place)] == [
+    assert [f and (f.appearance, f.group, f.label) for f in (ghost, furniture, place)] == [
         ("ghost", "bodies", "c"),
         ("furniture", "furniture", "wall"),
         ("place", "places", "kitchen"),
@@ -48,6 +48,6 @@ def test_the_scene_knows_the_pose_better_than_the_map():
 
 
 def test_a_tremor_is_no_movement():
-    assert still(pose(1.0), pose(1.0005))
-    assert not still(pose(1.0), pose(1.002))
-    assert not still(pose(), pose(wxyz=orientation_from_yaw(math.radians(1.0))))
+    assert is_still(pose(1.0), pose(1.0005))
+    assert not is_still(pose(1.0), pose(1.002))
+    assert not is_still(pose(), pose(wxyz=orientation_from_yaw(math.radians(1.0))))

@@ -1,4 +1,4 @@
-from semmap.nodes.drawing.neighbourhood import Link, around, by_class, by_place
+from semmap.nodes.drawing.neighbourhood import GraphEdge, around, by_class, by_place
 from tests.recorder.messages import entity
 
 ENTITIES = {
@@ -29,18 +29,18 @@ def names(graph):
 def test_around_a_thing_are_its_class_and_what_is_next_to_it_only():
     graph = around(["cup1"], ENTITIES, RELATIONS)
     assert set(names(graph)) == {"cup1", "class:Cup", "table1", "kitchen1", "corner1"}
-    assert Link("cup1", "table1", "isAbove, isOn") in graph.links
+    assert GraphEdge("cup1", "table1", "isAbove, isOn") in graph.links
     assert not [link for link in graph.links if "cup1" not in (link.source, link.target)]
 
 
 def test_what_leads_to_a_thing_is_next_to_it():
-    assert Link("cup1", "table1", "isAbove, isOn") in around(["table1"], ENTITIES, RELATIONS).links
+    assert GraphEdge("cup1", "table1", "isAbove, isOn") in around(["table1"], ENTITIES, RELATIONS).links
 
 
 def test_unfolded_things_are_shown_with_their_own_neighbours():
     graph = around(["cup1"], ENTITIES, RELATIONS, unfolded=["kitchen1", "not_shown"])
-    assert Link("table1", "kitchen1", "isLocatedIn") in graph.links
-    assert Link("kitchen1", "corner1", "hasSubLocation") in graph.links
+    assert GraphEdge("table1", "kitchen1", "isLocatedIn") in graph.links
+    assert GraphEdge("kitchen1", "corner1", "hasSubLocation") in graph.links
 
 
 def test_of_many_neighbours_the_rest_is_counted_and_unfolds():
@@ -73,7 +73,7 @@ def test_by_place_each_thing_counts_in_its_smallest_place():
         "more:elsewhere": 1,
     }
     assert graph.knots[1].label == "kitchen (1)"
-    assert graph.links == (Link("kitchen1", "corner1", "hasSubLocation"),)
+    assert graph.links == (GraphEdge("kitchen1", "corner1", "hasSubLocation"),)
 
 
 def test_by_place_each_place_is_in_the_smallest_around_it_and_nothing_is_said_twice():
@@ -103,7 +103,7 @@ def test_without_places_it_is_by_class():
 def test_a_class_unfolds_into_its_entities():
     graph = by_class(ENTITIES, ["Cup", "Unheard_Of"])
     assert graph.knots[0].label == "Cup (2)"
-    assert graph.links == (Link("cup1", "class:Cup", "is a"), Link("cup2", "class:Cup", "is a"))
+    assert graph.links == (GraphEdge("cup1", "class:Cup", "is a"), GraphEdge("cup2", "class:Cup", "is a"))
 
 
 def test_of_an_empty_map_there_is_nothing():

@@ -21,7 +21,7 @@ def test_what_was_asked_for_in_vain_is_asked_for_again():
     chair, table = body("chair1", model="chair"), body("table1", model="table")
     wanted = cache.wanted([chair, table])
     cache.take(wanted["table1"], SURFACE)
-    cache.give_up(wanted.values())
+    cache.reset_requests(wanted.values())
     assert list(cache.wanted([chair, table])) == ["chair1"]
     assert cache.of(table) is SURFACE
 

@@ -75,7 +75,7 @@ def test_a_recording_is_compared_with_the_map_that_it_is_of(system, flat_map):
     assert f"{recording} is not a recording of this map: commit 2 is not in the journal" in said
     flat_map.cli("add", "Cup", "mug8", "--at", "2", "2", "0")
     said = flat_map.cli(*check, status=1)
-    assert f"{recording} is not a recording of this map: commit 2 is another one: id is '" in said
+    assert f"{recording} is not a recording of this map: commit 2 differs: id is '" in said
     assert "commits are as in the journal" in flat_map.cli(*check, "--data", system.data)
 
 

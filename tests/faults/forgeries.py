@@ -129,7 +129,7 @@ def files_of_the_host(ground: Ground) -> None:
                 name=name, class_="Chair", model=model, pose=Pose(position_m=(0.0, 0.0, 1.0)), commit=1
             )
             spawned = bus.ask(session, keys.SIM, Spawn.VERB, Spawn(bodies=(order,)), Spawned)
-            assert "folder given by" in spawned.failed[name] or "may be read" in spawned.failed[name], spawned
+            assert "folder given by" in spawned.failed[name] or "are allowed" in spawned.failed[name], spawned
 
 
 @contextlib.contextmanager

@@ -1,4 +1,4 @@
-"""Plans drawn by hand: two rooms and a corridor, 0.1 m walls, doors 0.9 m wide."""
+"""Synthetic plans: two rooms and a corridor, 0.1 m walls, doors 0.9 m wide."""
 
 from semmap.schemas.plans import Outline, Plan, PlannedPlace, PlannedThing
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from semmap.nodes.navigation.grid import FREE, OCCUPIED, UNKNOWN, forbidden, occupancy, widened
+from semmap.nodes.navigation.grid import FREE, OCCUPIED, UNKNOWN, forbidden_mask, inflated, occupancy
 from semmap.schemas.errors import Refused
 from semmap.schemas.plans import Outline
 from tests.navigation.made import DOOR, PLACES, box, place, plan, thing
@@ -47,13 +47,13 @@ def test_forbidden_places_as_a_mask():
     made = plan(places=(*PLACES, place("pit", 1.0, 1.0, 2.0, 3.0, forbidden=True)))
     grid = occupancy(made, 0.1, HEIGHTS)
 
-    assert forbidden(made, grid.frame).sum() == 200
+    assert forbidden_mask(made, grid.frame).sum() == 200
 
 
 def test_nothing_and_too_much_are_refused():
-    with pytest.raises(Refused, match="nothing to plan on"):
+    with pytest.raises(Refused, match="no place with an extent"):
         occupancy(plan(places=(), walls=()), 0.05, HEIGHTS)
-    with pytest.raises(Refused, match=r"too large .* a resolution of 0\.1"):
+    with pytest.raises(Refused, match=r"too large .* a resolution of at least 0\.1"):
         occupancy(plan(places=(place("plain", 0, 0, 500, 500),), walls=()), 0.05, HEIGHTS)
 
 
@@ -64,4 +64,4 @@ def test_widening_is_by_a_disc():
     away = np.hypot(y[..., None] - rows, x[..., None] - columns).min(axis=2)
 
     for reach in (0.0, 1.0, 2.5, 5.2):
-        assert (widened(mask, reach * 0.05, 0.05) == (away <= reach + 1e-9)).all()
+        assert (inflated(mask, reach * 0.05, 0.05) == (away <= reach + 1e-9)).all()

@@ -55,13 +55,13 @@ def test_negate_raw_and_lists_over_lines():
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("resolution: 0.05\n", "takes at least image: FILE and resolution: METRES"),
-        ("hello\n", "it has the line 'hello'"),
-        ("image: x\nresolution: nan\n", "resolution is 'nan', which is no number"),
-        ("image: x\nresolution: 0\n", "metres a pixel, over 0"),
-        ("image: x\nresolution: 0.1\norigin: [1]\n", "three numbers"),
-        ("image: x\nresolution: 0.1\norigin: [a, b, c]\n", "three numbers"),
-        ("image: x\nresolution: 0.1\nmode: odd\n", "none of trinary, scale and raw"),
+        ("resolution: 0.05\n", "requires image: FILE and resolution: METRES"),
+        ("hello\n", "invalid line 'hello'"),
+        ("image: x\nresolution: nan\n", "resolution 'nan' is not a number"),
+        ("image: x\nresolution: 0\n", "metres per pixel, over 0"),
+        ("image: x\nresolution: 0.1\norigin: [1]\n", "it must be .x, y, yaw."),
+        ("image: x\nresolution: 0.1\norigin: [a, b, c]\n", "it must be .x, y, yaw."),
+        ("image: x\nresolution: 0.1\nmode: odd\n", "invalid mode 'odd'"),
         ("image: x\nresolution: 0.1\nfree_thresh: 0.9\n", "below occupied_thresh"),
     ],
 )
@@ -73,10 +73,10 @@ def test_broken_descriptions(text, said):
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        (b"GIF89a", "neither PNG nor PGM"),
-        (b"P5\n2 2\n", "its head is broken"),
-        (b"P5\n2 2\n255\nab", "ends before"),
-        (b"P2\n2 2\n255\n1 2 x 4", "ends before"),
+        (b"GIF89a", "not a PNG or PGM image"),
+        (b"P5\n2 2\n", "invalid header"),
+        (b"P5\n2 2\n255\nab", "is truncated"),
+        (b"P2\n2 2\n255\n1 2 x 4", "is truncated"),
         (b"P5\n90000 90000\n255\n", "has at most"),
     ],
 )

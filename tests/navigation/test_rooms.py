@@ -1,4 +1,4 @@
-"""Rooms cut out of plans that are drawn: how many, and how well they fit."""
+"""Segmentation of synthetic plans: number of rooms, and intersection over union."""
 
 import math
 
@@ -8,8 +8,8 @@ from scipy import ndimage
 
 from semmap.nodes.navigation.grid import FREE, OCCUPIED, UNKNOWN, Frame, OccupancyGrid
 from semmap.nodes.navigation.loaded_plan import loaded_plan
-from semmap.nodes.navigation.map_server import Described, pixels_of
-from semmap.nodes.navigation.rooms import cut
+from semmap.nodes.navigation.map_server import MapDescription, pixels_of
+from semmap.nodes.navigation.rooms import segment_rooms
 from semmap.schemas.errors import BadFile
 from semmap.schemas.polygons import read_wkt
 
@@ -25,7 +25,7 @@ DOORS = {
 
 
 def drawn(turn=0.0, noise=0.0, seed=0):
-    """The plan with everything turned about its middle; noise: this share of the free cells is not."""
+    """Return the plan rotated about its centre; `noise` is the share of free cells set to unknown."""
     height, width = 200, 260
     y, x = (np.mgrid[:height, :width] + 0.5) * SIDE
     cx, cy = 6.0, 4.5
@@ -59,7 +59,7 @@ def mask_of(polygon, shape):
 
 
 def fits(found, truth, shape):
-    """The intersection over union of each room with what fits it best."""
+    """Return the intersection over union of each room with its best match."""
     masks = [mask_of(room.polygon, shape) for room in found.rooms]
     return {
         name: max((mask & its).sum() / (mask | its).sum() for mask in masks) for name, its in truth.items()
@@ -70,7 +70,7 @@ def fits(found, truth, shape):
 @pytest.mark.parametrize("noise", [0.0, 0.005])
 def test_rooms_are_found_however_the_plan_is_turned(turn, noise):
     grid, truth = drawn(turn, noise)
-    found = cut(grid)
+    found = segment_rooms(grid)
 
     assert len(found.rooms) == 3
     assert min(fits(found, truth, grid.cells.shape).values()) > 0.85
@@ -80,7 +80,7 @@ def test_rooms_are_found_however_the_plan_is_turned(turn, noise):
 
 def test_doors_are_where_they_were_drawn():
     grid, _ = drawn()
-    middles = [door.middle for door in cut(grid).doorways]
+    middles = [door.middle for door in segment_rooms(grid).doorways]
     shift = (6.0 - 5.5, 4.5 - 3.6)
 
     for x, y, _, _ in list(DOORS.values())[:2]:
@@ -88,20 +88,20 @@ def test_doors_are_where_they_were_drawn():
 
 
 def test_the_same_plan_makes_the_same_rooms():
-    assert cut(drawn(0.35, 0.005)[0]) == cut(drawn(0.35, 0.005)[0])
+    assert segment_rooms(drawn(0.35, 0.005)[0]) == segment_rooms(drawn(0.35, 0.005)[0])
 
 
 def test_furniture_that_stands_about_belongs_to_its_room_and_makes_no_other():
     grid, truth = drawn()
     grid.cells[60:80, 60:80] = OCCUPIED
-    found = cut(grid)
+    found = segment_rooms(grid)
 
     assert len(found.rooms) == 3
     assert min(fits(found, truth, grid.cells.shape).values()) > 0.9
 
 
 def furnished(seed, turn):
-    """The plan with eight cupboards and tables against walls, none within 80 cm of a door."""
+    """Return the plan with eight cupboards and tables against walls, at least 80 cm from a door."""
     grid, truth = drawn(turn)
     y, x = (np.mgrid[: grid.cells.shape[0], : grid.cells.shape[1]] + 0.5) * SIDE
     c, s = math.cos(-turn), math.sin(-turn)
@@ -127,7 +127,7 @@ def test_furniture_against_walls_makes_no_doors(turn):
     wrong = 0
     for seed in range(6):
         grid, truth = furnished(seed, turn)
-        found = cut(grid)
+        found = segment_rooms(grid)
         doors = sorted(door.rooms for door in found.doorways)
         if (len(found.rooms), doors) == (3, [(0, 1), (0, 2), (1, 2)]):
             assert min(fits(found, truth, grid.cells.shape).values()) > 0.5
@@ -141,7 +141,7 @@ def test_a_corridor_of_which_a_door_takes_the_whole_end_but_two_stubs():
     cells[10:32, 10:100] = FREE  # 1.1 m wide
     cells[12:30, 100:102] = FREE  # 0.9 m
     cells[5:55, 102:180] = FREE
-    found = cut(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 60), cells))
+    found = segment_rooms(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 60), cells))
     assert len(found.rooms) == 2
     assert [door.width_m for door in found.doorways] == [0.9]
 
@@ -151,7 +151,7 @@ def test_a_door_that_is_flush_with_a_wall():
     cells[10:90, 10:98] = FREE
     cells[10:28, 98:100] = FREE
     cells[10:90, 100:190] = FREE
-    found = cut(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 100), cells))
+    found = segment_rooms(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 100), cells))
     assert len(found.rooms) == 2
     assert found.doorways[0].width_m == pytest.approx(0.9, abs=0.05)
 
@@ -161,13 +161,13 @@ def test_a_narrow_place_between_two_cupboards_is_no_door():
     cells[10:70, 10:190] = FREE
     cells[10:29, 90:106] = OCCUPIED
     cells[49:70, 92:110] = OCCUPIED
-    found = cut(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 80), cells))
+    found = segment_rooms(OccupancyGrid(Frame(0.0, 0.0, SIDE, 200, 80), cells))
     assert (len(found.rooms), found.doorways) == (1, ())
 
 
 def test_a_plan_becomes_places_and_doors_where_its_origin_says():
     grid, _ = drawn()
-    described = Described(image="x", resolution=SIDE, origin=(10.0, 20.0, math.pi / 2))
+    described = MapDescription(image="x", resolution=SIDE, origin=(10.0, 20.0, math.pi / 2))
     made = loaded_plan(described, pixels_of(grid), "plan.yaml")
     rooms = [e for e in made.scene.entities if e.class_ == "Room"]
     doors = [e for e in made.scene.entities if e.class_ == "Door"]
@@ -185,5 +185,5 @@ def test_a_plan_without_rooms_is_refused():
     cells = np.full((50, 50), UNKNOWN, dtype=np.int8)
     cells[10:20, 10:20] = FREE
     pixels = pixels_of(OccupancyGrid(Frame(0.0, 0.0, SIDE, 50, 50), cells))
-    with pytest.raises(BadFile, match="has no room in it"):
-        loaded_plan(Described(image="x", resolution=SIDE), pixels, "plan.yaml")
+    with pytest.raises(BadFile, match="has no free area"):
+        loaded_plan(MapDescription(image="x", resolution=SIDE), pixels, "plan.yaml")

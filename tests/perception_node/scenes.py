@@ -1,4 +1,4 @@
-"""A table with a few things, as two simulated depth cameras see it."""
+"""A table with a few things, seen by two simulated depth cameras."""
 
 import math
 from functools import cache

@@ -1,4 +1,4 @@
-"""Perception on the wire: frames of cameras in, good and bad, observations and commands out."""
+"""The perception node: camera frames in, valid and invalid, observations and commands out."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from semmap.nodes import bus
 from semmap.nodes.perception_node.config import PerceptionConfig
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.node import Perception, summary
-from semmap.nodes.perception_node.pipeline import Look
+from semmap.nodes.perception_node.pipeline import FrameResult
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import codec, errors, keys
 from semmap.schemas.bridge import SnapshotQuery
@@ -43,17 +43,17 @@ CLASSES = tuple(
 
 
 def everything_is_a_cup(clouds, masks):
-    """A look that sees the same cup in whatever it is shown, and fails at what is near."""
+    """Report the same cup for any frame, and fail for near depth."""
     if (clouds[0].points_camera[..., 2] < 0.5).any():
         raise ZeroDivisionError("too near")
     shape = clouds[0].points_camera.shape[:2]
     observations = Observations(stamp_ns=clouds[0].stamp_ns, views=(), observations=(CUP,))
-    said = {one.label for found in masks if found is not None for one in found.said if one}
-    return Look(observations, tuple(np.ones(shape, np.int32) for _ in clouds), tuple(sorted(said)))
+    said = {one.label for found in masks if found is not None for one in found.detector_labels if one}
+    return FrameResult(observations, tuple(np.ones(shape, np.int32) for _ in clouds), tuple(sorted(said)))
 
 
 class World:
-    """Plays the coordinator, the knowledge base and the cameras, and hears what perception says."""
+    """A coordinator, a knowledge base and cameras that record the output of perception."""
 
     def __init__(self, session, other):
         self.session = session
@@ -84,7 +84,7 @@ class World:
         self.node.serve(keys.CMD, {"add": (Add, self._add)})
 
     def film(self, depth_m=2.0, *, rgb=None, pixels=None, **changes):
-        """One frame of a camera."""
+        """Publish one frame of a camera."""
         self._stamp_ns += 1_000_000
         depth = structs.replace(DEPTH, **{"stamp_ns": self._stamp_ns, **changes})
         colour = structs.replace(depth, encoding="rgb8", **(rgb or {}))
@@ -109,7 +109,7 @@ class World:
         return until(filmed, what)
 
     def film_often(self):
-        """Until ten more looks were taken."""
+        """Publish frames until ten more were processed."""
         before = len(self.seen)
         self.film_until(lambda: len(self.seen) >= before + 10, "ten more looks")
 
@@ -210,7 +210,7 @@ def test_what_the_map_refuses_is_told_and_not_said_again_at_once(world, monkeypa
 NAN = float("nan")
 NOTHING = "camera left has no depth values from 0.01 to 100 m"
 BAD = {
-    "the past": ({"stamp_ns": -5_000_000_000}, "frame ignored: its stamp is older"),
+    "the past": ({"stamp_ns": -5_000_000_000}, "frame ignored: its stamp is not newer"),
     "sizes": ({"rgb": {"width": 32}}, "its colour image has 32 x 48 pixels, its depth 64 x 48"),
     "intrinsics": ({"intrinsics": (0.0,) * 9}, "the intrinsics (0.0,"),
     "pose": ({"map_from_camera": (2.0,) * 16}, "map_from_camera is not a 4 x 4 pose"),
@@ -242,7 +242,7 @@ def test_what_is_no_frame_is_told(world):
 @pytest.mark.parametrize(
     ("depth_m", "said"),
     [
-        (1.5, "1 camera, 2 things seen, 80 ms a look"),
+        (1.5, "1 camera, 2 things seen, 80 ms per frame"),
         (8.0, "; the nearest surface is 8.0 m away, use at most 2 m"),
     ],
 )
@@ -253,7 +253,7 @@ def test_cameras_that_are_far_from_everything_are_told(depth_m, said):
 
 
 def detected(world, *observations):
-    """A detector of one's own has seen this."""
+    """Publish an observation of an external detector."""
     found = Observations(stamp_ns=1, views=(), observations=observations)
     world.session.put(keys.DETECTIONS.key, codec.encode(found))
 
@@ -289,7 +289,7 @@ def test_a_frame_is_looked_at_with_the_masks_of_its_moment(world, monkeypatch, c
         stamp_ns = world._stamp_ns
         masks = DetectedMasks(camera="left", stamp_ns=stamp_ns, width=64, height=48, masks=(run,))
         world.session.put(keys.MASKS.key, codec.encode(masks))
-        return "no class here: spork" in caplog.text  # masks that overtake their frame are told of, too
+        return "no class here: spork" in caplog.text  # also for masks that arrive before their frame
 
     until(told, "the look had the masks")
     world.film()
@@ -309,6 +309,6 @@ def test_masks_that_do_not_fit_are_told_and_the_frame_is_looked_at_all_the_same(
         world.film()
         masks = DetectedMasks(camera="left", stamp_ns=world._stamp_ns, width=32, height=48)
         world.session.put(keys.MASKS.key, codec.encode(masks))
-        return world.seen and "of 32 x 48 pixels, the picture of 64 x 48" in caplog.text
+        return world.seen and "of 32 x 48 pixels, the image of 64 x 48" in caplog.text
 
     until(told, "it says so")

@@ -2,15 +2,15 @@ import numpy as np
 import pytest
 
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.pipeline import look, observe
-from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.pipeline import observe, observe_clouds
+from semmap.nodes.perception_node.recognition.recognition_model import shipped
 from semmap.nodes.perception_node.views.segments import map_points
 from tests.perception_node.scenes import HEIGHT_M, KINDS, shot
 
 
 @pytest.fixture(scope="module")
 def seen():
-    return look(shot().clouds, shipped())
+    return observe_clouds(shot().clouds, shipped())
 
 
 def nearest(observations, x, y):

@@ -1,4 +1,4 @@
-"""A table with things on it that perception sees perfectly, and a map that does what it is told."""
+"""A table with things that perception sees perfectly, and a map that applies all commands."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from semmap.schemas.entities import Entity, Pose, Provenance, Size, Source, orie
 from semmap.schemas.perception import Observation
 
 CONFIG = TrackingConfig(
-    confirm_looks=3, clear_looks=3, rest_looks=2, nudge_looks=5, gone_looks=4, odd_looks=6
+    confirm_frames=3, clear_frames=3, rest_frames=2, nudge_frames=5, gone_frames=4, odd_frames=6
 )
 SIZES: dict[str, Size] = {
     "Cup": (0.08, 0.08, 0.1),
@@ -83,24 +83,24 @@ def entity(
 
 @dataclass
 class Table:
-    """`things` is what stands there, `entities` what the map says of it."""
+    """`things` are on the table, and `entities` are in the map."""
 
     things: list[Observation] = field(default_factory=list)
     entities: dict[str, Entity] = field(default_factory=dict)
     tracks: Tracks = field(default_factory=Tracks)
     config: TrackingConfig = CONFIG
     hidden: bool = False
-    """Nobody can tell what is at the places where nothing is seen."""
+    """Make the occupancy of all places unknown."""
 
     def look(self) -> tuple[Command, ...]:
-        """One look, and the map takes what it is told; gives the commands."""
+        """Process one frame, apply the commands to the map, and return them."""
         result = associate(self.entities, self.tracks, self.things, self._occupancy, CLASSES, self.config)
         self.tracks, self.taken_for = result.tracks, result.entities
         for command in result.commands:
             self._obey(command)
         return result.commands
 
-    def looks(self, count: int) -> list[Command]:
+    def observe(self, count: int) -> list[Command]:
         return [command for _ in range(count) for command in self.look()]
 
     def told(self, entities: Iterable[Entity]) -> Table:
@@ -153,7 +153,7 @@ class Table:
 
 
 def _fills(thing: Observation, pose: Pose, size_m: Size) -> bool:
-    """Whether a thing that is not turned is where another would stand, and not much smaller."""
+    """Return whether an unrotated thing is in the place of another, and not much smaller."""
     (x, y, z), (u, v, w) = thing.pose.position_m, pose.position_m
     there = math.dist((x, y, z), (u, v, w)) < max(size_m[:2]) / 2
     inside = abs(x - u) < thing.size_m[0] / 2 and abs(y - v) < thing.size_m[1] / 2 and z == w

@@ -1,4 +1,4 @@
-"""Reading recordings without the code under test."""
+"""Reads recordings without the code under test."""
 
 import warnings
 
@@ -6,9 +6,9 @@ from rerun.chunk import RrdReader
 
 
 def column(path, entity_path, component, *, whole=False):
-    """The values of one component of one entity, as they were logged; also of a file that grows.
+    """Return the values of one component of one entity as logged, also from a growing file.
 
-    The first value of each time or, with `whole`, all of them.
+    By default the first value of each time, with `whole` all values.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

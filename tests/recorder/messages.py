@@ -1,4 +1,4 @@
-"""Messages to test with."""
+"""Messages for tests."""
 
 import numpy as np
 
@@ -44,7 +44,7 @@ def body(name, at=None, **others):
 
 
 def surface():
-    """One red triangle."""
+    """Return one red triangle."""
     return Surface(
         points=np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], dtype="<f4").tobytes(),
         normals=np.tile(np.array([0, 0, 1], dtype="<f4"), 3).tobytes(),

@@ -1,4 +1,4 @@
-"""A recording's commits beside the journal's."""
+"""Comparison of a recording's commits with the journal's."""
 
 import pytest
 from msgspec import structs
@@ -53,7 +53,7 @@ def test_commits_that_the_recording_lacks_are_named():
     assert cut == (True, False, "1 commit is as in the journal: 1; the recording lacks commits 2 to 4")
     assert "lacks commits 2 and 4" in checked(recorded(1), recorded(3)).text
     none = checked()
-    assert none == (True, False, "there are no commits in the recording; the recording lacks commits 1 to 4")
+    assert none == (True, False, "the recording has no commits; the recording lacks commits 1 to 4")
 
 
 def test_what_was_compacted_is_said():
@@ -65,18 +65,18 @@ def test_what_was_compacted_is_said():
 @pytest.mark.parametrize(
     ("others", "said"),
     [
-        ({"id": "x"}, "commit 2 is another one: id is 'x' in the recording, and 'id-2' in the journal"),
-        ({"reason": "why"}, "reason is 'why' in the recording, and '' in the journal"),
-        ({"inserted": (A, B)}, "of its inserted triples <"),
-        ({"retracted": ()}, "of its retracted triples <"),
-        ({"changed": ()}, "of its changed entities 'cup1' is not in the recording"),
-        ({"inserted": (), "retracted": (), "changed": ()}, "the recording lacks what it changes"),
+        ({"id": "x"}, "commit 2 differs: id is 'x' in the recording and 'id-2' in the journal"),
+        ({"reason": "why"}, "reason is 'why' in the recording and '' in the journal"),
+        ({"inserted": (A, B)}, "inserted triple <"),
+        ({"retracted": ()}, "retracted triple <"),
+        ({"changed": ()}, "changed entity 'cup1' is not in the recording"),
+        ({"inserted": (), "retracted": (), "changed": ()}, "the recording lacks its changes"),
     ],
 )
 def test_the_first_difference_is_named(others, said):
     verdict = checked(recorded(1), recorded(2, **others), recorded(3, id="later"))
     assert not verdict.is_same
-    assert verdict.text.startswith("commit 2 is another one: ")
+    assert verdict.text.startswith("commit 2 differs: ")
     assert said in verdict.text
 
 
@@ -84,4 +84,4 @@ def test_a_commit_that_the_journal_does_not_have_is_named():
     verdict = checked(*map(recorded, (1, 2, 3, 4)), last=3)
     assert verdict == (False, False, "commit 4 is not in the journal, whose last one is 3")
     verdict = checked(recorded(1), recorded(2), recorded(2))
-    assert verdict == (False, False, "commit 2 is recorded twice, and not the same")
+    assert verdict == (False, False, "commit 2 is recorded twice, with different content")

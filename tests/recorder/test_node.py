@@ -45,12 +45,12 @@ def wait_for(condition):
 
 @pytest.fixture(autouse=True)
 def often(monkeypatch):
-    """What a recorder says of itself comes soon."""
+    """Shorten the interval of status messages."""
     monkeypatch.setattr(heartbeat, "_PERIOD_S", 0.05)
 
 
 class World:
-    """Plays the knowledge base and the simulator, and hears what the recorder says of itself."""
+    """A knowledge base and a simulator that receive the status of the recorder."""
 
     def __init__(self, session, endpoint):
         self.endpoint = endpoint
@@ -85,7 +85,7 @@ class World:
         self._poses.put(codec.encode(poses(at_by_name, **others)))
 
     def begin_anew(self, snapshot):
-        """Another process takes the place of the one that has beaten before."""
+        """Replace the process that has sent heartbeats."""
         self.snapshot = snapshot
         for started_ns in (1, 2):
             health = Health(node="kb_node", pid=1, started_ns=started_ns, stamp_ns=2, state="ready")
@@ -119,7 +119,7 @@ def world():
 
 
 def seqs(path):
-    """The commits recorded so far; none while the file ends in the middle of a message."""
+    """Return the commits recorded so far; none while the file ends within a message."""
     try:
         return [commit.seq for commit in read_commits(path)]
     except errors.BadFile:

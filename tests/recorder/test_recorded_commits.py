@@ -1,4 +1,4 @@
-"""Commits read back from a recording."""
+"""Commits read from a recording."""
 
 import pytest
 
@@ -15,7 +15,7 @@ def test_what_was_computed_is_read_back_and_a_commit_recalled_later_counts_once(
     heard = commit(2, places=PlaceChanges(came=(came,), went=(went,)))
     with open_recording(path, None) as recording:
         for one in (commit(2), heard, commit(2), commit(3)):
-            recording.at(one.seq, START_NS, None)
+            recording.set_time(one.seq, START_NS, None)
             recording.commit(one)
     read = read_commits(path)
     assert [(c.seq, c.came, c.went) for c in read] == [(2, (came,), (went,)), (3, (), ())]
@@ -25,7 +25,7 @@ def test_what_is_whole_of_a_recording_that_is_cut_is_read(tmp_path, caplog):
     path, cut = tmp_path / "a.rrd", tmp_path / "cut.rrd"
     with open_recording(path, None) as recording:
         for seq in (1, 2, 3):
-            recording.at(seq, START_NS, None)
+            recording.set_time(seq, START_NS, None)
             recording.commit(commit(seq))
             recording._stream.flush()  # each in a message of its own
     content = path.read_bytes()

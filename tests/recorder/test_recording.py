@@ -35,7 +35,7 @@ def test_every_field_of_a_commit_comes_back(tmp_path):
         retracted=(relation("beer1", "isOn", "table1"),),
     )
     with open_recording(path, None) as recording:
-        recording.at(7, made.stamp_ns, 1.5)
+        recording.set_time(7, made.stamp_ns, 1.5)
         recording.commit(made)
     (read,) = read_commits(path)
     assert (read.seq, read.stamp_ns, read.id, read.source) == (7, made.stamp_ns, "id-7", "operator")
@@ -51,7 +51,7 @@ def test_commits_come_back_in_order_whatever_they_hold(tmp_path):
     full = (relation("a", "isOn", "b"),)
     with open_recording(path, None) as recording:
         for seq in (3, 1, 2):
-            recording.at(seq, START_NS, None)
+            recording.set_time(seq, START_NS, None)
             recording.commit(commit(seq, inserted=full if seq == 2 else ()))
     assert [(c.seq, c.inserted) for c in read_commits(path)] == [(1, ()), (2, full), (3, ())]
 
@@ -59,7 +59,7 @@ def test_commits_come_back_in_order_whatever_they_hold(tmp_path):
 def test_a_recording_without_commits_is_one(tmp_path):
     path = tmp_path / "a.rrd"
     with open_recording(path, None) as recording:
-        recording.at(1, START_NS, None)
+        recording.set_time(1, START_NS, None)
         recording.note("nothing")
     assert read_commits(path) == []
     assert log(path) == ["nothing"]
@@ -68,7 +68,7 @@ def test_a_recording_without_commits_is_one(tmp_path):
 def test_a_figure_is_a_box_on_its_bottom_centre(tmp_path):
     path = tmp_path / "a.rrd"
     with open_recording(path, None) as recording:
-        recording.at(1, START_NS, None)
+        recording.set_time(1, START_NS, None)
         recording.draw("chair1", CHAIR, pose(1.0, 2.0, 0.5))
         recording.move("chair1", CHAIR, pose(1.5, 2.0, 0.5))
     assert positions(path, "chair1") == [[1.0, 2.0, 0.5], [1.5, 2.0, 0.5]]
@@ -81,9 +81,9 @@ def test_a_figure_is_a_box_on_its_bottom_centre(tmp_path):
 def test_a_figure_whose_surface_is_known_is_drawn_with_it(tmp_path):
     path = tmp_path / "a.rrd"
     with open_recording(path, None) as recording:
-        recording.at(1, START_NS, None)
+        recording.set_time(1, START_NS, None)
         recording.draw("chair1", replace(CHAIR, surface=surface()), pose())
-        recording.draw("ghost1", replace(CHAIR, look="ghost", surface=surface()), pose())
+        recording.draw("ghost1", replace(CHAIR, appearance="ghost", surface=surface()), pose())
     assert column(path, "/map/bodies/chair1", "Mesh3D:vertex_positions") == [[0.0, 0.0, 0.0]]  # the first
     assert len(column(path, "/map/bodies/chair1", "Boxes3D:half_sizes")) == 1
     assert column(path, "/map/bodies/ghost1", "Mesh3D:vertex_positions") == []
@@ -103,7 +103,7 @@ def test_a_file_is_never_written_over(tmp_path):
 def test_a_folder_that_is_a_file_is_told(tmp_path):
     (tmp_path / "a").write_text("")
     with (
-        pytest.raises(errors.BadFile, match="cannot write the recording"),
+        pytest.raises(errors.BadFile, match="cannot write recording"),
         open_recording(tmp_path / "a" / "b.rrd", None),
     ):
         pass
@@ -133,7 +133,7 @@ from semmap.nodes.recorder.recording import open_recording
 from tests.recorder.messages import commit
 with open_recording(Path(sys.argv[1]), None) as recording:
     for seq in range(50):
-        recording.at(seq, 0, None)
+        recording.set_time(seq, 0, None)
         recording.commit(commit(seq))
     time.sleep(60)
 """

@@ -1,4 +1,4 @@
-"""Which recordings are kept, and when another one is begun."""
+"""Which recordings are kept, and when a new one is started."""
 
 from __future__ import annotations
 

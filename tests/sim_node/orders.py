@@ -1,4 +1,4 @@
-"""Short ways to say orders and placements, and worlds in which they are followed."""
+"""Helpers for orders, placements and worlds."""
 
 from semmap.nodes.sim_node.world import World
 from semmap.schemas.entities import Pose, Size, orientation_from_yaw

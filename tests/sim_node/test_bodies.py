@@ -150,7 +150,7 @@ def test_vectors_are_rotated_as_by_the_matrix(turn, vector):
 
 @given(TURN, POINT, POINT, st.floats(0.9995, 1.0005))
 def test_the_frame_of_a_body_has_its_bottom_centre_at_the_pose(turn, place, origin, factor):
-    """A quaternion that is not quite of length one is made so."""
+    """The quaternion is normalised."""
     pose = Pose(position_m=place, orientation_wxyz=tuple(factor * value for value in turn))
     position, quaternion = frame_of(pose, origin)
     assert np.linalg.norm(quaternion) == pytest.approx(1.0)

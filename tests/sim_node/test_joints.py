@@ -12,7 +12,7 @@ from tests.sim_node.orders import bodies, hand, order, pose, spawned
 
 
 def opened(world: World, name: str = "fridge1", **order_) -> dict[str, float]:
-    """Openness of each joint, once all is at rest."""
+    """Return the openness of each joint once all is at rest."""
     assert world.move_joints([JointOrder(name=name, **order_)]).failed == {}
     world.step(4.0)
     return {joint.name: joint.openness for joint in bodies(world)[name].joints}
@@ -105,8 +105,8 @@ def test_a_fixed_one_opens_too_whatever_the_unit_of_the_world(angles):
 @pytest.mark.parametrize(
     ("asked", "why"),
     [
-        ({"name": "nobody"}, "no body named nobody"),
-        ({"name": "cup1"}, "no joint that opens it"),
+        ({"name": "missing"}, "no body named missing"),
+        ({"name": "cup1"}, "no joint that opens"),
         ({"name": "fridge1", "joint": "lid"}, "no joint named lid that can be moved; it has: door, freezer"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Bodies within bodies of an MJCF world: which are bodies of their own, whose joints are whose."""
+"""Nested bodies of an MJCF world: which are separate bodies, and which have joints."""
 
 import mujoco
 import pytest
@@ -49,7 +49,7 @@ def test_what_is_left_out_and_what_is_declared_in_vain_is_named(kitchen):
     assert kitchen.ignored == [
         "ghost (no such body)",
         "nothing (no such joint)",
-        "wheel (closed at 'middle'; say lower or upper)",
+        "wheel (closed at 'middle'; use lower or upper)",
     ]
 
 
@@ -79,7 +79,7 @@ def test_a_door_of_a_foreign_world_opens(kitchen):
     kitchen.step(3.0)
     (door,) = bodies(kitchen)["microwave_1"].joints
     assert door.position == pytest.approx(-2.0, abs=0.02)
-    kitchen.spawn([order("cup1", "cup", pose(0.0, 5.0))])  # everything is compiled anew
+    kitchen.spawn([order("cup1", "cup", pose(0.0, 5.0))])  # everything is recompiled
     there = bodies(kitchen)
     assert there["microwave_1"].joints[0].position == pytest.approx(-2.0, abs=0.02)
     assert there["microwave_1"].pose.position_m == pytest.approx((2.0, -0.015, 1.0), abs=0.02)
@@ -89,8 +89,8 @@ def test_what_is_held_is_put_nowhere_and_the_order_counts_as_tried(kitchen):
     before = bodies(kitchen)["microwave_1"].pose
     asked = [Placement(name="microwave_1", pose=pose(0.0, 0.0), commit=9), Placement(name="arm", pose=before)]
     assert kitchen.move(asked).failed == {
-        "microwave_1": "microwave_1 is held by desk; only its joints move it",
-        "arm": "arm is held by its joint; only its joints move it",
+        "microwave_1": "microwave_1 is fixed by desk; only its joints can move it",
+        "arm": "arm is fixed by its joint; only its joints can move it",
     }
     after = bodies(kitchen)["microwave_1"]
     assert (after.pose, after.commit) == (before, 9)

@@ -69,7 +69,7 @@ def ask(client, verb, message):
 
 @pytest.fixture
 def poses(client):
-    """The poses as they come in."""
+    """Return the published poses."""
     seen = []
     subscriber = bus.follow(client, keys.POSES, lambda key, message: seen.append(message))
     yield seen
@@ -206,7 +206,7 @@ def test_cameras_publish_raw_planes_with_what_they_need_to_be_understood(client)
 
 def test_who_draws_may_ask_what_bodies_look_like(client):
     ask(client, "spawn", Spawn(bodies=(order("cup1", "cup", pose(1, 0)),)))
-    told = ask(client, "surfaces", SurfaceQuery(names=("cup1", "nobody"))).surfaces
+    told = ask(client, "surfaces", SurfaceQuery(names=("cup1", "missing"))).surfaces
     assert set(told) == {"cup1"}
     points = np.frombuffer(told["cup1"].points, "<f4").reshape(-1, 3)
     assert np.ptp(points[:, 2]) == pytest.approx(0.1, abs=0.03)

@@ -27,7 +27,7 @@ def test_every_model_stays_where_it_is_put():
 
 @pytest.fixture(scope="module")
 def flat():
-    """Tables and shelves laden with 200 things."""
+    """Return tables and shelves with 200 things."""
     world = World()
     small = ["can", "cup", "bowl", "book", "bottle", "plate", "glass", "apple", "jar", "cereals"]
     orders = []

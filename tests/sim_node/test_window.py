@@ -50,7 +50,7 @@ def test_the_mouse_pulls_a_body_and_lets_it_go():
 
 
 class Viewer:
-    """MuJoCo's viewer without a display: what it is told of."""
+    """MuJoCo's viewer without a display, which records its calls."""
 
     def __init__(self, world):
         self.cam, self.perturb = mujoco.MjvCamera(), mujoco.MjvPerturb()

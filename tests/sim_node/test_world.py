@@ -82,7 +82,7 @@ def test_many_deleted_at_once_leave_the_rest_as_it_was():
     world.step(0.1)
     before = {b.name: b for b in world.scene().bodies}
     gone = [f"can{i}" for i in range(0, 40, 2)]
-    assert set(world.delete([*gone, "nobody"]).names) == set(gone)
+    assert set(world.delete([*gone, "missing"]).names) == set(gone)
     after = {b.name: b for b in world.scene().bodies}
     assert after == {name: value for name, value in before.items() if name not in gone}
     world.step(1.0)
@@ -118,10 +118,10 @@ def test_a_hand_lets_go_and_things_fall():
     world.spawn([order("cup1", "cup", pose(0, 0), commit=3)])
     world.step(1.0)
     moved = world.move(
-        [hand("cup1", pose(2, 0, 0.5)), hand("nobody", pose(0, 0)), hand("cup1", pose(1, 0, 0.4))]
+        [hand("cup1", pose(2, 0, 0.5)), hand("missing", pose(0, 0)), hand("cup1", pose(1, 0, 0.4))]
     )
     assert [body.name for body in moved.bodies] == ["cup1"]
-    assert "no body named nobody" in moved.failed["nobody"]
+    assert "no body named missing" in moved.failed["missing"]
     assert not body(world, "cup1").resting
     world.step(1.0)
     cup = body(world, "cup1")
@@ -200,7 +200,7 @@ def test_reset_brings_everything_back_to_the_map():
 def test_others_hear_of_us_while_much_is_made(monkeypatch):
     monkeypatch.setattr(build, "_PATIENCE_S", 0.001)
     beats = []
-    world = World(meanwhile=lambda: beats.append(None))
+    world = World(while_waiting=lambda: beats.append(None))
     world.spawn([order(f"can{i}", "can", pose(0.5 * (i % 15), 0.5 * (i // 15))) for i in range(200)])
     assert len(world) == 200
     assert beats
@@ -210,12 +210,12 @@ def test_time_goes_on_while_much_is_made(monkeypatch):
     monkeypatch.setattr(build, "_PATIENCE_S", 0.001)
     told = []
 
-    def meanwhile():
+    def while_waiting():
         if told:
             world.step(0.01)
             told.append(world.poses())
 
-    world = World(meanwhile=meanwhile)
+    world = World(while_waiting=while_waiting)
     world.spawn([order("shelf1", "shelf", pose(5, 5), fixed=True), order("can1", "can", pose(0, 0, 50))])
     world.step(0.1)
     told.append(world.poses())
@@ -338,11 +338,11 @@ def test_names_that_are_given_are_nobody_elses(tmp_path):
 
 
 def test_a_world_that_does_not_compile_is_refused(tmp_path):
-    with pytest.raises(BadFile, match="not an MJCF scene"):
+    with pytest.raises(BadFile, match="cannot compile world file"):
         read_mjcf(tmp_path / "missing.xml")
     broken = tmp_path / "broken.xml"
     broken.write_text("<mujoco><worldbody><geom type='blob'/></worldbody></mujoco>")
-    with pytest.raises(BadFile, match="not an MJCF scene that compiles"):
+    with pytest.raises(BadFile, match="cannot compile world file"):
         read_mjcf(broken)
 
 
@@ -424,11 +424,11 @@ def test_what_else_is_moved_does_not_place_a_robot(rover):
 @pytest.mark.parametrize(
     ("asked", "why"),
     [
-        (DriveBase(name="nobody", to=((1.0, 0.0),)), "the scene has no body named nobody"),
+        (DriveBase(name="missing", to=((1.0, 0.0),)), "the scene has no body named missing"),
         (DriveBase(name="shelf_1", to=((1.0, 0.0),)), "shelf_1 cannot drive: its model has no velocity"),
         (DriveBase(name="rover", to=((1.0, 0.0), (900.0, 900.0))), r"\(900, 900\) is too far; .* 1000 m"),
     ],
-    ids=["nobody", "a shelf", "too far"],
+    ids=["missing", "a shelf", "too far"],
 )
 def test_what_cannot_be_driven_there_has_a_reason(rover, asked, why):
     with pytest.raises(Refused, match=why):
@@ -444,7 +444,7 @@ def test_a_base_that_has_fallen_or_is_held_does_not_drive(rover):
     rover.drive(DriveBase(name="rover", to=()))  # to stop is possible all the same
     rover.move([hand("rover", pose(2.0, 0.0))])
     rover._engine.records["rover"].ghost = True
-    with pytest.raises(Refused, match="another body is in its place"):
+    with pytest.raises(Refused, match="another body occupies its place"):
         rover.drive(DriveBase(name="rover", to=((1.0, 0.0),)))
 
 
@@ -511,7 +511,7 @@ def test_the_extent_is_that_of_all_bodies():
 def test_the_overview_looks_at_all_bodies():
     world = World()
     world.spawn([order("box1", "", pose(50.0, 20.0), size_m=(4.0, 4.0, 3.0))])
-    world.look_over()
+    world.aim_overview_camera()
     (camera,) = world.cameras()
     view = overview(*world.extent(), 4, 3, fovy_rad=base_scene.OVERVIEW_FOVY_RAD)
     assert camera.pose.position_m == pytest.approx(view.map_from_camera[:3, 3])
@@ -566,10 +566,10 @@ def test_an_order_to_move_counts_as_tried_also_where_it_fails():
     failed = world.move(
         [
             Placement(name="cup1", pose=pose(0, 2000), commit=5),
-            Placement(name="nobody", pose=pose(0, 2), commit=6),
+            Placement(name="missing", pose=pose(0, 2), commit=6),
         ]
     ).failed
-    assert failed.keys() == {"cup1", "nobody"}
+    assert failed.keys() == {"cup1", "missing"}
     assert commits(world) == {"cup1": 5}
     world.move([Placement(name="cup1", pose=pose(0, 3))])
     assert commits(world) == {"cup1": 5}
@@ -590,7 +590,7 @@ def test_reset_puts_joints_back_and_leaves_what_is_held():
 
 def test_bodies_look_like_their_models_and_a_world_s_own_like_their_parts(rover):
     rover.spawn([order("can1", "can", pose(3, 3))])
-    found = rover.surfaces(["can1", "shelf_1", "nobody"]).surfaces
+    found = rover.surfaces(["can1", "shelf_1", "missing"]).surfaces
     assert found.keys() == {"can1", "shelf_1"}
     assert found["can1"] == surface_of(library_model("can", None))
     shelf = np.frombuffer(found["shelf_1"].points, "<f4").reshape(-1, 3)
@@ -602,7 +602,7 @@ def test_bodies_look_like_their_models_and_a_world_s_own_like_their_parts(rover)
 def test_names_that_are_not_there_are_not_deleted_and_each_is_once():
     world = World()
     world.spawn([order("cup1", "cup", pose(0, 0))])
-    assert world.delete(["cup1", "nobody", "cup1"]).names == ("cup1",)
+    assert world.delete(["cup1", "missing", "cup1"]).names == ("cup1",)
     assert world.delete(["cup1"]).names == ()
 
 

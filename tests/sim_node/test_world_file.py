@@ -47,7 +47,7 @@ def test_a_body_has_the_model_of_its_class_and_is_held_if_that_is_fixed(tmp_path
 
 
 def row(name, model, *, fixed=False):
-    """A class of things in space."""
+    """Return a class of things in space."""
     return ClassInfo(
         name=name, iri=f"x#{name}", parents=(), ancestors=(), labels={}, spatial=True, place=False,
         fixed=fixed, model=model,
@@ -67,7 +67,7 @@ def test_its_camera_sees_all_of_it_from_near(tmp_path):
 
 
 def pixel_of(point, view):
-    """Column, row and depth [m] at which a view sees a point."""
+    """Return column, row and depth [m] of a point in a view."""
     seen = np.linalg.inv(view.map_from_camera) @ (*point, 1.0)
     column, row, _ = view.intrinsics @ seen[:3] / seen[2]
     return column, row, seen[2]
@@ -125,22 +125,22 @@ def test_what_is_no_world_is_told(tmp_path, content):
 
 
 def test_a_missing_world_is_told(tmp_path):
-    with pytest.raises(BadFile, match="cannot be read"):
+    with pytest.raises(BadFile, match="cannot read"):
         open_world(tmp_path / "none.xml", Models())
 
 
 def test_mjcf_that_refers_to_what_it_does_not_have_is_refused_as_it_is_read(tmp_path):
-    """A copy of such a specification compiles: it has lost the pair."""
+    """A copy of such a specification compiles, because it has lost the pair."""
     path = tmp_path / "world.xml"
     body = '<body name="a"><geom name="a" size="0.1"/></body>'
     pair = '<contact><pair geom1="a" geom2="b"/></contact>'
     path.write_text(f"<mujoco><worldbody>{body}</worldbody>{pair}</mujoco>")
-    with pytest.raises(BadFile, match="not an MJCF scene that compiles: Error: geom 'b' not found"):
+    with pytest.raises(BadFile, match=r"cannot compile world file .*: Error: geom 'b' not found"):
         open_world(path, Models())
 
 
 def test_a_world_that_is_too_large_for_mujocos_estimate_is_refused_with_what_helps(tmp_path, monkeypatch):
-    """Of 5 000 bodies, which take seconds to fail."""
+    """A world of 5 000 bodies, which takes seconds to fail."""
 
     class Large:
         @staticmethod
@@ -149,6 +149,6 @@ def test_a_world_that_is_too_large_for_mujocos_estimate_is_refused_with_what_hel
 
     monkeypatch.setattr(base_scene.mujoco, "MjSpec", Large)
     with pytest.raises(
-        BadFile, match=r'Could not allocate memory; say in the file .* <size memory="200M"/>$'
+        BadFile, match=r'Could not allocate memory; set the limit in the file: <size memory="200M"/>$'
     ):
         base_scene.read_mjcf(tmp_path / "world.xml")

@@ -74,5 +74,5 @@ def test_a_world_is_compiled_no_more_often_than_it_must(tmp_path, monkeypatch):
 def test_a_world_that_does_not_compile_is_refused_all_the_same(tmp_path):
     path = tmp_path / "world.xml"
     path.write_text(WORLD.replace('size="0.1"', 'size="-1"'))
-    with pytest.raises(BadFile, match="not an MJCF scene that compiles"):
+    with pytest.raises(BadFile, match="cannot compile world file"):
         require_world(path, build)

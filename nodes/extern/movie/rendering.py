@@ -18,7 +18,7 @@ from semmap.nodes.extern.movie.storyboard import Scene, interpolate, scenes, ste
 from semmap.nodes.kb_node.storage.history import Past
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.replay.spans import span_of
-from semmap.nodes.sim_node.vision.film_set import FilmSet
+from semmap.nodes.sim_node.vision.offscreen_scene import OffscreenScene
 from semmap.nodes.sim_node.vision.view import View
 from semmap.schemas import errors
 from semmap.schemas.entities import Entity, Vector
@@ -50,7 +50,7 @@ def render_video(journal: Journal, file: Path, wanted: Film, tell: Callable[[str
             " period, a higher --speed or a lower --longest"
         )
     box = None if wanted.place is None else _bounds_of(start, wanted.place)
-    stage = FilmSet(wanted.world, models=wanted.models, data=wanted.data, graphics=wanted.graphics)
+    stage = OffscreenScene(wanted.world, models=wanted.models, data=wanted.data, graphics=wanted.graphics)
     with _open_container(file) as container:
         stream = container.add_stream("libx264", rate=Fraction(wanted.fps), options=_QUALITY)
         if not isinstance(stream, av.VideoStream):
@@ -79,13 +79,13 @@ def _open_container(file: Path) -> av.container.OutputContainer:
         raise errors.BadFile(f"{file} cannot be written: {error.strerror}") from None
 
 
-def _apply(stage: FilmSet, scene: Scene) -> None:
+def _apply(stage: OffscreenScene, scene: Scene) -> None:
     """Add the new bodies of a scene; bodies with a new shape are replaced."""
     stage.remove(entity.name for entity in scene.add)
     stage.add([_order(entity) for entity in scene.add])
 
 
-def _render(stage: FilmSet, scene: Scene, view: View, fps: int) -> Iterator[tuple[Rgb, int]]:
+def _render(stage: OffscreenScene, scene: Scene, view: View, fps: int) -> Iterator[tuple[Rgb, int]]:
     """Yield the images of a scene, each with its number of frames."""
     for share, frames in steps(scene, fps):
         if share == 1.0:

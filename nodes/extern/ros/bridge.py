@@ -148,7 +148,7 @@ class Bridge:
     def _fetch_some(self, cache: SurfaceCache, kinds: dict[str, Kind]) -> None:
         def on_surfaces(done: Future[Surfaces]) -> None:
             if done.exception() is not None:
-                cache.give_up(kinds.values())
+                cache.reset_requests(kinds.values())
                 return
             for name, surface in done.result().surfaces.items():
                 cache.take(kinds[name], surface)

@@ -18,7 +18,7 @@ from typing import Any, Final, Literal, TypeVar
 from msgspec import Struct
 
 from semmap.nodes import bus
-from semmap.nodes.drawing.bending import Bends, bends_of
+from semmap.nodes.drawing.articulation import JointPositions, joint_positions_of
 from semmap.nodes.drawing.scene_state import SceneState
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.sparql_client import StandingQuery
@@ -94,10 +94,10 @@ class Live:
         self._poses_received = 0
         self._entities: dict[str, Entity] = {}
         self._poses: dict[str, Pose] = {}
-        self._joint_positions: dict[str, Bends] = {}
+        self._joint_positions: dict[str, JointPositions] = {}
         self.entities: Mapping[str, Entity] = MappingProxyType(self._entities)
         self.poses: Mapping[str, Pose] = MappingProxyType(self._poses)
-        self.joint_positions: Mapping[str, Bends] = MappingProxyType(self._joint_positions)
+        self.joint_positions: Mapping[str, JointPositions] = MappingProxyType(self._joint_positions)
         """The joints that are not at 0, and their positions, by body."""
         self._listeners: list[Listener] = []
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -215,7 +215,7 @@ class Live:
             if self.scene is not None:
                 self._poses.update((body.name, body.pose) for body in self.scene.bodies)
                 self._joint_positions.update(
-                    (body.name, bends_of(body.joints)) for body in self.scene.bodies if body.joints
+                    (body.name, joint_positions_of(body.joints)) for body in self.scene.bodies if body.joints
                 )
             yield LiveEvent(kind="scene")
         self._poses_received += updates.poses_received
@@ -267,7 +267,7 @@ class _Updates:
         self.commits: list[Commit] = []
         self.scene: _Bodies | None = None
         self.moved: dict[str, Pose] = {}
-        self.joint_positions: dict[str, Bends] = {}
+        self.joint_positions: dict[str, JointPositions] = {}
         self.poses_received = 0
         self.health: dict[str, Health] = {}
         self.offline_reason: str | None = None
@@ -380,7 +380,7 @@ class _Subscriber:
             self._updates.moved.update(moved)
             bodies = (self._scene.bodies[name] for name in moved)
             self._updates.joint_positions.update(
-                (body.name, bends_of(body.joints)) for body in bodies if body.joints
+                (body.name, joint_positions_of(body.joints)) for body in bodies if body.joints
             )
             self._schedule()
 

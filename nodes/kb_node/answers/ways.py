@@ -10,7 +10,7 @@ from semmap.nodes.kb_node.answers.plans import plan_of
 from semmap.nodes.kb_node.relations.selection import only_meant
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import Past
-from semmap.nodes.navigation.ways import find_way, position
+from semmap.nodes.navigation.path_planning import find_path, parse_position
 from semmap.schemas.bridge import PlanOf, WayOf
 from semmap.schemas.entities import Entity
 from semmap.schemas.moments import When
@@ -50,8 +50,8 @@ class Ways:
 
         def way() -> Way:
             there = entities()
-            ends = [position(word) or _named(there, word) for word in (query.from_, query.to)]
-            return find_way(plan_of(there, query.walls), ends[0], ends[1], query.radius, query.heights)
+            ends = [parse_position(word) or _named(there, word) for word in (query.from_, query.to)]
+            return find_path(plan_of(there, query.walls), ends[0], ends[1], query.radius, query.heights)
 
         return self._aside(way)
 

@@ -1,1 +1,1 @@
-"""The full pose of what is recognised: its class's model aligned with what was seen of it."""
+"""Fitting: aligns the models of classes with observed things."""

@@ -1,4 +1,4 @@
-"""How well a placed model and what was seen bear one another out."""
+"""Measures how well a placed model and the observed points agree."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from semmap.nodes.perception_node.views.boxes import Numbers
 from semmap.schemas import errors
 
 _FACING = 0.25
-"""What is seen at a flatter angle than this (cosine) is left out: there depth is not to be relied on."""
+"""Surfaces seen at a flatter angle (cosine) are ignored, since their depth is unreliable."""
 _BLOCK_PX = 6.0
 _NEAREST_M = 0.05
 
 
-def borne_out(points: Numbers, model: ModelSurface, pose: Numbers, within_m: float) -> float:
-    """The share of what was seen, (N, 3) map frame, that is on the model's surface; soft at the edge."""
+def verified_share(points: Numbers, model: ModelSurface, pose: Numbers, within_m: float) -> float:
+    """Return the share of observed points (N, 3), map frame, on the model's surface, softly thresholded."""
     own = (points - pose[:3, 3]) @ pose[:3, :3]
     away, near = cKDTree(model.points).query(own)
     off = np.abs(((own - model.points[near]) * model.normals[near]).sum(axis=1))
@@ -30,17 +30,17 @@ def borne_out(points: Numbers, model: ModelSurface, pose: Numbers, within_m: flo
 
 
 def spacing_m(model: ModelSurface) -> float:
-    """How far apart a model's points are [m]."""
+    """Return the distance between a model's points [m]."""
     a, b, c = model.size_m
     return float(np.sqrt(2.0 * (a * b + b * c + c * a) / len(model.points)))
 
 
-def not_seen_through(
+def visible_share(
     model: ModelSurface, pose: Numbers, clouds: Sequence[Cloud], within_m: float
 ) -> float | None:
-    """The share of the model's surface before the cameras at which something is; None where none can tell.
+    """Return the share of the model's camera-facing surface at which something was seen; None if unknown.
 
-    What is hidden by something nearer counts neither way.
+    Surface hidden by nearer things is ignored.
     """
     there, through = 0.0, 0.0
     points = model.points @ pose[:3, :3].T + pose[:3, 3]
@@ -59,7 +59,7 @@ def not_seen_through(
 
 
 def _gaps(points: Numbers, whole: Numbers, cloud: Cloud, within_m: float) -> NDArray[np.float64]:
-    """How far behind the points (camera frame) that are not hidden by the model itself something was seen."""
+    """Return how far behind visible model points (camera frame) a surface was measured [m]."""
     if cloud.intrinsics is None:
         raise errors.InternalError("the intrinsics of the camera are unknown")
     height, width = cloud.points_camera.shape[:2]

@@ -15,18 +15,18 @@ from semmap.schemas.errors import BadFile
 SHIPPED = Path(__file__).with_name("model_surfaces.npz")
 
 _FINE = 2000.0
-"""So many steps a side of a model's box has: half a millimetre in a metre."""
+"""Points are stored in this many steps per side of the box: half a millimetre in a metre."""
 _STEEP = 31.0
 _SQUARE = 1.12
-"""What is longer than wide by more is not round, and the same after half a turn at most."""
+"""A model that is longer than wide by more has at most two-fold symmetry."""
 
 
 @dataclass(frozen=True)
 class ModelSurface:
     """A model of a class: `points` (N, 3) [m] and outward unit `normals` (N, 3) in its own frame.
 
-    That is the bottom centre, x to the front, z up. `size_m` (3,): what it measures along its axes.
-    `fold`: how many turns about z leave it as it is: 0 for any (it is round), 1 for a whole turn only.
+    The origin is the bottom centre, x to the front, z up. `size_m` (3,): size along its axes. `fold`:
+    rotational symmetry about z: 0 for round, 1 for none.
     """
 
     points: Numbers
@@ -35,7 +35,7 @@ class ModelSurface:
     fold: int = 1
 
     def scaled(self, size_m: Numbers) -> ModelSurface:
-        """The same stretched to another size."""
+        """Return the model stretched to a size."""
         factor = size_m / self.size_m
         normals = self.normals / factor
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -45,7 +45,7 @@ class ModelSurface:
         )
 
     def rotated(self, rotation: Numbers) -> ModelSurface:
-        """The same turned by (3, 3) and put down again with its bottom centre where it was."""
+        """Return the model rotated by (3, 3), with its bottom centre at the origin."""
         points = self.points @ rotation.T
         low, high = points.min(axis=0), points.max(axis=0)
         middle = (low + high) / 2.0
@@ -55,11 +55,11 @@ class ModelSurface:
 
 
 ClassSurfaces = Mapping[str, Sequence[ModelSurface]]
-"""The models of each class that has any, its usual one first."""
+"""The models of each class, the usual one first."""
 
 
 def save(surfaces: ClassSurfaces, path: Path) -> None:
-    """Write them as a compressed NumPy archive: points in shares of their box, normals in few steps."""
+    """Write the models as a compressed NumPy archive, with quantised points and normals."""
     rows = [(class_, model) for class_, models in surfaces.items() for model in models]
     points = [np.round(model.points / model.size_m * _FINE).astype(np.int16) for _, model in rows]
     normals = [np.round(model.normals * _STEEP).astype(np.int8) for _, model in rows]
@@ -75,7 +75,7 @@ def save(surfaces: ClassSurfaces, path: Path) -> None:
 
 
 def load(path: Path = SHIPPED) -> dict[str, list[ModelSurface]]:
-    """Read what `save` wrote. Raises BadFile for anything else."""
+    """Read models that `save` wrote. Raises BadFile if they are invalid."""
     found: dict[str, list[ModelSurface]] = {}
     try:
         with np.load(path, allow_pickle=False) as arrays:
@@ -87,11 +87,11 @@ def load(path: Path = SHIPPED) -> dict[str, list[ModelSurface]]:
                 across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-9)
                 found.setdefault(class_, []).append(ModelSurface(own * size_m, across, size_m, fold))
     except (OSError, EOFError, ValueError, KeyError) as error:
-        raise BadFile(f"{path} does not hold the surfaces of models: {error}") from None
+        raise BadFile(f"{path} has no valid surfaces of models: {error}") from None
     return found
 
 
 @lru_cache(maxsize=1)
 def shipped() -> dict[str, list[ModelSurface]]:
-    """What ships with perception."""
+    """Return the models that ship with semmap."""
     return load()

@@ -1,4 +1,4 @@
-"""The thread that fits models, one thing at a time, beside that of the frames."""
+"""The worker thread that fits models, one thing at a time."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from semmap.nodes.perception_node.fitting.fit import Fit
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.pipeline import Look
+from semmap.nodes.perception_node.pipeline import FrameResult
 from semmap.schemas import errors
 from semmap.schemas.entities import Pose
 from semmap.schemas.perception import Observation
@@ -19,9 +19,9 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Request:
-    """An entity to be fitted: `seen` is the `number`-th observation (from 1) of a look at `clouds`.
+    """An entity to be fitted: `seen` is the `number`-th observation (from 1) of a frame of `clouds`.
 
-    `box` is where its track had it then.
+    `box` is the pose of its track at that time.
     """
 
     name: str
@@ -29,19 +29,19 @@ class Request:
     seen: Observation
     number: int
     clouds: Sequence[Cloud]
-    found: Look
+    found: FrameResult
 
 
 FitTo = Callable[[Request], Fit | None]
 
 
 class FitWorker:
-    """Fits what it is asked for. Who asks while it is busy is told so, and asks again with a newer look."""
+    """Fits requested things on its own thread. A request is ignored while it is busy."""
 
     def __init__(
         self, fit: FitTo, on_fit: Callable[[Request, Fit | None], None], complain: Callable[[str], None]
     ) -> None:
-        """`on_fit` and `complain` are called on the worker's thread; `complain(text)` says what is wrong."""
+        """Start the thread. `on_fit(request, fit)` and `complain(text)` are called on it."""
         self._fit = fit
         self._on_fit = on_fit
         self._complain = complain
@@ -53,19 +53,19 @@ class FitWorker:
 
     @property
     def busy(self) -> bool:
-        """Whether a fit is under way, or asked for."""
+        """Return whether a fit is requested or in progress."""
         with self._changed:
             return self._request is not None
 
     def ask(self, request: Request) -> None:
-        """Have this fitted; nothing happens while it is busy."""
+        """Request a fit; ignored while the worker is busy."""
         with self._changed:
             if self._request is None:
                 self._request = request
                 self._changed.notify()
 
     def close(self) -> None:
-        """Let the fit in hand be finished, and no other be begun."""
+        """Finish the current fit and stop."""
         with self._changed:
             self._stopping = True
             self._changed.notify()

@@ -1,4 +1,4 @@
-"""The worker thread: it processes the newest frames and never blocks the node or the session."""
+"""The worker thread that processes the newest frames without blocking the node or the session."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from semmap.nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, 
 from semmap.nodes.perception_node.input.frames import Frames, Pair, read_cloud, read_masks
 from semmap.nodes.perception_node.input.masks import Masks
 from semmap.nodes.perception_node.input.projection import thinning
-from semmap.nodes.perception_node.pipeline import Look
+from semmap.nodes.perception_node.pipeline import FrameResult
 from semmap.schemas.errors import BadRequest
 from semmap.schemas.perception import DetectedMasks
 from semmap.schemas.scenes import CameraFrame
@@ -20,22 +20,22 @@ log = logging.getLogger(__name__)
 
 _TAKE_S = 0.5
 
-Seen = Callable[[Sequence[Cloud], Look, float], None]
-"""Told of clouds of one moment, what they show, and how long the look took [s]."""
+Seen = Callable[[Sequence[Cloud], FrameResult, float], None]
+"""Callback with the clouds of one moment, the result, and the processing time [s]."""
 
 
 class FrameWorker:
-    """Looks at frames as fast as it can; those that come meanwhile are passed over."""
+    """Processes frames as fast as possible; frames that arrive in between are skipped."""
 
     def __init__(
         self,
-        look: Callable[[Sequence[Cloud], Sequence[Masks | None]], Look],
+        look: Callable[[Sequence[Cloud], Sequence[Masks | None]], FrameResult],
         on_look: Seen,
         complain: Callable[[str], None],
     ) -> None:
-        """`look(clouds, masks)` tells what they show.
+        """Start the thread. `look(clouds, masks)` processes one frame.
 
-        `on_look` and `complain` are called on the worker's thread; `complain(text)` says what is wrong.
+        `on_look` and `complain(text)` are called on the worker's thread.
         """
         self._look = look
         self._on_look = on_look
@@ -46,19 +46,19 @@ class FrameWorker:
         self._thread.start()
 
     def close(self) -> None:
-        """Let the look in hand be finished, and no other be begun."""
+        """Finish the current frame and stop."""
         self._stopping.set()
         self._thread.join()
 
     def keep(self, frame: CameraFrame, read: Callable[[], bytes]) -> None:
-        """A plane of a camera has come. On any thread; at once."""
+        """Store a plane of a camera. Thread-safe, does not block."""
         try:
             self._frames.put(frame, read)
         except BadRequest as error:
             self._complain(error.text)
 
     def keep_masks(self, found: DetectedMasks) -> None:
-        """A detector has looked at a camera's frame. On any thread; at once."""
+        """Store a detector's masks of a camera frame. Thread-safe, does not block."""
         try:
             self._frames.put_masks(found)
         except BadRequest as error:
@@ -95,7 +95,7 @@ class FrameWorker:
         step = thinning(frame.width, frame.height)
         if step > 1:
             size = f"{frame.width} x {frame.height} pixels"
-            self._complain(f"camera {frame.camera}: of {size}, one of {step} x {step} is used")
+            self._complain(f"camera {frame.camera}: {size} reduced by a factor of {step}")
         if cloud.measured < FEWEST_POINTS:
             self._complain(
                 f"camera {frame.camera} has no depth values from {NEAREST_M:g} to {FARTHEST_M:g} m"

@@ -1,4 +1,4 @@
-"""From published camera planes to clouds: pairs colour with depth and validates both."""
+"""Pairs colour and depth planes of cameras, validates them, and converts them to clouds."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Cloud, Transform
-from semmap.nodes.perception_node.input.masks import Masks, of_image, of_runs
+from semmap.nodes.perception_node.input.masks import Masks, masks_from_image, masks_from_runs
 from semmap.nodes.perception_node.input.projection import cloud_of, fits, is_pose, thinned, thinning
 from semmap.schemas.errors import BadRequest
 from semmap.schemas.perception import DetectedMasks
@@ -23,22 +23,22 @@ from semmap.schemas.scenes import CameraFrame
 T = TypeVar("T", np.float32, np.uint8)
 
 _SILENT_S = 2.0
-"""A camera that was silent for so long may begin with another clock."""
+"""A camera that was silent for this long may restart with another clock."""
 _HELD = 8
-"""So many frames of a camera with a detector wait for their masks."""
+"""Number of frames of a camera that wait for masks of a detector."""
 _LATE_S = 1.0
-"""So long the others of a moment wait for a camera."""
+"""Maximum time to wait for other cameras of the same moment."""
 
 
 class Plane(NamedTuple):
-    """One plane of one camera, its pixels not read yet."""
+    """One plane of one camera; `read` returns its pixels."""
 
     frame: CameraFrame
     read: Callable[[], bytes]
 
 
 class Pair(NamedTuple):
-    """The two planes of one frame, and what a detector of one's own has found in it."""
+    """The two planes of one frame, and a detector's masks."""
 
     rgb: Plane
     depth: Plane
@@ -46,16 +46,16 @@ class Pair(NamedTuple):
 
     @property
     def stamp_ns(self) -> int:
-        """When it was taken."""
+        """Return the time of the frame."""
         return self.depth.frame.stamp_ns
 
 
 class Frames:
-    """The newest frame of each camera. Filled by other threads than the one that takes.
+    """The newest frame of each camera. Thread-safe.
 
-    Cameras that were once heard of with the same stamp see together, and are waited for a little. Cameras
-    with clocks of their own take turns. Frames of a camera of whose pictures a detector tells masks wait for
-    these, until it falls silent.
+    Cameras that once had the same stamp are synchronised, and wait for each other for a short time. Cameras
+    with their own clocks take turns. If a detector sends masks for a camera, its frames wait for them until
+    the detector falls silent.
     """
 
     def __init__(self) -> None:
@@ -71,21 +71,21 @@ class Frames:
         self._held: dict[str, deque[Pair]] = {}
 
     def put(self, frame: CameraFrame, read: Callable[[], bytes]) -> None:
-        """A plane has come. Raises BadRequest for one of the past."""
+        """Add a plane. Raises BadRequest if its stamp is not increasing."""
         key, now = (frame.camera, frame.encoding), time.monotonic()
         with self._news:
             before = self._planes.get(key)
             speaking = before is not None and now - before[1] < _SILENT_S
             if before is not None and speaking and frame.stamp_ns <= before[0].frame.stamp_ns:
                 raise BadRequest(
-                    f"camera {frame.camera}: frame ignored: its stamp is older than the last;"
-                    " stamps must increase"
+                    f"camera {frame.camera}: frame ignored: its stamp is not newer than the last; stamps must"
+                    " increase"
                 )
             self._planes[key] = Plane(frame, read), now
             self._pair_up(frame)
 
     def put_masks(self, found: DetectedMasks) -> None:
-        """A detector has looked at a frame. Raises BadRequest where that frame is not at hand."""
+        """Add a detector's masks of a frame. Raises BadRequest if that frame is not available."""
         camera, now = found.camera, time.monotonic()
         with self._news:
             first = camera not in self._masked_s
@@ -98,12 +98,12 @@ class Frames:
                 self._news.notify_all()
             elif not first:
                 raise BadRequest(
-                    f"camera {camera}: masks ignored: their frame is not at hand; masks carry the stamp_ns of"
-                    f" their frame, in order, and come within {_HELD} frames"
+                    f"camera {camera}: masks ignored: no frame with their stamp_ns; send masks in order and"
+                    f" within {_HELD} frames"
                 )
 
     def take(self, timeout_s: float) -> tuple[Pair, ...]:
-        """What cameras saw at one moment, the newest there is, in the order of their names; maybe nothing."""
+        """Return the newest frames of one moment, ordered by camera; empty after the timeout."""
         deadline = time.monotonic() + timeout_s
         with self._news:
             while not self._pairs:
@@ -130,7 +130,7 @@ class Frames:
         depth, _ = self._planes.get((frame.camera, "depth32f"), (None, 0.0))
         if rgb is None or depth is None or rgb.frame.stamp_ns != depth.frame.stamp_ns:
             return
-        if frame.stamp_ns == self._taken_ns:  # too late for its look, but the next ones wait for it
+        if frame.stamp_ns == self._taken_ns:  # too late for this moment, but later frames wait for it
             for camera in (*self._taken, frame.camera):
                 self._partners.setdefault(camera, set()).update(self._taken, {frame.camera})
             return
@@ -141,14 +141,14 @@ class Frames:
         self._news.notify_all()
 
     def _next(self) -> set[str]:
-        """The cameras of one moment: those whose turn was longest ago or, of these, the newest."""
+        """Return the cameras of one moment: the ones served longest ago and, among these, the newest."""
         current = self._pairs.keys() - self._outdated()
         first = min(current, key=lambda name: (self._last_turn.get(name, 0), -self._pairs[name].stamp_ns))
         stamp_ns = self._pairs[first].stamp_ns
         return {camera for camera, pair in self._pairs.items() if pair.stamp_ns == stamp_ns}
 
     def _outdated(self) -> set[str]:
-        """Cameras of which there is a frame older than that of another that sees together with them."""
+        """Return cameras whose frame is older than that of a synchronised camera."""
         return {
             camera
             for camera, pair in self._pairs.items()
@@ -162,7 +162,7 @@ class Frames:
 
 
 def read_cloud(pair: Pair) -> Cloud:
-    """The points of a frame, thinned if they are too many. Raises BadRequest for one that makes no sense."""
+    """Return the points of a frame, subsampled if there are too many. Raises BadRequest if it is invalid."""
     frame = pair.depth.frame
     colour = pair.rgb.frame
     if (frame.width, frame.height) != (colour.width, colour.height):
@@ -194,8 +194,8 @@ def _intrinsics(frame: CameraFrame) -> Transform:
     if numbers.size == 9 and fits(numbers.reshape(3, 3), frame.width, frame.height):
         return numbers.reshape(3, 3)
     raise BadRequest(
-        f"camera {frame.camera}: the intrinsics {frame.intrinsics} do not fit a picture of {frame.width} x"
-        f" {frame.height} pixels; they are fx 0 cx 0 fy cy 0 0 1"
+        f"camera {frame.camera}: the intrinsics {frame.intrinsics} do not fit an image of {frame.width} x"
+        f" {frame.height} pixels; the format is fx 0 cx 0 fy cy 0 0 1"
     )
 
 
@@ -210,7 +210,7 @@ def _pose(frame: CameraFrame) -> Transform:
 
 
 def read_masks(pair: Pair) -> Masks | None:
-    """What a detector has found in a frame, as fine as its cloud. Raises BadRequest for nonsense."""
+    """Return a detector's masks at the resolution of the cloud. Raises BadRequest if they are invalid."""
     found, frame = pair.masks, pair.depth.frame
     if found is None:
         return None
@@ -218,12 +218,12 @@ def read_masks(pair: Pair) -> Masks | None:
         if (found.width, found.height) != (frame.width, frame.height):
             raise ValueError(
                 f"they are of {found.width} x {found.height} pixels,"
-                f" the picture of {frame.width} x {frame.height}"
+                f" the image of {frame.width} x {frame.height}"
             )
         if found.image is not None:
-            masks = of_image(found.image, frame.height, frame.width)
+            masks = masks_from_image(found.image, frame.height, frame.width)
         else:
-            masks = of_runs(found.masks, frame.height, frame.width)
+            masks = masks_from_runs(found.masks, frame.height, frame.width)
     except ValueError as error:
         raise BadRequest(f"camera {frame.camera}: masks ignored: {error}") from None
     return replace(masks.thinned(thinning(frame.width, frame.height)), alone=found.alone)

@@ -1,4 +1,4 @@
-"""From a depth picture to points."""
+"""Projection of a depth image to points."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from numpy.typing import NDArray
 from semmap.nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Cloud, Transform
 
 MOST_PIXELS = 640 * 480 * 3 // 2
-"""Of a picture with more, every second, third ... row and column is used."""
+"""In a larger image, only every second, third ... row and column is used."""
 _OFF_MIDDLE = 0.2
-"""Of a picture's width and height; twice or half as large a picture's middle is a half or a quarter off."""
+"""Maximum offset of the principal point, as a share of the image size, to detect scaled intrinsics."""
 _FOCAL = (0.1, 20.0)
-"""A focal length is this many times as long as its picture is wide and high: a view of 3 to 157 degrees."""
+"""Range of the focal length relative to the image size: a view of 3 to 157 degrees."""
 
 
 def fits(intrinsics: Transform, width: int, height: int) -> bool:
-    """Whether intrinsics (3, 3) may be those of a picture of this size, and not of one twice as large.
+    """Return whether intrinsics (3, 3) are plausible for an image of this size.
 
-    They are of a pinhole without skew, and its optical axis meets the middle of the picture, or nearly so.
+    They must be a pinhole without skew, with the principal point near the middle.
     """
     focal, middle, size = intrinsics[[0, 1], [0, 1]], intrinsics[:2, 2], np.array([width, height])
     return bool(
@@ -34,7 +34,7 @@ def fits(intrinsics: Transform, width: int, height: int) -> bool:
 
 
 def is_pose(transform: Transform) -> bool:
-    """Whether (4, 4) numbers are a rotation and a translation."""
+    """Return whether a (4, 4) matrix is a rotation and a translation."""
     turn = transform[:3, :3]
     return bool(
         np.isfinite(transform).all()
@@ -45,14 +45,14 @@ def is_pose(transform: Transform) -> bool:
 
 
 def thinning(width: int, height: int) -> int:
-    """Every how many-th row and column of a picture of this size is used."""
+    """Return the step between used rows and columns of an image of this size."""
     return max(1, math.ceil(math.sqrt(width * height / MOST_PIXELS)))
 
 
 def thinned(
     depth_m: NDArray[np.float32], rgb: NDArray[np.uint8], intrinsics: Transform, step: int
 ) -> tuple[NDArray[np.float32], NDArray[np.uint8], Transform]:
-    """Every `step`-th row and column of a depth and a colour picture, and the intrinsics (3, 3) of that."""
+    """Return every `step`-th row and column of depth and colour, and the matching intrinsics (3, 3)."""
     if step == 1:
         return depth_m, rgb, intrinsics
     fewer = intrinsics.copy()
@@ -71,19 +71,18 @@ def cloud_of(
     camera: str = "",
     stamp_ns: int = 0,
 ) -> Cloud:
-    """The points that a depth picture (H, W) [m] sees, 0 or NaN for nothing; the first pixel's middle is 0.5.
+    """Return the points of a depth image (H, W) [m], 0 or NaN for no measurement.
 
-    What is as near as `NEAREST_M` or as far as `FARTHEST_M` was not measured either.
-
-    Raises ValueError where picture, colours and intrinsics do not fit together.
+    The centre of the first pixel is 0.5. Depth not between `NEAREST_M` and `FARTHEST_M` is invalid. Raises
+    ValueError if depth, colours and intrinsics do not fit together.
     """
     height, width = depth_m.shape
     if rgb is not None and rgb.shape != (height, width, 3):
-        raise ValueError(f"colours of shape {rgb.shape} do not go with a depth picture of {depth_m.shape}")
+        raise ValueError(f"colours of shape {rgb.shape} do not fit a depth image of {depth_m.shape}")
     if intrinsics.shape != (3, 3) or not (
         np.isfinite(intrinsics).all() and intrinsics[0, 0] > 0 < intrinsics[1, 1]
     ):
-        raise ValueError("intrinsics are three rows of three numbers with positive focal lengths")
+        raise ValueError("intrinsics must be 3 x 3 numbers with positive focal lengths")
     right = ((np.arange(width) + 0.5 - intrinsics[0, 2]) / intrinsics[0, 0]).astype(np.float32)
     down = ((np.arange(height) + 0.5 - intrinsics[1, 2]) / intrinsics[1, 1]).astype(np.float32)
     seen = np.where((depth_m > NEAREST_M) & (depth_m < FARTHEST_M), depth_m, np.float32(np.nan))

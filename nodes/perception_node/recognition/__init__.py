@@ -1,1 +1,1 @@
-"""What a thing is, and where its hidden sides are: features, what was learnt, and the vote."""
+"""Recognition: features of things, trained models, classification, and estimation of hidden sides."""

@@ -1,6 +1,6 @@
-"""What the classifiers look at: the box of a thing, the histogram of its shape, its colours, its outline.
+"""Features of the classifiers: box, shape histogram, colours, outline and relief of a thing.
 
-`inside` is (N, 3) the thing's cells in its box, each axis from 0 to 1, with x along the longer side.
+`inside` (N, 3) are the thing's cells in its box, each axis from 0 to 1, with x along the longer side.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ _HUES = 12
 _GREYS = 4
 _BANDS = 4
 MEAN_COLOUR = slice(_HUES + _GREYS, _HUES + _GREYS + 3)
-"""Where `colour` tells the mean red, green and blue."""
+"""The columns of `colour` with the mean red, green and blue."""
 _TRIMMED = np.array([0.01, 0.03, 0.08, 0.2])
 _LEAST_M = 1e-3
 
 
 def features_of(things: Sequence[Thing]) -> list[Numbers]:
-    """Of each of `SORTS`, what there is to see of each thing: (N, their own number)."""
+    """Return for each of `SORTS` the features of all things: (N, features of this sort)."""
     inside = [_normalised(thing) for thing in things]
     one_by_one = [
         np.array([look(thing, where) for thing, where in zip(things, inside, strict=True)])
@@ -43,7 +43,7 @@ def features_of(things: Sequence[Thing]) -> list[Numbers]:
 
 
 def geometry(thing: Thing, inside: Numbers) -> Numbers:
-    """(G,) of the oriented box as far as it was seen, how it was seen, and how its points fill it."""
+    """Return features (G,) of the visible oriented box, its view, and how points fill it."""
     x, y, z = thing.box.size_m
     long, short = max(x, y), min(x, y)
     to_eye = in_frame(thing.eyes, thing.box.yaw_rad) - (thing.box.low + thing.box.high) / 2
@@ -73,7 +73,7 @@ def geometry(thing: Thing, inside: Numbers) -> Numbers:
 
 
 def shape(thing: Thing, inside: Numbers) -> Numbers:
-    """(S,) how wide the thing is at each height, how its points lie about its axis, and pair distances."""
+    """Return features (S,): width at each height, distribution around the axis, and pair distances."""
     long_short = np.sort(thing.box.size_m[:2])[::-1]
     offset = (inside[:, :2] - 0.5) * long_short / np.sqrt(long_short.prod())
     radius = np.hypot(*offset.T)
@@ -90,9 +90,9 @@ def shape(thing: Thing, inside: Numbers) -> Numbers:
 
 
 def colour(thing: Thing, inside: Numbers) -> Numbers:
-    """(C,) shares of hues and greys, and the mean colours of bands from the bottom to the top.
+    """Return features (C,): shares of hues and greys, and the mean colours of bands from bottom to top.
 
-    Zeros where the cameras see no colours.
+    Returns zeros if the cameras have no colours.
     """
     size = _HUES + _GREYS + 6 + 3 * _BANDS
     if thing.colors is None:
@@ -115,16 +115,16 @@ def colour(thing: Thing, inside: Numbers) -> Numbers:
 
 
 def _normalised(thing: Thing) -> Numbers:
-    """(N, 3) the cells in the box, each axis from 0 to 1; x is the longer side."""
+    """Return the cells (N, 3) in the box, each axis from 0 to 1; x is the longer side."""
     turned = in_frame(thing.cells, thing.box.yaw_rad)
     inside = np.clip((turned - thing.box.low) / thing.box.size_m, 0.0, 1.0)
     return inside if thing.box.size_m[0] >= thing.box.size_m[1] else inside[:, [1, 0, 2]]
 
 
 def _trimmed(inside: Numbers, size_m: Numbers) -> Numbers:
-    """(16,) logs of what a thing measures but for so much at each end, and how low it begins then.
+    """Return (16,) the logarithms of extents without outer quantiles, and the lower end that remains.
 
-    Where things touch, a scrap of the neighbour makes the box a good deal larger.
+    Where things touch, a piece of the neighbour makes the box much larger.
     """
     low, high = np.split(_quantiles(inside, np.concatenate([_TRIMMED, 1.0 - _TRIMMED])), 2)
     extents = np.column_stack([high[:, :2] - low[:, :2], high[:, 2]]) * size_m
@@ -132,7 +132,7 @@ def _trimmed(inside: Numbers, size_m: Numbers) -> Numbers:
 
 
 def _quantiles(values: Numbers, shares: Numbers) -> Numbers:
-    """(S, D) of each column of values (N, D); NumPy's own takes ten times as long."""
+    """Return quantiles (S, D) of each column of values (N, D). NumPy's function takes ten times as long."""
     ordered = np.sort(values.T, axis=1)
     at = shares * (len(values) - 1)
     below = at.astype(int)
@@ -141,7 +141,7 @@ def _quantiles(values: Numbers, shares: Numbers) -> Numbers:
 
 
 def _spans(offset: Numbers, level: NDArray[np.int64]) -> Numbers:
-    """(_SLICES, 2) extents of each slice along the box's axes."""
+    """Return the extents (_SLICES, 2) of each slice along the box's axes."""
     count = np.bincount(level, minlength=_SLICES)
     first, filled = np.cumsum(count) - count, count > 0
     by_level = np.ascontiguousarray(offset[np.argsort(level.astype(np.uint8), kind="stable")].T)
@@ -156,7 +156,7 @@ def _high(heights: Numbers) -> float:
 
 
 def _pair_distances(cells: Numbers) -> Numbers:
-    """(_PAIR_BINS,) shares of distances between pairs of points, in units of the largest."""
+    """Return a histogram (_PAIR_BINS,) of distances between pairs of points, as shares of the largest."""
     a, b = (_PICKS * len(cells)).astype(int)
     distances = np.linalg.norm(cells[a] - cells[b], axis=1)
     bins = np.minimum((distances / (distances.max() + 1e-9) * _PAIR_BINS).astype(int), _PAIR_BINS - 1)

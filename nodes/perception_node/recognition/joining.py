@@ -1,4 +1,4 @@
-"""What tells whether two neighbours are pieces of one thing."""
+"""Estimates whether two neighbours are pieces of one thing."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Floats
-from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, RecognitionModel
 from semmap.nodes.perception_node.views.boxes import Numbers
 from semmap.nodes.perception_node.views.merged_thing import Thing
 
 _BESIDE_M = 0.04
 _ABOVE_M = 0.2
-"""So far a lamp's shade may be above its foot: what is thin between them is not seen."""
+"""Maximum gap between a lamp's shade and its foot: the thin part between them is not visible."""
 
 _DOUBTFUL = 0.95
 _PIECE = 0.5
 _LEAST = 1e-3
 
 
-def near(things: Sequence[Thing], beside_m: float = _BESIDE_M) -> list[tuple[int, int]]:
-    """Pairs (a, b), a < b, that stand closer together than `beside_m` or are above one another.
+def near_pairs(things: Sequence[Thing], beside_m: float = _BESIDE_M) -> list[tuple[int, int]]:
+    """Return pairs (a, b), a < b, that are closer than `beside_m` or above one another.
 
-    No table tops, and no two that somebody else's detector took for two.
+    Table tops are excluded, and pairs that an external detector separates.
     """
     low = np.array([thing.cells.min(axis=0) for thing in things]).reshape(-1, 3)
     high = np.array([thing.cells.max(axis=0) for thing in things]).reshape(-1, 3)
@@ -36,12 +36,12 @@ def near(things: Sequence[Thing], beside_m: float = _BESIDE_M) -> list[tuple[int
     return [(int(a), int(b)) for a, b in np.argwhere(np.triu(close, 1))]
 
 
-def between(a: Thing, b: Thing, whole: Thing, held_for_one: Numbers) -> NDArray[np.float64]:
-    """(16,) what is known of a pair before it is recognised.
+def describe_pair(a: Thing, b: Thing, whole: Thing, same_thing_logits: Numbers) -> NDArray[np.float64]:
+    """Return features (16,) of a pair before recognition.
 
-    The logarithms of how many points each has, the gaps beside and above, how empty the whole's box is, how
-    likely cameras hold them for one, and the logarithms of long side, short side and height of a, b and the
-    whole. `held_for_one`: (2, A, B) of what a and b consist of, see `fusion`.
+    These are the logarithms of both point counts, the gaps beside and above, how empty the joint box is, how
+    likely cameras see one thing, and the logarithms of long side, short side and height of a, b and both.
+    `same_thing_logits`: (2, A, B) of the parts of a and b, see `fusion`.
     """
     gap = np.maximum(a.cells.min(axis=0) - b.cells.max(axis=0), b.cells.min(axis=0) - a.cells.max(axis=0))
     sizes = np.array([[*np.sort(thing.box.size_m[:2])[::-1], thing.box.size_m[2]] for thing in (a, b, whole)])
@@ -53,30 +53,33 @@ def between(a: Thing, b: Thing, whole: Thing, held_for_one: Numbers) -> NDArray[
             gap[:2].max(),
             gap[2],
             np.log(volumes[2] / volumes[:2].sum()),
-            held_for_one[0].min(),
-            held_for_one[1].max(),
+            same_thing_logits[0].min(),
+            same_thing_logits[1].max(),
             *np.log(sizes).ravel(),
         ]
     )
 
 
-def worth_trying(apart: Numbers, learnt: Learnt) -> NDArray[np.bool_]:
-    """(N,) whether one of two things (N, 2, K) is hard to recognise alone, or both are taken for the same."""
+def is_worth_joining(apart: Numbers, learnt: RecognitionModel) -> NDArray[np.bool_]:
+    """Return (N,) whether one of two things (N, 2, K) is uncertain, or both have the same class."""
     known = apart[..., nameable(learnt)]
     doubtful = (known.max(axis=2) < _DOUBTFUL) | (apart[..., learnt.classes.index(CLUTTER)] > _PIECE)
     best = known.argmax(axis=2)
     return np.asarray(doubtful.any(axis=1) | (best[:, 0] == best[:, 1]))
 
 
-def likely_one(apart: Numbers, whole: Numbers, known: Numbers, learnt: Learnt) -> Floats:
-    """(N,) probabilities that two are pieces of one thing; arguments as for `signs`."""
-    return learnt.joining.probability(signs(apart, whole, known, learnt))
+def same_thing_probability(
+    apart: Numbers, whole: Numbers, known: Numbers, learnt: RecognitionModel
+) -> Floats:
+    """Return (N,) probabilities that two things are pieces of one; arguments as for `pair_features`."""
+    return learnt.joining.probability(pair_features(apart, whole, known, learnt))
 
 
-def signs(apart: Numbers, whole: Numbers, known: Numbers, learnt: Learnt) -> Floats:
-    """(N, signs) from probabilities of the leaves of two things (N, 2, K) and of both as one (N, K).
+def pair_features(apart: Numbers, whole: Numbers, known: Numbers, learnt: RecognitionModel) -> Floats:
+    """Return features (N, F) from leaf probabilities of two things (N, 2, K) and of both as one (N, K).
 
-    `known`: (N, 16), see `between`. The order of the two does not matter: the surer one comes first.
+    `known`: (N, 16), see `describe_pair`. The order of the two does not matter: the more certain one comes
+    first.
     """
     things = nameable(learnt)
     order = np.argsort(-apart[..., things].max(axis=2), axis=1, kind="stable")[..., None]
@@ -104,6 +107,6 @@ def signs(apart: Numbers, whole: Numbers, known: Numbers, learnt: Learnt) -> Flo
     ).astype(np.float32)
 
 
-def nameable(learnt: Learnt) -> NDArray[np.bool_]:
-    """(K,) which leaves are classes of things."""
+def nameable(learnt: RecognitionModel) -> NDArray[np.bool_]:
+    """Return (K,) which leaves are classes of things."""
     return np.array([name not in (UNKNOWN, CLUTTER) for name in learnt.classes])

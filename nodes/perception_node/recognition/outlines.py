@@ -1,7 +1,7 @@
-"""The outline along a thing: how wide it is at each height, how high and wide along its length, how round.
+"""Outline features: the width at each height, height and width along the length, and roundness.
 
-How wide a slice is across the line of sight does not hang on what of it is hidden behind itself: a bottle's
-shoulders and a cup's straight sides are seen from everywhere. All things are worked out together.
+The width of a slice across the line of sight does not depend on its hidden back: a bottle's shoulders and a
+cup's straight sides are visible from everywhere. All things are computed together.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from semmap.nodes.perception_node.views.merged_thing import Thing
 
 _LEVELS, _LENGTHS, _BANDS = 20, 10, 4
 WIDTH = _LEVELS + 2 * _LENGTHS + 3 * _BANDS
-"""How many numbers tell a thing's outline."""
+"""The number of outline features."""
 
 _LEAST, _LEAST_M = 1e-9, 1e-3
 _RIDGE = 1e-6
 _FEWEST = 6
-"""Cells; a circle through fewer tells nothing."""
+"""Minimum number of cells for a circle fit."""
 _MOST_OFF, _MOST_WIDE = 1.0, 3.0
 
 
 def outlines(things: Sequence[Thing], inside: Sequence[Numbers]) -> Numbers:
-    """(N, WIDTH) of N things; `inside`: of each its cells in its box, see `features`."""
+    """Return (N, WIDTH) features of N things; `inside` are the cells in each box, see `features`."""
     owner = np.repeat(np.arange(len(things)), [len(where) for where in inside])
     x, y, z = np.concatenate(inside).T
     middle = np.array([thing.box.bottom_m[:2] for thing in things])
@@ -40,7 +40,7 @@ def outlines(things: Sequence[Thing], inside: Sequence[Numbers]) -> Numbers:
 def _across(
     things: Sequence[Thing], middle: Numbers, owner: NDArray[np.int64], from_middle: Numbers, z: Numbers
 ) -> Numbers:
-    """(N, _LEVELS) how wide [m] each thing is across the sight of the eye that sees it widest, by height."""
+    """Return (N, _LEVELS) the width [m] of each thing by height, across the widest line of sight."""
     most = max(len(thing.eyes) for thing in things)
     eyes = np.array([thing.eyes[np.minimum(np.arange(most), len(thing.eyes) - 1), :2] for thing in things])
     sight = middle[:, None] - eyes
@@ -51,7 +51,7 @@ def _across(
 
 
 def _along(owner: NDArray[np.int64], x: Numbers, y: Numbers, z: Numbers, count: int) -> Numbers:
-    """(count, 2 _LENGTHS) heights, then widths, along the longer side; the bulkier end comes first."""
+    """Return (count, 2 _LENGTHS) heights, then widths, along the longer side; the bulkier end comes first."""
     key = _key(owner, x, _LENGTHS)
     both = np.stack([y, z], axis=1)
     wide, _ = _extents(both, key, count * _LENGTHS).reshape(count, _LENGTHS, 2).transpose(2, 0, 1)
@@ -66,9 +66,9 @@ def _along(owner: NDArray[np.int64], x: Numbers, y: Numbers, z: Numbers, count: 
 
 
 def _roundness(places: Numbers, key: NDArray[np.int64], count: int) -> Numbers:
-    """(count, 3 _BANDS) of each band's cells (M, 2): how far off a circle, how large it is, how they scatter.
+    """Return (count, 3 _BANDS) per band of cells (M, 2): residual of a circle, its size, and eccentricity.
 
-    The circle is that of Kasa (1976), which takes one linear system; sizes are in those of the whole.
+    The circle is fitted as in Kasa (1976), by one linear system. Sizes are relative to the whole thing.
     """
     bands = count * _BANDS
     x, y = places.T
@@ -90,18 +90,18 @@ def _roundness(places: Numbers, key: NDArray[np.int64], count: int) -> Numbers:
     xx, yy, xy = sxx / some - (sx / some) ** 2, syy / some - (sy / some) ** 2, sxy / some - sx * sy / some**2
     apart = np.hypot(xx - yy, 2.0 * xy)
     thin = np.sqrt(np.maximum(xx + yy - apart, 0.0) / np.maximum(xx + yy + apart, _LEAST))
-    told = np.stack([np.minimum(vague, _MOST_OFF), np.minimum(2.0 * radius, _MOST_WIDE), thin], axis=1)
-    told[ones < _FEWEST] = (_MOST_OFF, 0.0, 0.0)
-    return np.asarray(told.reshape(count, _BANDS, 3).transpose(0, 2, 1).reshape(count, -1))
+    features = np.stack([np.minimum(vague, _MOST_OFF), np.minimum(2.0 * radius, _MOST_WIDE), thin], axis=1)
+    features[ones < _FEWEST] = (_MOST_OFF, 0.0, 0.0)
+    return np.asarray(features.reshape(count, _BANDS, 3).transpose(0, 2, 1).reshape(count, -1))
 
 
 def _key(owner: NDArray[np.int64], share: Numbers, parts: int) -> NDArray[np.int64]:
-    """(M,) the number of the part, from 0 to 1, that each lies in, of its own thing's."""
+    """Return (M,) the index of the part, within its thing, that contains each share from 0 to 1."""
     return np.asarray(owner * parts + np.minimum((share * parts).astype(np.int64), parts - 1))
 
 
 def _extents(values: Numbers, key: NDArray[np.int64], count: int) -> Numbers:
-    """(count, D) from the least to the largest of the values (M, D) of each key; 0 where there are none."""
+    """Return (count, D) the ranges of values (M, D) of each key; 0 for unused keys."""
     order = np.argsort(key, kind="stable")
     ordered, used = np.ascontiguousarray(values[order].T), np.bincount(key, minlength=count) > 0
     first = np.searchsorted(key[order], np.flatnonzero(used))

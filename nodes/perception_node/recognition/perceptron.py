@@ -1,4 +1,4 @@
-"""Multilayer perceptrons, evaluated: what is learnt is a few matrices."""
+"""Multilayer perceptrons, evaluation only."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 from semmap.nodes.perception_node.views.boxes import Numbers
 
 REACH = 6.0
-"""Inputs farther from their mean than so many deviations are taken for that far."""
+"""Standardised inputs are clipped to this many standard deviations."""
 
 
 @dataclass(frozen=True)
 class Perceptron:
-    """Standardised inputs, layers of rectified sums, a linear end.
+    """Standardised inputs, ReLU layers, and a linear output layer.
 
-    `mean`, `scale`: (D,) of the inputs. `weights`: one (inputs, outputs) a layer, `biases`: (outputs,).
+    `mean`, `scale`: (D,) of the inputs. `weights`: one (inputs, outputs) per layer, `biases`: (outputs,).
     """
 
     mean: Numbers
@@ -25,7 +25,7 @@ class Perceptron:
     biases: tuple[Numbers, ...]
 
     def __call__(self, inputs: Numbers) -> Numbers:
-        """(N, outputs) of inputs (N, D)."""
+        """Return outputs (N, outputs) for inputs (N, D)."""
         values = np.clip((inputs - self.mean) / self.scale, -REACH, REACH)
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
             values = np.maximum(values @ weight + bias, 0.0)
@@ -33,6 +33,6 @@ class Perceptron:
 
 
 def log_softmax(scores: Numbers) -> Numbers:
-    """(N, K) logarithms of probabilities from scores (N, K)."""
+    """Return (N, K) log probabilities for scores (N, K)."""
     shifted = scores - scores.max(axis=1, keepdims=True)
     return np.asarray(shifted - np.log(np.exp(shifted).sum(axis=1, keepdims=True)))

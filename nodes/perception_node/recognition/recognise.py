@@ -1,4 +1,4 @@
-"""From things as they were seen to observations: class, pose and size of the whole."""
+"""From visible things to observations: class, pose and complete size."""
 
 from __future__ import annotations
 
@@ -8,12 +8,16 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
+from semmap.nodes.perception_node.recognition.detector_labels import (
+    LabelMap,
+    detector_class,
+    with_detector_labels,
+)
+from semmap.nodes.perception_node.recognition.free_standing import are_free_standing
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, RecognitionModel
 from semmap.nodes.perception_node.recognition.sides import completed, side_features
-from semmap.nodes.perception_node.recognition.standing_alone import stand_alone
-from semmap.nodes.perception_node.recognition.told_names import Labels, told_class, with_names
-from semmap.nodes.perception_node.recognition.trimming import looked_at_again
-from semmap.nodes.perception_node.recognition.vote import answer, expected_sizes
+from semmap.nodes.perception_node.recognition.trimming import reclassify_trimmed
+from semmap.nodes.perception_node.recognition.vote import choose_class, expected_sizes
 from semmap.nodes.perception_node.views.boxes import Box, Numbers
 from semmap.nodes.perception_node.views.merged_thing import Thing
 from semmap.schemas.entities import Pose, orientation_from_yaw
@@ -25,23 +29,23 @@ _WORTH_SAYING = 0.01
 
 
 def recognise(
-    things: Sequence[Thing], chances: Numbers, learnt: Learnt, labels: Labels | None = None
+    things: Sequence[Thing], chances: Numbers, learnt: RecognitionModel, labels: LabelMap | None = None
 ) -> list[Observation | None]:
-    """An observation of each thing, None for one that is rather clutter than a thing.
+    """Return an observation of each thing, or None for clutter.
 
-    What stands alone is no clutter, but of no class that is known. `chances`: (N, K) the probabilities of the
-    leaves. `labels`: what detectors' own labels mean here.
+    A free-standing thing is not clutter, but of unknown class. `chances`: (N, K) the probabilities of the
+    leaves. `labels` maps labels of detectors to classes.
     """
-    labels = labels or Labels(learnt)
-    chances = _no_clutter(looked_at_again(things, chances, learnt), stand_alone(things), learnt)
-    chances = with_names(chances, things, learnt, labels)
+    labels = labels or LabelMap(learnt)
+    chances = _no_clutter(reclassify_trimmed(things, chances, learnt), are_free_standing(things), learnt)
+    chances = with_detector_labels(chances, things, learnt, labels)
     expected = expected_sizes(chances, learnt.sizes_m)
-    told = [told_class(thing, learnt, labels) for thing in things]
-    return [_observation(*row, learnt) for row in zip(things, chances, expected, told, strict=True)]
+    detected = [detector_class(thing, learnt, labels) for thing in things]
+    return [_observation(*row, learnt) for row in zip(things, chances, expected, detected, strict=True)]
 
 
-def _no_clutter(chances: Numbers, alone: NDArray[np.bool_], learnt: Learnt) -> Numbers:
-    """The same, but what stands `alone` and would be clutter is of `UNKNOWN` instead."""
+def _no_clutter(chances: Numbers, alone: NDArray[np.bool_], learnt: RecognitionModel) -> Numbers:
+    """Return probabilities in which `alone` things that would be clutter are `UNKNOWN`."""
     clutter, unknown = learnt.classes.index(CLUTTER), learnt.classes.index(UNKNOWN)
     kept = alone & (chances[:, clutter] > _CLUTTER)
     chances = chances.copy()
@@ -51,16 +55,20 @@ def _no_clutter(chances: Numbers, alone: NDArray[np.bool_], learnt: Learnt) -> N
 
 
 def _observation(
-    thing: Thing, probabilities: Numbers, expected_m: Numbers, told: tuple[str, float] | None, learnt: Learnt
+    thing: Thing,
+    probabilities: Numbers,
+    expected_m: Numbers,
+    detected: tuple[str, float] | None,
+    learnt: RecognitionModel,
 ) -> Observation | None:
     chances = dict(zip(learnt.classes, probabilities.tolist(), strict=True))
     clutter = chances.pop(CLUTTER)
     if clutter > _CLUTTER:
         return None
     chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
-    class_, probability = answer(chances, learnt.ancestors, learnt.sure)
-    if told is not None and told[1] > (learnt.sure if class_ == UNKNOWN else probability):
-        class_, probability = told
+    class_, probability = choose_class(chances, learnt.ancestors, learnt.sure)
+    if detected is not None and detected[1] > (learnt.sure if class_ == UNKNOWN else probability):
+        class_, probability = detected
     likely = sorted(chances, key=chances.__getitem__, reverse=True)[:_CANDIDATES]
     box = completed(thing, side_features(thing, expected_m), learnt.sides)
     box = _turned(box, bool(learnt.sideways[learnt.classes.index(likely[0])]))
@@ -78,16 +86,20 @@ def _observation(
     )
 
 
-def _as_shown(chances: Mapping[str, float], class_: str, learnt: Learnt) -> bool:
-    """Whether what people have shown says a class (or leaf) at least as loudly as the votes do."""
-    lessons = set() if learnt.shown is None else {lesson.leaf for lesson in learnt.shown.lessons}
+def _as_shown(chances: Mapping[str, float], class_: str, learnt: RecognitionModel) -> bool:
+    """Return whether exemplars contribute at least as much to a class (or leaf) as the votes."""
+    exemplars = (
+        set() if learnt.exemplars is None else {exemplar.leaf for exemplar in learnt.exemplars.exemplars}
+    )
     of_it = {leaf for leaf in chances if class_ in (leaf, *learnt.ancestors.get(leaf, ()))}
-    shown = sum(chances[leaf] for leaf in of_it & lessons)
-    return shown > 0.0 and shown >= sum(chances[leaf] for leaf in of_it - lessons)
+    shown = sum(chances[leaf] for leaf in of_it & exemplars)
+    return shown > 0.0 and shown >= sum(chances[leaf] for leaf in of_it - exemplars)
 
 
-def _candidates(chances: Mapping[str, float], likely: Sequence[str], learnt: Learnt) -> dict[str, float]:
-    """The likely leaves by their classes: what was shown of a class counts for it."""
+def _candidates(
+    chances: Mapping[str, float], likely: Sequence[str], learnt: RecognitionModel
+) -> dict[str, float]:
+    """Return the likely leaves by class; an exemplar counts for its class."""
     found: dict[str, float] = {}
     for leaf in likely:
         if chances[leaf] > _WORTH_SAYING:
@@ -96,7 +108,7 @@ def _candidates(chances: Mapping[str, float], likely: Sequence[str], learnt: Lea
 
 
 def _turned(box: Box, sideways: bool) -> Box:
-    """The box with its longer side along the axis where its class has it, its yaw in (-pi / 2, pi / 2]."""
+    """Return the box with its longer side along the usual axis of its class, and yaw in (-pi / 2, pi / 2]."""
     if (box.size_m[1] > box.size_m[0]) != sideways:
         box = box.quarter_turned()
     yaw = math.remainder(box.yaw_rad, math.pi)

@@ -1,7 +1,7 @@
-"""Two small pictures of a thing: how near it is, seen as the camera does, and how high, seen from above.
+"""Relief features: two small images of a thing, its nearness in the camera's view and its height from above.
 
-Both are of one size for all things, and turned so that the fuller side comes first: a handle is always on the
-same one. All things are worked out together.
+Both have a fixed size and are flipped so that the fuller side comes first, so a handle is always on the same
+side. All things are computed together.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from semmap.nodes.perception_node.views.merged_thing import Thing
 
 _SIDE = 12
 RELIEF = 2 * _SIDE * _SIDE
-"""How many cells both pictures have."""
+"""The number of cells of both images."""
 
 _LEAST, _LEAST_M = 1e-9, 1e-3
 _NEAREST, _FARTHEST = 1.8, 0.2
-"""What stands for the nearest and the farthest; nothing is 0, and the middle 1."""
+"""Values of the nearest and the farthest cell. Empty cells are 0, and the middle is 1."""
 
 
 def reliefs(things: Sequence[Thing], inside: Sequence[Numbers]) -> Numbers:
-    """(N, RELIEF) of N things; `inside`: of each its cells in its box, see `features`."""
+    """Return (N, RELIEF) features of N things; `inside` are the cells in each box, see `features`."""
     owner = np.repeat(np.arange(len(things)), [len(where) for where in inside])
     return np.concatenate([_front(things, owner), _top(things, inside, owner)], axis=1)
 
 
 def _front(things: Sequence[Thing], owner: NDArray[np.int64]) -> Numbers:
-    """As its nearest camera sees it, upright."""
+    """Return the view of the nearest camera, upright."""
     middle = np.array([thing.box.bottom_m[:2] for thing in things])
     eyes = np.array([_nearest(thing) for thing in things])
     sight = middle - eyes[:, :2]
@@ -47,7 +47,7 @@ def _front(things: Sequence[Thing], owner: NDArray[np.int64]) -> Numbers:
     window = np.maximum(np.maximum(most - least, top), _LEAST_M)
     u = (beside - (least + most)[owner] / 2.0) / window[owner] + 0.5
     nearness = 1.0 + ((near + far)[owner] / 2.0 - away) / window[owner]
-    return _picture(u, up / window[owner], nearness, owner, len(things))
+    return _image(u, up / window[owner], nearness, owner, len(things))
 
 
 def _nearest(thing: Thing) -> NDArray[np.float64]:
@@ -56,24 +56,27 @@ def _nearest(thing: Thing) -> NDArray[np.float64]:
 
 
 def _top(things: Sequence[Thing], inside: Sequence[Numbers], owner: NDArray[np.int64]) -> Numbers:
-    """From above, its longer side across."""
+    """Return the view from above, with the longer side horizontal."""
     long_short = np.array([np.sort(thing.box.size_m[:2])[::-1] for thing in things])
     share = long_short[:, 1] / np.maximum(long_short[:, 0], _LEAST_M)
     u, v, up = np.concatenate(inside).T
     v = (v - 0.5) * share[owner] + 0.5
-    return _picture(u, v, _FARTHEST + (_NEAREST - _FARTHEST) * up, owner, len(things), flips=2)
+    return _image(u, v, _FARTHEST + (_NEAREST - _FARTHEST) * up, owner, len(things), flips=2)
 
 
 def _ends(values: Numbers, owner: NDArray[np.int64], count: int) -> tuple[Numbers, Numbers]:
-    """(count,) the least and the largest of each thing's values; its cells follow one another."""
+    """Return (count,) minimum and maximum of each thing's values; the cells of a thing are contiguous."""
     first = np.searchsorted(owner, np.arange(count))
     return np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)
 
 
-def _picture(
+def _image(
     u: Numbers, v: Numbers, value: Numbers, owner: NDArray[np.int64], count: int, *, flips: int = 1
 ) -> Numbers:
-    """(count, _SIDE * _SIDE) the largest value in each cell; the fuller half comes first on so many axes."""
+    """Return (count, _SIDE * _SIDE) the maximum value of each cell, flipped on `flips` axes if needed.
+
+    The fuller half comes first on these axes.
+    """
     column, row = (np.clip((share * _SIDE).astype(np.int64), 0, _SIDE - 1) for share in (u, v))
     flat = np.zeros(count * _SIDE * _SIDE)
     np.maximum.at(flat, (owner * _SIDE + column) * _SIDE + row, np.clip(value, _FARTHEST, _NEAREST))

@@ -1,4 +1,4 @@
-"""Where the sides of the whole thing are, from those of its visible part."""
+"""Estimates the sides of the complete thing from those of its visible part."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from semmap.nodes.perception_node.views.boxes import Box, Numbers, in_frame
 from semmap.nodes.perception_node.views.merged_thing import Thing
 
 SIZE_FEATURES = slice(-3, None)
-"""The columns of the features that hold the expected size."""
+"""The columns of the features with the expected size."""
 
 _NEAR = 0.12
 _LEAST_M = 0.002
 
 
 def side_features(thing: Thing, expected_m: Numbers) -> Numbers:
-    """(5, F): the sides -x, +x, -y, +y of the visible box, then its top, as the regressors know them.
+    """Return features (5, F) of the sides -x, +x, -y, +y of the visible box, and of its top.
 
-    `expected_m` (3,): long side, short side and height that things of its likely classes have.
+    `expected_m` (3,): long side, short side and height of things of its likely classes.
     """
     size, height = thing.box.size_m, thing.box.size_m[2]
     middle = (thing.box.low + thing.box.high) / 2
@@ -63,7 +63,7 @@ def side_features(thing: Thing, expected_m: Numbers) -> Numbers:
 
 
 def _end(inside: Numbers, depth: Numbers, across: int) -> tuple[float, float, float, float]:
-    """How much of the thing is near one end, how wide it is there, its lowest and its mean height."""
+    """Return the share of cells near one end, the width there, and the lowest and mean height."""
     near = depth < _NEAR
     if not near.any():
         return (0.0, 0.0, 1.0, 1.0)
@@ -81,7 +81,7 @@ def _scale(thing: Thing) -> float:
 
 
 def completed(thing: Thing, features: Numbers, regressor: Perceptron) -> Box:
-    """The box of the whole thing: each side of the visible one is moved outwards by what was learnt."""
+    """Return the box of the complete thing: each side of the visible box is moved outwards."""
     shift = regressor(features)[:, 0] * _scale(thing)
     low = thing.box.low - [shift[0], shift[2], 0.0]
     high = thing.box.high + shift[[1, 3, 4]]
@@ -91,6 +91,6 @@ def completed(thing: Thing, features: Numbers, regressor: Perceptron) -> Box:
 
 
 def shifts(thing: Thing, truth: Box) -> Numbers:
-    """(5,) how far each side would have to move to be that of `truth`, of the same yaw; see `completed`."""
+    """Return (5,) how far each side must move to match `truth`, a box of the same yaw; see `completed`."""
     low, high = thing.box.low - truth.low, truth.high - thing.box.high
     return np.array([low[0], high[0], low[1], high[1], high[2]]) / _scale(thing)

@@ -1,4 +1,4 @@
-"""A second look at what was not recognised: without scraps of its neighbours, if it seems to have some."""
+"""Classifies uncertain things again without their outer cells, which may belong to neighbours."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from semmap.nodes.perception_node.recognition.features import features_of
-from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
-from semmap.nodes.perception_node.recognition.vote import leaves
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, RecognitionModel
+from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
 from semmap.nodes.perception_node.views.boxes import Numbers, best_yaw, box_around, in_frame
 from semmap.nodes.perception_node.views.merged_thing import Thing
 
@@ -17,15 +17,15 @@ _DOUBTFUL = 0.6
 _GAIN = 0.3
 _OUTERMOST = 0.03
 _LEFT = 0.6
-"""What loses more of its box with so few cells may hold a scrap of another thing."""
+"""A thing whose box shrinks below this share without few cells may include a piece of another thing."""
 
 _FEWEST = 60
 
 
-def looked_at_again(things: Sequence[Thing], chances: Numbers, learnt: Learnt) -> Numbers:
-    """(N, K) probabilities of the leaves, those of a trimmed thing where that is recognised far better.
+def reclassify_trimmed(things: Sequence[Thing], chances: Numbers, learnt: RecognitionModel) -> Numbers:
+    """Return (N, K) leaf probabilities, those of the trimmed thing if it is recognised much better.
 
-    What is new to us is not to become something known by being cut to size, so the gain has to be large.
+    A new thing must not become a known one by trimming, so the gain has to be large.
     """
     nameable = np.array([name not in (UNKNOWN, CLUTTER) for name in learnt.classes])
     known = chances[:, nameable].max(axis=1, initial=0.0)
@@ -37,7 +37,7 @@ def looked_at_again(things: Sequence[Thing], chances: Numbers, learnt: Learnt) -
     rows = [n for n, part in trimmed.items() if part.box.size_m.prod() < _LEFT * things[n].box.size_m.prod()]
     if not rows:
         return chances
-    again = leaves(learnt, features_of([trimmed[n] for n in rows]))
+    again = leaf_probabilities(learnt, features_of([trimmed[n] for n in rows]))
     better = again[:, nameable].max(axis=1) > known[rows] + _GAIN
     chances = chances.copy()
     chances[np.array(rows)[better]] = again[better]
@@ -45,7 +45,7 @@ def looked_at_again(things: Sequence[Thing], chances: Numbers, learnt: Learnt) -
 
 
 def trim(thing: Thing) -> Thing:
-    """The thing without its outermost cells along each axis of its box, but for the bottom."""
+    """Return a thing without its outermost cells along each axis of its box, except at the bottom."""
     turned = in_frame(thing.cells, thing.box.yaw_rad)
     low, high = np.quantile(turned, [_OUTERMOST, 1.0 - _OUTERMOST], axis=0)
     inner = (turned >= low)[:, :2].all(axis=1) & (turned <= high).all(axis=1)

@@ -1,4 +1,4 @@
-"""The vote of the classifiers, and the most special class that is sure enough."""
+"""The vote of the classifiers, and the most specific class that is certain enough."""
 
 from __future__ import annotations
 
@@ -8,25 +8,30 @@ import numpy as np
 
 from semmap.nodes.perception_node.recognition.features import SORTS
 from semmap.nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
-from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS, Learnt
+from semmap.nodes.perception_node.recognition.recognition_model import (
+    CLUTTER,
+    UNKNOWN,
+    VOTERS,
+    RecognitionModel,
+)
 from semmap.nodes.perception_node.views.boxes import Numbers
 
 _CLEAR = 0.85
 _SAY = 0.2
-"""How much the votes count where something has the form of our model: what they rule out it is not."""
+"""Weight of the votes for a thing with the form of our model, so that they can rule it out."""
 
 
 def vote(voters: Sequence[Perceptron], weights: Numbers, features: Sequence[Numbers]) -> Numbers:
-    """(N, K) probabilities of the leaves; `features`: of each sort (N, its own number).
+    """Return (N, K) probabilities of the leaves; `features`: of each sort (N, its own number).
 
-    The votes are evidence, so their logarithms add up, each with the weight that calibration on scenes apart
-    gave it.
+    The votes are independent evidence: their logarithms are added, with weights from calibration on other
+    scenes.
     """
-    return np.exp(pool(ballots(voters, features), weights))
+    return np.exp(pool_votes(log_votes(voters, features), weights))
 
 
-def shown_to_voters(features: Sequence[Numbers]) -> list[Numbers]:
-    """What each of `VOTERS` looks at, of `features`: of each sort (N, its own number)."""
+def voter_inputs(features: Sequence[Numbers]) -> list[Numbers]:
+    """Return the inputs of each of `VOTERS` from `features`: of each sort (N, its own number)."""
     of_sort = dict(zip(SORTS, features, strict=True))
     shown = {
         sorts: np.concatenate([of_sort[sort] for sort in sorts], axis=1) for sorts in set(VOTERS.values())
@@ -34,25 +39,25 @@ def shown_to_voters(features: Sequence[Numbers]) -> list[Numbers]:
     return [shown[sorts] for sorts in VOTERS.values()]
 
 
-def ballots(voters: Sequence[Perceptron], features: Sequence[Numbers]) -> Numbers:
-    """(voters, N, K) logarithms of the probabilities that each voter gives."""
-    shown = shown_to_voters(features)
+def log_votes(voters: Sequence[Perceptron], features: Sequence[Numbers]) -> Numbers:
+    """Return (voters, N, K) the log probabilities of each voter."""
+    shown = voter_inputs(features)
     return np.array([log_softmax(voter(seen)) for voter, seen in zip(voters, shown, strict=True)])
 
 
-def pool(votes: Numbers, weights: Numbers) -> Numbers:
-    """(N, K) logarithms of the probabilities that the votes (voters, N, K) together give."""
+def pool_votes(votes: Numbers, weights: Numbers) -> Numbers:
+    """Return (N, K) the log probabilities of all votes (voters, N, K) together."""
     return log_softmax(np.tensordot(weights, votes, axes=1))
 
 
-def leaves(learnt: Learnt, features: Sequence[Numbers]) -> Numbers:
-    """(N, K) probabilities of the leaves, in which what is like nothing known counts as `UNKNOWN`.
+def leaf_probabilities(learnt: RecognitionModel, features: Sequence[Numbers]) -> Numbers:
+    """Return (N, K) probabilities of the leaves, with things of no known class counted as `UNKNOWN`.
 
-    What has the very form of one of our models is known by that, and the votes name the rest. What people
-    have shown is a leaf each, and is told apart from both.
+    A thing with the exact form of one of our models is recognised by that; the votes decide otherwise.
+    Exemplars are additional leaves, independent of both.
     """
-    votes = ballots(learnt.voters, features)
-    pooled = pool(votes, learnt.weights)
+    votes = log_votes(learnt.voters, features)
+    pooled = pool_votes(votes, learnt.weights)
     new = learnt.novelty(features, votes, pooled)
     probabilities = np.exp(pooled)
     nameable = np.array([name not in (UNKNOWN, CLUTTER) for name in learnt.classes[: pooled.shape[1]]])
@@ -63,24 +68,28 @@ def leaves(learnt: Learnt, features: Sequence[Numbers]) -> Numbers:
     scores[:, :-1] += _SAY * pooled
     familiar = np.exp(log_softmax(scores))
     probabilities = familiar[:, :-1] + familiar[:, -1:] * probabilities
-    return probabilities if learnt.shown is None else learnt.shown.mixed(features, probabilities)
+    return (
+        probabilities
+        if learnt.exemplars is None
+        else learnt.exemplars.add_probabilities(features, probabilities)
+    )
 
 
 def expected_sizes(probabilities: Numbers, sizes_m: Numbers) -> Numbers:
-    """(N, 3) the size [m] that things of the likely leaves have: the geometric mean of `sizes_m` (K, 3)."""
+    """Return (N, 3) the expected sizes [m]: the geometric mean of `sizes_m` (K, 3) over the leaves."""
     return np.asarray(np.exp(probabilities @ np.log(sizes_m)))
 
 
-def answer(
+def choose_class(
     probabilities: Mapping[str, float],
     ancestors: Mapping[str, Sequence[str]],
     sure: float,
     clear: float = _CLEAR,
 ) -> tuple[str, float]:
-    """The most special class whose leaves together are at least `sure`, and its probability; else `UNKNOWN`.
+    """Return the most specific class with a probability of at least `sure`; else `UNKNOWN`.
 
-    A class that has not so much (`clear`) of the probability of each of its ancestors is not said: what may
-    be a desk or a table is furniture. Of several, none of which is below another, the likelier.
+    A class must have at least the share `clear` of the probability of each of its ancestors: a thing that is
+    either a desk or a table is furniture. Among unrelated classes, the most likely is chosen.
     """
     total: dict[str, float] = {}
     for leaf, probability in probabilities.items():

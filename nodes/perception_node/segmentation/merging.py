@@ -1,4 +1,4 @@
-"""Patches become objects: the surest pairs are merged first, and what that changes is looked at anew."""
+"""Merges patches to objects: the most certain pairs first, with updated scores after each merge."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from semmap.nodes.perception_node.segmentation.pairs import candidates
 from semmap.nodes.perception_node.segmentation.statistics import Indices, Statistics
 
 Judge = Callable[[Statistics, Indices, Indices], NDArray[np.float32]]
-"""How likely the pairs of patches (a, b) are one object: (N,)."""
+"""Returns the probabilities (N,) that pairs of patches (a, b) are one object."""
 
 SURE_ENOUGH = 0.5
-_CERTAIN = 0.9  # pairs as sure as this need not wait for one another
+_CERTAIN = 0.9  # pairs this certain are merged together
 
 
 class Merged(NamedTuple):
-    """N objects out of P patches.
+    """N objects from P patches.
 
-    `number`: (P,) of each patch's object, from 1. `same`: (N, N) how likely two objects are one all the same,
-    0 where they were not compared.
+    `number`: (P,) the object of each patch, from 1. `same`: (N, N) the probability that two objects are one,
+    0 if they were not compared.
     """
 
     number: NDArray[np.int32]
@@ -30,7 +30,7 @@ class Merged(NamedTuple):
 
 
 def merge(of: Statistics, judge: Judge) -> Merged:
-    """Put patches together; `of` is used up."""
+    """Merge patches; `of` is modified."""
     count = len(of.inside)
     may = candidates(of)
     score = np.zeros((count, count), np.float32)
@@ -44,13 +44,13 @@ def merge(of: Statistics, judge: Judge) -> Merged:
             break
         news = np.zeros_like(may)
         grown = []
-        for keep, gone in pairs:
-            of.merge(keep, gone)
-            may[keep] |= may[gone]
-            may[:, keep] |= may[:, gone]
-            may[gone] = may[:, gone] = False
+        for keep, merged in pairs:
+            of.merge(keep, merged)
+            may[keep] |= may[merged]
+            may[:, keep] |= may[:, merged]
+            may[merged] = may[:, merged] = False
             may[keep, keep] = False
-            score[gone] = score[:, gone] = 0
+            score[merged] = score[:, merged] = 0
             grown.append(keep)
         news[grown] = may[grown]
         news &= ~(news.T & np.tri(count, dtype=bool))  # each pair once
@@ -59,7 +59,7 @@ def merge(of: Statistics, judge: Judge) -> Merged:
 
 
 def _next(score: NDArray[np.float32]) -> list[tuple[int, int]]:
-    """The pairs to merge now: all that are certain and each other's best, else the surest if sure enough."""
+    """Return the pairs to merge: all that are certain and mutually best, else the best certain enough."""
     best = score.argmax(axis=1)
     index = np.arange(len(score))
     mutual = (best[best] == index) & (index < best) & (score[index, best] >= _CERTAIN)

@@ -1,17 +1,17 @@
-"""Surface normals from the picture's neighbourhoods: least-squares planes in disparity."""
+"""Surface normals from image neighbourhoods: least-squares planes in disparity."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from semmap.nodes.perception_node.segmentation.working_picture import Floats, Mask
+from semmap.nodes.perception_node.segmentation.working_image import Floats, Mask
 
 RADIUS = 2
-"""Cells to each side of the middle: a window of 5 x 5."""
+"""Cells to each side of the centre: a window of 5 x 5."""
 
 _GATE_M = 0.02  # deeper neighbours belong to something else
 _FEWEST = 6
-_SOME = 8  # every so many rows tell how far rays are from one another
+_SOME = 8  # step between the rows that are used to measure the pitch of rays
 _SIDE = 2 * RADIUS + 1
 _ROWS, _COLUMNS = np.indices((_SIDE, _SIDE)).reshape(2, -1) - RADIUS
 _DOWN, _ACROSS = _ROWS.astype(np.float32), _COLUMNS.astype(np.float32)
@@ -19,10 +19,10 @@ _MOMENTS = np.stack([np.ones_like(_DOWN), _ACROSS, _DOWN, _ACROSS**2, _DOWN**2, 
 
 
 def normals(points: Floats, where: Mask) -> Floats:
-    """(3, h, w) unit normals towards the camera of the points (3, h, w) [m] in `where`, elsewhere NaN.
+    """Return (3, h, w) unit normals towards the camera of the points (3, h, w) [m] in `where`, elsewhere NaN.
 
-    On a plane 1/z is linear in the pixel, and a camera's noise is about even in 1/z: so the plane is fitted
-    there, to the cells of the window that are about as deep as its middle.
+    On a plane 1/z is linear in the pixel, and a camera's noise is nearly uniform in 1/z. The plane is fitted
+    in that space, to the cells of the window at a similar depth.
     """
     out = np.full(points.shape, np.nan, np.float32)
     cells = np.flatnonzero(where)
@@ -35,7 +35,7 @@ def normals(points: Floats, where: Mask) -> Floats:
     inverse -= own
     near = np.abs(inverse) < _GATE_M * np.maximum(1, own**2)  # NaN is not
     inverse[~near] = 0
-    # a matrix product would share this little out to threads, which wait for one another on a busy machine
+    # a matrix product would use threads, which wait for each other on a busy machine
     count, x, y, xx, yy, xy = np.einsum("mk,kn->mn", _MOMENTS, near.astype(np.float32))
     q, xq, yq = np.einsum("mk,kn->mn", _MOMENTS[:3], inverse)
     count = np.maximum(count, 1)
@@ -57,7 +57,7 @@ def normals(points: Floats, where: Mask) -> Floats:
 
 
 def _pitch(along: Floats, depth: Floats) -> np.float32:
-    """From one cell's ray to the next in a row of (h, w)."""
+    """Return the step between rays of adjacent cells in a row of (h, w)."""
     steps = np.diff(along[::_SOME] / depth[::_SOME])
     steps = steps[np.isfinite(steps) & (steps != 0)]
     return np.median(steps) if steps.size else np.float32(1)

@@ -1,4 +1,4 @@
-"""What of two patches tells whether they are one object."""
+"""Features of pairs of patches that indicate whether they are one object."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ NAMES = (
     *("side_both", "width_both", "tall_both", "filled", "footprint"),
     *("brighter", "coloured", "brighter_there", "coloured_there", "mottled_small", "mottled_big"),
 )
-"""The columns of `features`, in order. `small` and `big` are the two patches, by their cells."""
+"""The columns of `features`, in order. `small` and `big` are the two patches, by number of cells."""
 
 _SUPPORT_M = 0.02
 _MATRIX = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # where the squares xx, yy, zz, xy, xz, yz go
-_UNKNOWN = -1.0  # lower than any that is known, so that a tree can ask for it
+_UNKNOWN = -1.0  # below all known values, so that a tree can test for it
 
 
 def candidates(statistics: Statistics, reach_m: float = 0.35) -> NDArray[np.bool_]:
-    """(P, P) which pairs may be one object: near in the picture, or parted by something in front."""
+    """Return (P, P) which pairs may be one object: adjacent in the image, or separated by an occluder."""
     between = statistics.between
     wide = between[..., s.WIDE] + between[..., s.TOUCH] > 0
     middles = statistics.inside[:, s.POINT] / statistics.inside[:, s.COUNT, None]
@@ -41,12 +41,12 @@ def candidates(statistics: Statistics, reach_m: float = 0.35) -> NDArray[np.bool
 
 
 class Each(NamedTuple):
-    """What of N patches goes into the features of pairs.
+    """The values of N patches that are used in features of pairs.
 
-    `middle`, `low`, `high`: (N, 3) [m]. `spread`: (N, 3) standard deviations along the main axes from the
-    least [m]. `normal`, `unit`: (N, 3) the mean normal, and of length 1; `straight`: (N,) how long it was.
-    `above`: (N,) how far the lowest point is above what carries things [m]. `shade`: (N, 3) mean colour,
-    `mottled`: (N,) how mixed it is, both NaN if unknown.
+    `middle`, `low`, `high`: (N, 3) [m]. `spread`: (N, 3) standard deviations along the main axes, ascending
+    [m]. `normal`, `unit`: (N, 3) the mean normal, and normalised; `straight`: (N,) its length. `above`: (N,)
+    height of the lowest point above the support [m]. `shade`: (N, 3) mean colour, `mottled`: (N,) its
+    variation, both NaN if unknown.
     """
 
     sums: s.Sums
@@ -65,7 +65,7 @@ class Each(NamedTuple):
 
 
 def features(of: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
-    """(N, len(NAMES)) of the pairs of patches (a, b), the same whichever stands first."""
+    """Return features (N, len(NAMES)) of the pairs of patches (a, b), independent of their order."""
     counts = of.inside[:, s.COUNT]
     swap = (counts[a] < counts[b]) | ((counts[a] == counts[b]) & (a > b))
     first, second = np.where(swap, a, b), np.where(swap, b, a)
@@ -106,7 +106,7 @@ def features(of: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
 
 
 def _each(of: Statistics) -> Each:
-    """Of all patches."""
+    """Compute the values of all patches."""
     sums = of.inside
     count = sums[:, s.COUNT]
     normal = sums[:, s.NORMAL] / count[:, None]
@@ -130,7 +130,7 @@ def _each(of: Statistics) -> Each:
 
 
 def _colours(small: Each, big: Each, border: s.Sums) -> list[s.Sums]:
-    """How unlike the colours are, as a whole and along the border, and how mixed each is; -1 if unknown."""
+    """Return differences of colours, overall and along the border, and their variation; -1 if unknown."""
     turned = np.abs(small.shade - big.shade)
     bends = np.where(border[s.BENDS] > 0, border[s.BENDS], np.nan)
     there = border[[s.BRIGHTER, s.COLOURED]] / bends
@@ -139,7 +139,7 @@ def _colours(small: Each, big: Each, border: s.Sums) -> list[s.Sums]:
 
 
 def _spread(sums: s.Sums) -> s.Sums:
-    """(N, 3) standard deviations along the main axes, from the least [m]."""
+    """Return (N, 3) standard deviations along the main axes, ascending [m]."""
     means = sums / sums[:, s.COUNT, None]
     middle = means[:, s.POINT]
     covariance = means[:, s.SQUARES][:, _MATRIX] - middle[:, :, None] * middle[:, None, :]
@@ -147,7 +147,7 @@ def _spread(sums: s.Sums) -> s.Sums:
 
 
 def _above_support(of: Statistics) -> s.Sums:
-    """(P,) how far the lowest points of patches are above what carries things beneath them [m]."""
+    """Return (P,) the height of the lowest points of patches above their support [m]."""
     low = of.low[:, 2]
     if not of.supports.size:
         return np.zeros(len(low))

@@ -1,4 +1,4 @@
-"""Over-segmentation by local convexity: small smooth patches, too many so that none spans two objects."""
+"""Over-segmentation by local convexity: small smooth patches, so small that none spans two objects."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import ndimage
 
-from semmap.nodes.perception_node.segmentation.working_picture import Floats, Labels, Mask, shifted
+from semmap.nodes.perception_node.segmentation.working_image import Floats, Labels, Mask, shifted
 
 _CONCAVE = np.sin(np.radians(15))
 _CONVEX = np.sin(np.radians(30))
@@ -18,9 +18,9 @@ _GROWTH = 8
 
 
 def patches(points: Floats, normals: Floats, where: Mask) -> Labels:
-    """(h, w) numbers of patches from 1, without gaps, 0 for none; cells outside `where` are in none.
+    """Return (h, w) numbers of patches from 1, without gaps, 0 for none and for cells outside `where`.
 
-    Cells are cut apart where the surface is concave, sharply convex, or steps in depth.
+    Cells are separated where the surface is concave, sharply convex, or has a depth step.
     """
     cut = _cuts(points, normals, where)
     parts, count = ndimage.label(where & ~cut)
@@ -37,7 +37,7 @@ def patches(points: Floats, normals: Floats, where: Mask) -> Labels:
 
 
 def _cuts(points: Floats, normals: Floats, where: Mask) -> Mask:
-    """Cells at which two sides meet."""
+    """Return the cells at borders of patches."""
     cut: Mask = ~np.isfinite(normals[0])
     height, width = cut.shape
     for rows, columns in _ACROSS:
@@ -54,7 +54,7 @@ def _cuts(points: Floats, normals: Floats, where: Mask) -> Mask:
         z, far = shifted(points[2], rows, columns)
         here, there = shifted(cut, rows, columns)
         step = _step(z, far)
-        here |= step & (z > far)  # the farther of the two, whose surface goes on behind
+        here |= step & (z > far)  # the farther of the two, whose surface continues behind
         there |= step & (far >= z)
     return cut & where
 
@@ -68,7 +68,7 @@ def _step(z: Floats, other: Floats) -> Mask:
 
 
 def grown(labels: Labels, points: Floats, where: Mask) -> Labels:
-    """Labels spread over cells of `where` without one, each to the label of the nearest cell at its side."""
+    """Return labels grown into unlabelled cells of `where`, each from the nearest adjacent cell."""
     padded = np.pad(labels, 1)
     flat, width = padded.ravel(), padded.shape[1]
     around = np.array([[1], [-1], [width], [-width]])
@@ -84,13 +84,13 @@ def grown(labels: Labels, points: Floats, where: Mask) -> Labels:
         new = cells[takes]
         flat[new] = flat[sides[best][takes]]
         free[new] = False
-        cells = (new + around).ravel()  # only beside these there is something new
+        cells = (new + around).ravel()  # only cells next to these can change
         cells = cells[free[cells]]
     return padded[1:-1, 1:-1]
 
 
 def _numbered(labels: Labels) -> Labels:
-    """The same with numbers from 1 without gaps."""
+    """Return the labels renumbered from 1 without gaps."""
     used = np.bincount(labels.ravel()) > 0
     used[0] = False
     number = np.where(used, np.cumsum(used), 0).astype(np.int32)

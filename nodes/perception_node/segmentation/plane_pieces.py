@@ -1,23 +1,23 @@
-"""Pieces of a level plane: table tops and seats of one height are no single surface."""
+"""Pieces of a level plane: table tops and seats of one height are separate surfaces."""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy import ndimage
 
-from semmap.nodes.perception_node.segmentation.working_picture import Floats, Mask
+from semmap.nodes.perception_node.segmentation.working_image import Floats, Mask
 
 _AROUND = np.ones((3, 3))
 _STEEP = 0.5
-"""A slice through upright things is this steep from row to row: sine of the angle."""
+"""Minimum slope (sine) of a slice through upright things, from row to row."""
 
 
 def pieces_of(on: Mask, points: Floats, height: Floats, thickness: Floats, least: float) -> list[Mask]:
-    """The pieces, each (h, w), of a plane that have `least` cells or more, the largest first.
+    """Return the pieces (h, w) of a plane with at least `least` cells, the largest first.
 
-    `on`: (h, w) which of `points` (3, h, w) lie on it. `height`: how far each is on the camera's side of it,
-    `thickness`: what it may be off it [m]. Pieces are parted by what one sees past the plane; behind what
-    stands before it, it may go on. What it merely cuts through is no piece of it.
+    `on`: (h, w) which of `points` (3, h, w) lie on it. `height`: their distance on the camera's side,
+    `thickness`: the tolerance [m]. Pieces are separated where the camera looks past the plane; behind an
+    occluder it may continue. Slices through things are excluded.
     """
     hidden = height > thickness  # NaN is not
     numbers = np.where(on, ndimage.label(on | hidden, _AROUND)[0], 0)
@@ -29,7 +29,7 @@ def pieces_of(on: Mask, points: Floats, height: Floats, thickness: Floats, least
 
 
 def _is_slice(piece: Mask, points: Floats, height: Floats) -> bool:
-    """Whether a plane merely cuts through this: from row to row its points rather rise than recede."""
+    """Return whether the plane cuts through a thing: from row to row its points rise more than recede."""
     both = piece[1:] & piece[:-1]
     if not both.any():
         return True

@@ -1,7 +1,7 @@
-"""Dominant planes, by RANSAC: floor, walls, and what carries things.
+"""Dominant planes by RANSAC: floor, walls, and supports.
 
-Three points near one another make a hypothesis. All hypotheses are drawn and voted on at once; each plane
-that is taken off leaves fewer voters, and the best one left is fitted to its own by least squares.
+Three nearby points make a hypothesis. All hypotheses are drawn and scored together. Each plane that is found
+removes its voters, and the best remaining hypothesis is fitted by least squares.
 """
 
 from __future__ import annotations
@@ -17,36 +17,36 @@ from scipy import ndimage
 
 from semmap.nodes.perception_node.input.cloud import Transform
 from semmap.nodes.perception_node.segmentation.plane_pieces import pieces_of
-from semmap.nodes.perception_node.segmentation.working_picture import Floats, Labels, Mask
+from semmap.nodes.perception_node.segmentation.working_image import Floats, Labels, Mask
 
 Kind = Literal["floor", "wall", "support", "plane"]
 
 _SAMPLE = 3000  # points that planes are fitted to
-_VOTERS = 600  # of them tell which of the hypotheses is best
+_VOTERS = 600  # of these vote for hypotheses
 _FEWEST_CELLS = 50
 _LEAST_AREA_M2 = 1e-5
 _TRIALS = 240
 _REACH_CELLS = 60  # the three points of a hypothesis lie this near one another
 _MOST_PLANES = 6
 _LEAST_SHARE = 0.04  # of all points, for a plane that gravity explains
-_LEAST_SHARE_UNKNOWN = 0.2  # where gravity is unknown, and a box's side might be meant
+_LEAST_SHARE_UNKNOWN = 0.2  # if gravity is unknown, and it may be a box's side
 _LEAST_SIDE_M = 0.35
-_LEAST_WALL_M = 1.0  # of its shorter side; else it is the side of a thing, or of several in a row
+_LEAST_WALL_M = 1.0  # of its shorter side; a smaller one is the side of things
 _STRAY = 0.02
 _UPRIGHT_COS = np.cos(np.radians(8))
 _LEVEL_COS = np.cos(np.radians(80))
 _FLOOR_BELOW_M = 0.06
-_OVER = 0.3  # so much of it is over what is seen of the other, which it may hide itself
+_OVER = 0.3  # minimum share above the visible part of the other plane
 _SMALLER = 0.7  # else it is a shelf above a shelf
 _TALLEST_M = 0.5
 
 
 @dataclass(frozen=True)
 class Plane:
-    """Points p with normal · p = offset_m, camera frame; the normal looks to the camera's side.
+    """Points p with normal · p = offset_m, camera frame; the normal points to the camera's side.
 
-    `points`: how many cells of the working picture lie on it. `sides_m`: its extent along its longer and
-    shorter axis. Without a known pose of the camera the largest is the support, others are a mere `plane`.
+    `points`: number of cells on it. `sides_m`: extents along its longer and shorter axis. If the pose of the
+    camera is unknown, the largest is the support, and others are of kind `plane`.
     """
 
     normal: NDArray[np.float64]
@@ -56,12 +56,12 @@ class Plane:
     sides_m: tuple[float, float]
 
     def height_m(self, points: Floats) -> Floats:
-        """How far points (3, ...) are on the camera's side of it."""
+        """Return the distance of points (3, ...) on the camera's side."""
         return _height(points, self.normal.astype(np.float32), np.float32(self.offset_m))
 
 
 def thickness_m(distance_m: Floats) -> Floats:
-    """How far a plane's points may be off it: noise grows with the square of the distance."""
+    """Return the tolerance of a plane's points: noise grows with the square of the distance."""
     return np.asarray(np.maximum(0.009, 0.006 * distance_m**2), np.float32)
 
 
@@ -73,7 +73,7 @@ def _height(points: Floats, normal: Floats, offset: Floats | np.float32) -> Floa
 def find_planes(
     points: Floats, map_from_camera: Transform | None, rng: np.random.Generator
 ) -> tuple[tuple[Plane, ...], Labels]:
-    """The planes of a picture (3, h, w), and of each cell the number of its plane from 1, 0 for none."""
+    """Return the planes of an image (3, h, w), and the plane of each cell from 1, 0 for none."""
     of_plane = np.zeros(points.shape[1:], np.int32)
     thickness = thickness_m(points[2])
     free = np.isfinite(thickness)
@@ -99,7 +99,7 @@ def find_planes(
         level = kind == "support" and map_from_camera is not None
         for piece in pieces_of(on, points, height, thickness, least) if level else [on]:
             count = int(piece.sum())
-            solid = piece if kind == "floor" else _largest_piece(piece)  # of a floor, things leave islands
+            solid = piece if kind == "floor" else _largest_piece(piece)  # things cut a floor into islands
             sides = _sides(_some(points, solid, count), normal)
             if planes and sides[1] < (_LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M):
                 continue
@@ -117,7 +117,7 @@ def find_planes(
 def _tops_of_things(
     planes: Sequence[Plane], of_plane: Labels, points: Floats, map_from_camera: Transform
 ) -> set[int]:
-    """Numbers of the supports that lie on a larger one: they are the tops of what stands there."""
+    """Return numbers of supports above a larger one: they are the tops of things there."""
     pose = map_from_camera.astype(np.float32)
     boxes = {}
     for number, plane in enumerate(planes, 1):
@@ -136,13 +136,13 @@ def _tops_of_things(
 
 
 def _some(points: Floats, where: Mask, count: int) -> Floats:
-    """(3, N) of points (3, h, w) in a place of at most `count` cells: not many more than a sample."""
+    """Return a sample (3, N) of points (3, h, w) in a region of at most `count` cells."""
     cells = np.flatnonzero(where)[:: max(1, count // _SAMPLE)]
     return points.reshape(3, -1).take(cells, axis=1)
 
 
 def _largest_piece(on: Mask) -> Mask:
-    """The largest connected part: tops of several things may be level with one another, and are no table."""
+    """Return the largest connected part: level tops of several things are not a table."""
     parts, count = ndimage.label(on)
     if count < 2:
         return on
@@ -150,10 +150,10 @@ def _largest_piece(on: Mask) -> Mask:
 
 
 class _Search:
-    """Hypotheses about all planes of a picture, and points that vote for them: those that are left."""
+    """Hypotheses for all planes of an image, and the remaining points that vote for them."""
 
     def __init__(self, points: Floats, free: Mask, rng: np.random.Generator) -> None:
-        """`free`: (h, w) cells of which at least one must be."""
+        """Draw hypotheses and voters. `free`: (h, w) cells, of which at least one must be set."""
         cells = np.flatnonzero(free)
         self._cells = cells[rng.integers(len(cells), size=_SAMPLE)]
         self._points = points.reshape(3, -1).take(self._cells, axis=1)
@@ -168,7 +168,7 @@ class _Search:
             sides.append(np.where(free[r, c], points[:, r, c], any_other) - first)
         normals = np.cross(sides[0], sides[1], axis=0)
         length = np.sqrt((normals * normals).sum(axis=0))
-        length[length < _LEAST_AREA_M2] = np.inf  # three points in a line say nothing
+        length[length < _LEAST_AREA_M2] = np.inf  # three points on a line are invalid
         self._normals = normals / length
         self._offsets = np.where(np.isinf(length), np.float32(np.inf), (self._normals * first).sum(axis=0))
         off = np.abs(
@@ -177,11 +177,11 @@ class _Search:
         self._votes = (off < self._thickness[:_VOTERS]).astype(np.float32)
 
     def leave_out(self, on: Mask) -> None:
-        """Cells (h, w) no longer vote."""
+        """Exclude cells (h, w) from the vote."""
         self._left &= ~on.ravel()[self._cells]
 
     def best(self) -> tuple[Floats, np.float32]:
-        """The plane that most points left are on, fitted to these: normal (3,) towards the camera, offset."""
+        """Return the plane with the most votes, fitted to its points: normal (3,) to the camera, offset."""
         votes = np.einsum("tv,v->t", self._votes, self._left[:_VOTERS].astype(np.float32))
         normal, offset = self._normals[:, votes.argmax()], self._offsets[votes.argmax()]
         for _ in range(2):
@@ -200,7 +200,7 @@ class _Search:
 def _kind(
     normal: Floats, offset: np.float32, map_from_camera: Transform | None, *, first: bool
 ) -> Kind | None:
-    """What the plane is, None for one that slopes."""
+    """Return the kind of a plane, or None for a sloping one."""
     if map_from_camera is None:
         return "support" if first else "plane"
     up = map_from_camera[2, :3] @ normal
@@ -211,7 +211,7 @@ def _kind(
 
 
 def _sides(points: Floats, normal: Floats) -> tuple[float, float]:
-    """Extent of points (3, N) along the longer and the shorter axis within the plane, but for a few."""
+    """Return the extents of points (3, N) along the two axes within the plane, without outliers."""
     axes = np.linalg.svd(normal[None, :])[2][1:]
     flat = axes @ points
     flat -= flat.mean(axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""From a cloud to its planes and objects."""
+"""Segments a cloud into planes and objects."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.segmentation.merge_model import shipped
 from semmap.nodes.perception_node.segmentation.merging import Judge, merge
 from semmap.nodes.perception_node.segmentation.normals import normals
 from semmap.nodes.perception_node.segmentation.patches import patches
-from semmap.nodes.perception_node.segmentation.picture import as_picture
 from semmap.nodes.perception_node.segmentation.planes import Plane, find_planes
-from semmap.nodes.perception_node.segmentation.shipped_trees import shipped
 from semmap.nodes.perception_node.segmentation.statistics import Statistics, Upright, statistics
 from semmap.nodes.perception_node.segmentation.thin_things import thin_things
-from semmap.nodes.perception_node.segmentation.working_picture import (
+from semmap.nodes.perception_node.segmentation.unorganised_cloud import as_image
+from semmap.nodes.perception_node.segmentation.working_image import (
     Floats,
     Grid,
     Labels,
@@ -26,16 +26,16 @@ from semmap.nodes.perception_node.segmentation.working_picture import (
 )
 
 LOWEST_M, HIGHEST_M = 0.009, 0.5
-"""What stands on a support lies this far above it."""
+"""Range of heights above a support for things that stand on it."""
 
 
 @dataclass(frozen=True)
 class Segmentation:
-    """What of a cloud is what.
+    """The segmentation of a cloud.
 
-    `labels`: (H, W) the number of the object each point belongs to, from 1 without gaps, 0 for background.
-    `planes`: the dominant planes. `plane_labels`: (H, W) the number of each point's plane, 0 for none.
-    `same`: (N, N) how likely objects n + 1 and m + 1 are one all the same, 0 where they were not compared.
+    `labels`: (H, W) the object of each point, from 1 without gaps, 0 for background. `planes`: the dominant
+    planes. `plane_labels`: (H, W) the plane of each point, 0 for none. `same`: (N, N) the probability that
+    objects n + 1 and m + 1 are one, 0 if they were not compared.
     """
 
     labels: NDArray[np.int32]
@@ -46,9 +46,9 @@ class Segmentation:
 
 @dataclass(frozen=True)
 class Parts:
-    """A picture taken apart, before anything is put together again.
+    """An over-segmented image.
 
-    `of_plane`, `of_patch`: (h, w) the number of each cell's plane and patch, 0 for none.
+    `of_plane`, `of_patch`: (h, w) the plane and the patch of each cell, 0 for none.
     """
 
     grid: Grid
@@ -59,28 +59,28 @@ class Parts:
 
 
 def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
-    """The planes and objects of a cloud, organised or not; `learnt` is what ships unless another is given."""
+    """Return the planes and objects of a cloud. `learnt` is the merge model, by default the shipped one."""
     if not (cloud.points_camera[..., 2] > 0).any():  # NaN is not
         nothing = np.zeros(cloud.points_camera.shape[:2], np.int32)
         return Segmentation(nothing, (), nothing, np.zeros((0, 0), np.float32))
     if not cloud.organised:
-        picture, pixel = as_picture(cloud)
-        seen = segment(picture, learnt)
+        image, pixel = as_image(cloud)
+        seen = segment(image, learnt)
         labels, plane_labels = (
             np.append(of.ravel(), np.int32(0))[pixel][None, :] for of in (seen.labels, seen.plane_labels)
         )
         return Segmentation(labels, seen.planes, plane_labels, seen.same)
-    parts = taken_apart(cloud)
+    parts = split_into_patches(cloud)
     merged = merge(parts.statistics, learnt or shipped())
     objects = np.append(np.int32(0), merged.number)[parts.of_patch]
     both = spread(parts.grid, np.where(objects > 0, objects, -parts.of_plane))
     return Segmentation(np.maximum(both, 0), parts.planes, np.maximum(-both, 0), merged.same)
 
 
-def taken_apart(cloud: Cloud) -> Parts:
-    """The planes of an organised cloud, and small patches of the rest."""
+def split_into_patches(cloud: Cloud) -> Parts:
+    """Return the planes of an organised cloud, and small patches of the rest."""
     grid = grid_of(cloud)
-    rng = np.random.default_rng(0)  # the same cloud, the same answer
+    rng = np.random.default_rng(0)  # deterministic
     planes, of_plane = find_planes(grid.points, cloud.map_from_camera, rng)
     thin = thin_things(grid.points, planes, of_plane)
     of_plane[thin > 0] = 0
@@ -97,7 +97,7 @@ def taken_apart(cloud: Cloud) -> Parts:
 
 
 def _window(where: Mask) -> tuple[slice, slice]:
-    """What of a picture holds all of `where`."""
+    """Return the bounding window of `where`."""
     row, column = (np.flatnonzero(where.any(axis=axis)) for axis in (1, 0))
     if not row.size:
         return slice(0, 1), slice(0, 1)
@@ -107,7 +107,7 @@ def _window(where: Mask) -> tuple[slice, slice]:
 def _candidates(
     points: Floats, planes: tuple[Plane, ...], of_plane: NDArray[np.int32], *, known: bool
 ) -> Mask:
-    """Cells that may be of objects: on no plane, and above a support where nobody knows what is up."""
+    """Return cells of objects: on no plane, and above a support if the vertical is unknown."""
     where: Mask = np.isfinite(points[2]) & (of_plane == 0)
     if planes and not known:
         height = planes[0].height_m(points)
@@ -116,7 +116,7 @@ def _candidates(
 
 
 def _upright(planes: tuple[Plane, ...]) -> Upright:
-    """The vertical of the largest plane on which things may stand; without one, the camera's."""
+    """Return the vertical of the largest support; without one, that of the camera."""
     carrying = [plane for plane in planes if plane.kind in ("floor", "support")]
     if not carrying:
         return Upright(np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]), np.zeros(0))

@@ -1,4 +1,4 @@
-"""Sums over patches and over their borders. Sums of a union are sums of sums, so merging is cheap."""
+"""Sums over patches and their borders, which are additive, so merging is cheap."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.perception_node.segmentation.working_picture import Floats, Labels
+from semmap.nodes.perception_node.segmentation.working_image import Floats, Labels
 
 Sums = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -33,9 +33,9 @@ _SINES = np.sin(np.radians((20, 45)))
 
 @dataclass(frozen=True)
 class Upright:
-    """What is level and what is up. `axes`: (3, 3) rows of two level axes and the vertical, camera frame.
+    """The vertical and the supports. `axes`: (3, 3) rows of two level axes and the vertical, camera frame.
 
-    `supports`: (S,) the heights along the vertical on which things may stand, rising.
+    `supports`: (S,) the heights of supports along the vertical, ascending.
     """
 
     axes: Sums
@@ -44,12 +44,11 @@ class Upright:
 
 @dataclass
 class Statistics:
-    """What is known of P patches; row 0 is the first.
+    """The statistics of P patches.
 
-    `inside`: (P, INSIDE) sums over cells. `low`, `high`: (P, 3) bounds along two level axes and the
-    vertical [m]. `between`: (P, P, BETWEEN) sums over borders; only BEFORE, how often the first is in front
-    of the second, is not symmetric. `owner`: (P,) the patch that each was merged into, at first itself.
-    `supports`: see `Upright`.
+    `inside`: (P, INSIDE) sums over cells. `low`, `high`: (P, 3) bounds along two level axes and the vertical
+    [m]. `between`: (P, P, BETWEEN) sums over borders; only BEFORE, how often the first occludes the second,
+    is not symmetric. `owner`: (P,) the patch that each was merged into. `supports`: see `Upright`.
     """
 
     inside: Sums
@@ -60,7 +59,7 @@ class Statistics:
     supports: Sums
 
     def merge(self, a: int, b: int) -> None:
-        """Patch a becomes the union of a and b; b's row is left as it was, and means nothing any more."""
+        """Merge patch b into patch a; row b is invalid afterwards."""
         self.inside[a] += self.inside[b]
         self.low[a] = np.minimum(self.low[a], self.low[b])
         self.high[a] = np.maximum(self.high[a], self.high[b])
@@ -69,14 +68,14 @@ class Statistics:
         self.owner[self.owner == b] = a
 
     def copy(self) -> Statistics:
-        """An independent one."""
+        """Return a copy."""
         return Statistics(*(getattr(self, field.name).copy() for field in fields(self)))
 
 
 def statistics(
     labels: Labels, points: Floats, normals: Floats, shades: Floats, upright: Upright
 ) -> Statistics:
-    """Of patches `labels` (h, w), numbered from 1 without gaps; points, normals and shades (3, h, w)."""
+    """Compute the statistics of patches `labels` (h, w), from 1 without gaps; other arrays are (3, h, w)."""
     count = int(labels.max(initial=0))
     cells = _cells_of(labels, points, normals, shades)
     p = cells.points
@@ -86,7 +85,7 @@ def statistics(
         _hides(cells, labels, points[2]),
     )
     inside = np.stack([np.bincount(cells.owner, of, count) for of in values], axis=1, dtype=np.float64)
-    order = np.argsort(cells.owner.astype(np.uint16), kind="stable")  # of which sorting is counting
+    order = np.argsort(cells.owner.astype(np.uint16), kind="stable")  # which is sorted by counting
     placed = (upright.axes @ p)[:, order]
     starts = np.cumsum(inside[:, COUNT], dtype=np.int64) - inside[:, COUNT].astype(np.int64)
     low, high = (
@@ -102,11 +101,11 @@ def statistics(
 
 @dataclass(frozen=True)
 class _Cells:
-    """The N cells of all patches: rows of values instead of pictures, since most cells are in none.
+    """The N cells of all patches as rows of values, since most cells of an image are in none.
 
-    `place`: (N,) the cell's number in the picture, `owner`: (N,) its patch, from 0. `points`, `normals`,
-    `shades`: (3, N). `number`: (h, w) each cell's number among these, -1 for those in no patch, with a margin
-    of `_FAR` on all sides.
+    `place`: (N,) the cell's index in the image, `owner`: (N,) its patch, from 0. `points`, `normals`,
+    `shades`: (3, N). `number`: (h, w) the index of each cell among these, -1 for none, with a margin of
+    `_FAR` on all sides.
     """
 
     place: Indices
@@ -117,7 +116,7 @@ class _Cells:
     number: Indices
 
     def pairs(self, *shifts: tuple[int, int]) -> tuple[Indices, Indices]:
-        """The numbers of cells, and of those that are so far down and right of them in another patch."""
+        """Return pairs of cells in different patches that are shifted by these rows and columns."""
         width = self.number.shape[1]
         middle = np.flatnonzero(self.number >= 0)
         places = np.concatenate([middle + rows * width + columns for rows, columns in shifts])
@@ -136,7 +135,7 @@ def _cells_of(labels: Labels, points: Floats, normals: Floats, shades: Floats) -
 
 
 def _hides(cells: _Cells, labels: Labels, depth: Floats) -> Sums:
-    """(N,) at how many sides of cells something else is nearer: the patch may go on behind it."""
+    """Return (N,) the number of sides with a nearer neighbour: the patch may continue behind it."""
     hidden = np.zeros(len(cells.owner))
     z, label = np.pad(depth, 1, constant_values=np.nan), np.pad(labels, 1)
     middle = np.flatnonzero(label)
@@ -148,7 +147,7 @@ def _hides(cells: _Cells, labels: Labels, depth: Floats) -> Sums:
 
 
 def _add(between: Sums, a: Indices, b: Indices, columns: Mapping[int, NDArray[np.generic]]) -> None:
-    """Sums of `columns` over pairs of cells of the patches a and b, in both directions."""
+    """Add sums of `columns` over pairs of cells of the patches a and b, in both directions."""
     for column, values in columns.items():
         sums = _sums(len(between), a, b, values)
         between[..., column] = sums + sums.T
@@ -159,7 +158,7 @@ def _sums(count: int, a: Indices, b: Indices, values: NDArray[np.generic]) -> Su
 
 
 def _touching(between: Sums, cells: _Cells) -> None:
-    """Cells side by side."""
+    """Add sums over adjacent cells."""
     i, j = cells.pairs((0, 1), (1, 0))
     a, b, z, far = cells.owner[i], cells.owner[j], cells.points[2, i], cells.points[2, j]
     step = np.abs(z - far) > _STEP_M * np.maximum(z, z * z)
@@ -169,7 +168,7 @@ def _touching(between: Sums, cells: _Cells) -> None:
 
 
 def _bending(between: Sums, cells: _Cells) -> None:
-    """Cells four apart, which sees past rounded edges and narrow shadows."""
+    """Add sums over cells four apart, which spans rounded edges and narrow shadows."""
     i, j = cells.pairs((0, _FAR), (_FAR, 0), (3, 3), (3, -3))
     (p, q), (m, n), shades = (
         (of.take(i, axis=1), of.take(j, axis=1)) for of in (cells.points, cells.normals, cells.shades)
@@ -194,7 +193,7 @@ def _bending(between: Sums, cells: _Cells) -> None:
 
 
 def _seen_between(between: Sums, cells: _Cells, labels: Labels, depth: Floats) -> None:
-    """What stands in the line between the middles of two patches: something nearer, or open space."""
+    """Add what lies on the line between the centres of two patches: an occluder, or open space."""
     count = len(between)
     size = np.bincount(cells.owner, minlength=count)
     row, column, mean = (
@@ -208,6 +207,6 @@ def _seen_between(between: Sums, cells: _Cells, labels: Labels, depth: Floats) -
     there, z = labels.ravel()[place] - 1, depth.ravel()[place]
     other = (there != a) & (there != b)
     blocked = other & (z < line - _SAME_SURFACE_M)
-    open_ = other & (z > line + _SAME_SURFACE_M)  # where nothing is seen may be a shadow
+    open_ = other & (z > line + _SAME_SURFACE_M)  # missing depth may be a shadow
     for column_, values in ((SIGHT, other), (BLOCKED, blocked), (OPEN, open_)):
         between[a, b, column_] = between[b, a, column_] = values.sum(axis=0)

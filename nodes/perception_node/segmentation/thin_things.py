@@ -1,8 +1,8 @@
-"""Thin things on a plane: they stick out of it by less than its noise, but by more than that of many cells.
+"""Thin things on a plane, which rise above it by less than its noise, but more than that of a mean.
 
-What is nearer to a support than a camera's noise belongs to the plane by itself. The mean of a few cells is
-known several times better, so a plate or a wrench still shows from two metres: as an island that is higher
-than the plane around it, which may be warped as depth cameras' pictures are.
+A thing that is thinner than a camera's noise is part of the plane at first. The mean of several cells is more
+precise, so a plate or a wrench is visible from two metres as an island above the surrounding plane. The plane
+itself may be warped, as is usual for depth cameras.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from scipy import ndimage
 
 from semmap.nodes.perception_node.segmentation.planes import Plane, thickness_m
-from semmap.nodes.perception_node.segmentation.working_picture import Floats, Labels, Mask
+from semmap.nodes.perception_node.segmentation.working_image import Floats, Labels, Mask
 
 _SMOOTHED = 3  # cells across that a mean is taken of
 _BLOCK = 10  # cells across of a block; the plane around is the mean of three by three of them
@@ -22,13 +22,13 @@ _SKIRT = 0.5  # of the least height: so far down an island goes on
 _FEWEST_CELLS = 15
 _LARGEST_M = 0.5
 _HIGHER = 0.1
-"""With a larger share of cells beside it that are clearly higher it is the foot of something tall."""
+"""With a larger share of clearly higher adjacent cells, an island is the foot of something tall."""
 
 
 def thin_things(points: Floats, planes: Sequence[Plane], of_plane: Labels) -> Labels:
-    """(h, w) numbers from 1 of thin things on the level planes of a picture (3, h, w), 0 for none.
+    """Return (h, w) numbers from 1 of thin things on the level planes of an image (3, h, w), 0 for none.
 
-    `of_plane`: (h, w) the number of each cell's plane, 0 for none.
+    `of_plane`: (h, w) the plane of each cell, 0 for none.
     """
     found = np.zeros_like(of_plane)
     for number, plane in enumerate(planes, 1):
@@ -73,14 +73,14 @@ def _islands(points: Floats, plane: Plane, of_plane: Labels, number: int) -> lis
 
 
 def _means(values: Floats, where: Mask, across: int) -> Floats:
-    """(h, w) of the cells in `where` among so many around each, 0 where there are none."""
+    """Return (h, w) means of the cells in `where` in a window of this width, 0 for an empty window."""
     total = ndimage.uniform_filter(np.where(where, values, np.float32(0)), across, mode="constant")
     share = ndimage.uniform_filter(where.astype(np.float32), across, mode="constant")
     return np.asarray(total / np.maximum(share, np.float32(0.5 / across**2)))
 
 
 def _around(heights: Floats, where: Mask) -> Floats:
-    """(h, w) how high the plane is around each cell, of which those in `where` tell."""
+    """Return (h, w) the height of the plane around each cell, from the cells in `where`."""
     rows, columns = heights.shape
     room = (0, -rows % _BLOCK), (0, -columns % _BLOCK)
     blocks = [

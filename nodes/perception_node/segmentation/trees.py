@@ -1,4 +1,4 @@
-"""Boosted trees, evaluated by numpy alone."""
+"""Boosted trees, evaluated with NumPy."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 LEAVES = 16
-"""The most leaves of a tree: a set of them is the bits of 16."""
+"""Maximum number of leaves of a tree, stored as bits."""
 
 
 @dataclass(frozen=True)
 class Trees:
-    """A sum of T trees over features, turned into a probability.
+    """A sum of T trees over features, converted to a probability.
 
-    All questions of all trees are asked at once: "is the feature at most the threshold?" A *no* rules out the
-    leaves below the question's *yes*, and of the leaves that no answer rules out the leftmost is the tree's.
+    All tests of all trees are evaluated at once: is the feature at most the threshold? If not, the leaves
+    below the other branch are excluded. The leftmost remaining leaf is the tree's (QuickScorer).
 
-    `feature`, `threshold`, `keeps`: (Q,) of all questions, tree by tree; `keeps` has a bit for each leaf that
-    a *no* does not rule out. `first`: (T,) each tree's first question. `value`: (T, LEAVES) what each leaf
-    adds to the sum, and `bias` what is added to it besides.
+    `feature`, `threshold`, `keeps`: (Q,) of all tests, tree by tree; `keeps` has a bit for each leaf that a
+    failed test does not exclude. `first`: (T,) the first test of each tree. `value`: (T, LEAVES) the value of
+    each leaf, and `bias` a constant.
     """
 
     feature: NDArray[np.int32]
@@ -32,8 +32,8 @@ class Trees:
     bias: float
 
     def probability(self, features: NDArray[np.float32]) -> NDArray[np.float32]:
-        """(N,) of rows (N, F)."""
-        feature, threshold, rules_out = self._asked
+        """Return the probabilities (N,) of rows (N, F)."""
+        feature, threshold, rules_out = self._tests
         answers = np.ascontiguousarray(features.T)[feature] > threshold
         left = ~np.bitwise_or.reduce(answers * rules_out, axis=0)
         leaf = _LOWEST_BIT[left & -left]
@@ -42,11 +42,11 @@ class Trees:
         return np.asarray(1 / (1 + np.exp(-total)), np.float32)
 
     @cached_property
-    def _asked(self) -> tuple[NDArray[np.int32], NDArray[np.float32], NDArray[np.uint16]]:
-        """The trees' first questions, their second ones, and so on, since bits of many are joined at once.
+    def _tests(self) -> tuple[NDArray[np.int32], NDArray[np.float32], NDArray[np.uint16]]:
+        """Return the tests by depth, so that the bits of many trees are combined at once.
 
-        Feature (Q, T), threshold (Q, T, 1), and the leaves that a *no* rules out (Q, T, 1); a tree that has
-        no more questions asks its last one again.
+        Feature (Q, T), threshold (Q, T, 1), and the excluded leaves (Q, T, 1). A tree with fewer tests
+        repeats its last one.
         """
         count = np.diff(self.first, append=len(self.feature))
         at = self.first + np.minimum(np.arange(count.max(initial=0))[:, None], count - 1)

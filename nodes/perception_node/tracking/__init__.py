@@ -1,1 +1,1 @@
-"""Tracking: which observation is which thing, and what to tell the map."""
+"""Tracking: associates observations with things, and computes updates of the map."""

@@ -1,4 +1,4 @@
-"""Assignment of observations to things: optimal, in steps from the most certain on."""
+"""Optimal assignment of observations to things, in steps from the most certain one."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from semmap.nodes.perception_node.tracking.costs import (
     size_difference,
 )
 from semmap.nodes.perception_node.tracking.occupancy import Occupancy, OccupancyOf
-from semmap.nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, share
+from semmap.nodes.perception_node.tracking.overlap import OrientedBox, may_be_same_thing, share
 from semmap.nodes.perception_node.tracking.tracks import Track
 from semmap.schemas.entities import distance_m
 from semmap.schemas.perception import Observation
@@ -30,26 +30,29 @@ K = TypeVar("K", str, int)
 
 _PROHIBITIVE = 1e6
 _COVERED = 0.6
-"""A thing of which this share is in a segment's box may be a part of the segment."""
+"""A thing with this share inside a segment's box may be a part of the segment."""
 _FILLED = 0.2
-"""Its parts fill this share of a segment's box: that of a table holds what lies on it, but not much of it."""
+"""Parts fill this share of a segment's box.
+
+The box of a table contains what lies on it, but is not filled by it.
+"""
 _LIKE = 0.15
 _LARGE_M = 0.4
-"""What is larger is not carried about."""
+"""Larger things are not carried."""
 
 
 class Candidate(NamedTuple):
-    """Something that may be seen: what is remembered of it, and what it should look like."""
+    """A thing that may be visible: its track, and its expected appearance."""
 
     track: Track
     target: Target
 
 
 class Matching(NamedTuple):
-    """Which observation, by its number, is of which entity and of which of those that are none yet.
+    """The observation, by index, of each entity and each tentative track.
 
-    `occupancy` tells of each entity that was not seen what is seen of its box; `odd` are those of them in
-    whose box something of another size is seen. `new` are the observations of nothing known.
+    `occupancy` is what is seen in the box of each entity that was not observed; `odd` are those with
+    something of another size in their box. `new` are the observations of nothing known.
     """
 
     known: dict[str, int]
@@ -67,7 +70,7 @@ def match(
     classes: ClassHierarchy,
     config: TrackingConfig,
 ) -> Matching:
-    """Things in their places first; then what vanished, found elsewhere; then what is no entity yet."""
+    """Match things in their places first, then vanished things elsewhere, then tentative tracks."""
 
     def pairs(
         of: Mapping[K, Candidate], to: Collection[int], cost: Callable[[K, int], float]
@@ -78,7 +81,7 @@ def match(
     def in_place(of: Mapping[K, Candidate]) -> Callable[[K, int], float]:
         return lambda key, j: cost_in_place(of[key].target, observations[j], classes)
 
-    there = {name: c for name, c in known.items() if c.track.unseen < config.vanished_looks}
+    there = {name: c for name, c in known.items() if c.track.unseen < config.vanished_frames}
     single = {j for j, o in enumerate(observations) if not _is_of_several(o, there.values())}
     seen = pairs(there, single, in_place(there))
     rest = single.difference(seen.values())
@@ -110,10 +113,10 @@ def match(
     vanished = {
         name: known[name]
         for name, seen_there in occupancy.items()
-        if name in gone or known[name].track.unseen + (seen_there == "free") >= config.vanished_looks
+        if name in gone or known[name].track.unseen + (seen_there == "free") >= config.vanished_frames
     }
     others = dict(enumerate(tentative))
-    looks = {j: others[i].track.looks for i, j in pairs(others, rest, in_place(others)).items()}
+    looks = {j: others[i].track.frames for i, j in pairs(others, rest, in_place(others)).items()}
 
     def elsewhere(name: str, j: int) -> float:
         was_there_before = looks.get(j, 0) > known[name].track.absent
@@ -128,7 +131,7 @@ def match(
     for name in unseen:
         taken = {*found.values(), *(seen.values() if name not in there else ())}
         if any(_may_be_of(known[name].target, observations[j]) for j in taken):
-            occupancy[name] = "free"  # to itself: another has come to stand there
+            occupancy[name] = "free"  # another thing has taken its place
     return Matching(
         known=seen | found,
         tentative=again,
@@ -139,9 +142,9 @@ def match(
 
 
 def assign(rows: Sequence[A], columns: Sequence[B], cost: Callable[[A, B], float]) -> list[tuple[int, int]]:
-    """Pairs (row, column), as many as may be and of the least cost together; infinite ones never.
+    """Return as many pairs (row, column) as possible with minimum total cost; infinite costs are excluded.
 
-    The assignment problem, as SciPy solves it (Jonker-Volgenant).
+    The assignment problem is solved by SciPy (Jonker-Volgenant).
     """
     costs = np.array([[cost(a, b) for b in columns] for a in rows]).reshape(len(rows), len(columns))
     pairs = zip(*linear_sum_assignment(np.minimum(costs, _PROHIBITIVE)), strict=True)
@@ -149,12 +152,12 @@ def assign(rows: Sequence[A], columns: Sequence[B], cost: Callable[[A, B], float
 
 
 def _occupancy(target: Target, occupancy_of: OccupancyOf) -> Occupancy:
-    """Of a thing of unknown size nobody can tell whether it is there."""
+    """Return the occupancy of a thing's box; unknown for a thing of unknown size."""
     return "unknown" if target.box is None else occupancy_of(*target.box)
 
 
 def _is_of_several(seen: Observation, known: Iterable[Candidate]) -> bool:
-    """Whether a segment is made of several things: it covers their boxes, which fill it; it is like none."""
+    """Return whether a segment consists of several things: it covers their boxes and is like none of them."""
     whole = OrientedBox(seen.pose, seen.size_m)
     covered = [
         (c.target, box) for c in known if (box := c.target.box) is not None and share(box, whole) > _COVERED
@@ -168,17 +171,17 @@ def _is_of_several(seen: Observation, known: Iterable[Candidate]) -> bool:
 
 
 def _is_too_far(target: Target, seen: Observation, config: TrackingConfig) -> bool:
-    """Whether something large would have been pushed further than it is."""
+    """Return whether something large would have been pushed too far."""
     return max(seen.size_m) > _LARGE_M and distance_m(target.pose, seen.pose) > config.pushed_m
 
 
 def _shows_a_part(target: Target, seen: Observation, classes: ClassHierarchy) -> bool:
-    """Whether what is seen there is probably of the thing, so that its place is not empty.
+    """Return whether an observation is probably of the thing, so that its place is not empty.
 
-    Through what has thin legs a camera sees much of what is behind it.
+    Through things with thin legs, a camera sees much of what is behind them.
     """
     return (not seen.whole or classes.related(target.class_, seen.class_)) and _may_be_of(target, seen)
 
 
 def _may_be_of(target: Target, seen: Observation) -> bool:
-    return target.box is not None and are_of_one(target.box, OrientedBox(seen.pose, seen.size_m))
+    return target.box is not None and may_be_same_thing(target.box, OrientedBox(seen.pose, seen.size_m))

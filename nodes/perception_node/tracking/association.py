@@ -1,11 +1,15 @@
-"""Data association: compares observations with the map and decides what to tell it. Pure.
+"""Data association: compares observations with the map, and computes commands to update it. Pure.
 
-A look is matched in steps. First things that stand where they stood, or nearly. Then, as segments of one look
-are not always those of the next, what is only a part of a thing that still fills its place, or several such
-in one, is passed over. Then things that have vanished from their places are found again in things of the same
-kind that appeared elsewhere, so that identity survives a move. What is left over is new.
+A frame is matched in steps:
 
-Whoever calls must let the map take what it was told before the next look.
+- First, things at or near their old places.
+- Then, segments that are a part of a thing in its place, or several such things in one, are ignored, since
+  segmentation varies between frames.
+- Then, things that vanished are matched with things of the same kind elsewhere, so that identity survives a
+  move.
+- The remaining observations are new.
+
+The map must apply the commands before the next frame.
 """
 
 from __future__ import annotations
@@ -19,7 +23,7 @@ from msgspec import structs
 from semmap.nodes.perception_node.config import TrackingConfig
 from semmap.nodes.perception_node.tracking.assignment import Candidate, Matching, match
 from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
-from semmap.nodes.perception_node.tracking.costs import Target, is_rather_all_of_it
+from semmap.nodes.perception_node.tracking.costs import Target, is_complete_despite_cut
 from semmap.nodes.perception_node.tracking.legs import is_leg
 from semmap.nodes.perception_node.tracking.map_updates import (
     additions,
@@ -31,7 +35,12 @@ from semmap.nodes.perception_node.tracking.map_updates import (
     with_load,
 )
 from semmap.nodes.perception_node.tracking.occupancy import OccupancyOf
-from semmap.nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, left_behind, share
+from semmap.nodes.perception_node.tracking.overlap import (
+    OrientedBox,
+    may_be_same_thing,
+    share,
+    uncovered_slabs,
+)
 from semmap.nodes.perception_node.tracking.tracks import Track, Tracks, slack_m
 from semmap.nodes.perception_node.tracking.votes import Votes
 from semmap.schemas import errors
@@ -41,11 +50,11 @@ from semmap.schemas.perception import Observation
 
 _ANY_SIZE_M: Size = (0.1, 0.1, 0.1)
 _FORGOTTEN_AFTER = 3
-"""Looks in a row after which what is no entity yet, and no longer seen, is forgotten."""
+"""Consecutive frames without observation after which a tentative track is dropped."""
 
 
 class Association(NamedTuple):
-    """The new memory, what to tell the map, and for each observation its entity ("" for none yet)."""
+    """The new tracks, the commands, and the entity of each observation ("" for none yet)."""
 
     tracks: Tracks
     commands: tuple[Command, ...]
@@ -60,7 +69,7 @@ def associate(
     classes: ClassHierarchy,
     config: TrackingConfig,
 ) -> Association:
-    """One look. `entities` are the map's, `occupancy_of` tells what is seen of a box that none observed."""
+    """Process one frame. `entities` are of the map; `occupancy_of` returns what is seen of a box."""
     candidates = {
         name: _candidate(entity, tracks.known.get(name), classes, config)
         for name, entity in entities.items()
@@ -69,7 +78,7 @@ def associate(
     others = [Candidate(track, _target(track, classes)) for track in tracks.tentative]
     matching = match(candidates, others, observations, occupancy_of, classes, config)
     known = {
-        name: _watched(
+        name: _check_old_place(
             _after(entities[name], candidate, matching, observations, classes, config),
             entities[name],
             occupancy_of,
@@ -93,7 +102,7 @@ def associate(
         for name, box in boxes.items()
         if is_own(entities[name]) and (of := _leg_of(box, boxes)) is not None
     }
-    told = [
+    updates = [
         removal_of_leg(name, legs[name])
         if name in legs
         else with_load(update_of(entities[name], track, classes, config), entities[name], stays)
@@ -104,7 +113,7 @@ def associate(
         for track in tentative
         if is_sure(track, classes, config) and _leg_of(OrientedBox(track.pose, track.size_m), boxes) is None
     )
-    proposed = _apart_from_one_another(sure)
+    proposed = _without_overlaps(sure)
     added = additions(proposed, {*tracks.names, *entities}, classes)
     names = {j: name for name, j in matching.known.items()}
     new = (replace(track, part=not track.whole) for track in proposed)
@@ -114,13 +123,13 @@ def associate(
             tuple(track for track in tentative if track not in proposed),
             tracks.names.union(added),
         ),
-        (*(command for command in told if command is not None), *added.values()),
+        (*(command for command in updates if command is not None), *added.values()),
         tuple(names.get(j, "") for j in range(len(observations))),
     )
 
 
-def renamed(tracks: Tracks, add: Add, entities: Iterable[str]) -> tuple[Tracks, Add]:
-    """Another name for a new thing, whose name turns out to have been given before this memory began."""
+def rename_new_entity(tracks: Tracks, add: Add, entities: Iterable[str]) -> tuple[Tracks, Add]:
+    """Choose another name for a new thing, if its name was used before this process started."""
     if add.name is None:
         raise errors.InternalError("a new thing has no name")
     name = free_name(add.class_, tracks.names.union(entities))
@@ -132,9 +141,9 @@ def renamed(tracks: Tracks, add: Add, entities: Iterable[str]) -> tuple[Tracks, 
 def _candidate(
     entity: Entity, track: Track | None, classes: ClassHierarchy, config: TrackingConfig
 ) -> Candidate:
-    """An entity; if somebody else has told the map another pose of it since, that counts.
+    """Return the candidate of an entity. A pose set by another source since the last frame takes effect.
 
-    What the process before this one believed of perception's own is remembered by the map.
+    The confidence of an earlier process in perception's own entities is stored in the map.
     """
     if entity.pose is None:
         raise errors.InternalError(f"{entity.name} has no pose")
@@ -143,13 +152,13 @@ def _candidate(
     if track is None:
         sureness = entity.shape_provenance.confidence if own else None
         votes = Votes() if sureness is None else Votes.remembered(entity.class_, sureness)
-        track = Track(entity.pose, entity.size_m or usual_m or _ANY_SIZE_M, votes, told=entity.pose)
+        track = Track(entity.pose, entity.size_m or usual_m or _ANY_SIZE_M, votes, map_pose=entity.pose)
     elsewhere = distance_m(track.pose, entity.pose) > slack_m(track.size_m, config.still_m)
-    if track.told != entity.pose and elsewhere:
-        track = replace(track, pose=entity.pose, looks=0, unseen=0, odd=0, fit=None)
-    if track.told != entity.pose:  # the map has been told
+    if track.map_pose != entity.pose and elsewhere:
+        track = replace(track, pose=entity.pose, frames=0, unseen=0, odd=0, fit=None)
+    if track.map_pose != entity.pose:  # the map has changed
         track = replace(track, part=track.part and not track.whole, outsized=False)
-    track = replace(track, told=entity.pose, left=track.left and track.told == entity.pose)
+    track = replace(track, map_pose=entity.pose, left=track.left and track.map_pose == entity.pose)
     target = _target(track, classes)
     return Candidate(
         track,
@@ -174,34 +183,36 @@ def _after(
     classes: ClassHierarchy,
     config: TrackingConfig,
 ) -> Track:
-    """What is remembered of an entity after this look."""
+    """Return the track of an entity after this frame."""
     track, name = candidate.track, entity.name
     if name not in matching.known:
         return track.miss(matching.occupancy[name], odd=name in matching.odd)
     seen = observations[matching.known[name]]
     mistaken = is_own(entity) and not classes.is_a(track.sized_as, entity.class_)
-    if mistaken and is_rather_all_of_it(seen, candidate.target):
+    if mistaken and is_complete_despite_cut(seen, candidate.target):
         return track.see_all(seen, config)
     if track.is_nearly_odd(config):
-        track = replace(track, sized=0, whole=False)  # what was believed of its size does not count
+        track = replace(track, sized=0, whole=False)  # its previous size is invalid
     return track.see(seen, config)
 
 
-def _watched(track: Track, entity: Entity, occupancy_of: OccupancyOf, config: TrackingConfig) -> Track:
-    """With a look at the place that the map has of it: is that left, or does it only seem so?"""
+def _check_old_place(
+    track: Track, entity: Entity, occupancy_of: OccupancyOf, config: TrackingConfig
+) -> Track:
+    """Return the track with a check whether the map's place of the entity is empty."""
     if entity.pose is None or track.unseen or not has_moved(entity, track, config):
         return replace(track, left=False, kept=False)
     before, now = OrientedBox(entity.pose, track.size_m), OrientedBox(track.pose, track.size_m)
     left = track.left or share(now, before) == 0.0 or occupancy_of(*before) == "free"
     whole = OrientedBox(entity.pose, entity.size_m or track.size_m)
-    kept = not left and any(occupancy_of(*slab) == "occupied" for slab in left_behind(whole, now))
+    kept = not left and any(occupancy_of(*slab) == "occupied" for slab in uncovered_slabs(whole, now))
     return replace(track, left=left, kept=kept)
 
 
 def _tentative(
     tracks: Sequence[Track], matching: Matching, observations: Sequence[Observation], config: TrackingConfig
 ) -> list[Track]:
-    """What is remembered of things that are no entities yet, new ones at the end."""
+    """Return the tentative tracks, new ones at the end."""
     after = [
         track.see(observations[matching.tentative[i]], config)
         if i in matching.tentative
@@ -216,14 +227,14 @@ def _tentative(
 
 
 def _leg_of(piece: OrientedBox, things: Mapping[str, OrientedBox]) -> str | None:
-    """The name of that of some things that a piece is a leg of."""
+    """Return the name of the thing of which a piece is a leg."""
     return next((name for name, thing in things.items() if is_leg(piece, thing)), None)
 
 
-def _apart_from_one_another(tracks: Iterable[Track]) -> list[Track]:
+def _without_overlaps(tracks: Iterable[Track]) -> list[Track]:
     apart: list[Track] = []
     for track in tracks:
         box = OrientedBox(track.pose, track.size_m)
-        if not any(are_of_one(box, OrientedBox(other.pose, other.size_m)) for other in apart):
+        if not any(may_be_same_thing(box, OrientedBox(other.pose, other.size_m)) for other in apart):
             apart.append(track)
     return apart

@@ -14,25 +14,25 @@ from semmap.schemas.perception import Observation
 FORBIDDEN = math.inf
 _NEARBY_M = 0.05
 _SAME, _SAME_OF_ANOTHER_CLASS = 0.3, 0.15
-"""What stands in place is the thing if its size is no more unlike (`size_difference`)."""
+"""Maximum `size_difference` of a thing in its place, of the same or another class."""
 _OF_A_KIND, _OF_ANY_KIND = 0.35, 0.15
-"""The same for what is recognised somewhere else: by a class and size, or by its size alone."""
+"""The same for a thing recognised elsewhere: by class and size, or by size alone."""
 _VAGUE = 0.1
-"""How unlike what is like nothing known is what has a class."""
+"""Class difference between an unknown class and a known one."""
 _BLUR_M = 0.01
-"""What an extent may be off by, however small it is."""
+"""Error of an extent, however small it is."""
 _SAME_SPOT, _AS_WIDE = 0.25, 0.2
-"""Of a thing's width so far aside, and so unlike in width (log), it still stands where it stood."""
+"""A thing is at its place if it is off by this share of its width, and its width differs by this (log)."""
 _OUTSIZED, _USUAL = 0.5, 0.3
-"""A thing is too large by so much (log) of what its class measures, and is like that within so much."""
+"""A thing is too large if it exceeds its class's size by the first (log), and typical within the second."""
 _HIDDEN_PART = 0.3
-"""How much it counts that an extent is smaller of what is seen in part."""
+"""Weight of a smaller extent of a partly visible thing."""
 
 
 class Target(NamedTuple):
-    """A thing that may be seen: where it was last, how big it is if that is known, and its class.
+    """A thing that may be visible: its last pose, its size if known, and its class.
 
-    `whole`: its size was not only seen in part. `usual_m`: what its class measures, for want of its own size.
+    `whole`: it was seen completely. `usual_m`: the typical size of its class.
     """
 
     pose: Pose
@@ -43,28 +43,28 @@ class Target(NamedTuple):
 
     @property
     def box(self) -> OrientedBox | None:
-        """The box that it fills, as far as one can tell."""
+        """Return its box, of its own size or that of its class."""
         size_m = self.size_m or self.usual_m
         return None if size_m is None else OrientedBox(self.pose, size_m)
 
 
 def cost_in_place(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
-    """How unlike an observation is a thing that hardly moved, if at all; FORBIDDEN if it cannot be it."""
+    """Return the cost of matching a thing that did not move much; FORBIDDEN if it cannot match."""
     size_m = target.size_m or seen.size_m
-    aside, above = _apart(target.pose, size_m, seen)
+    horizontal, vertical = _apart(target.pose, size_m, seen)
     reach = (max(size_m[:2]) + max(seen.size_m[:2])) / 4.0 + _NEARBY_M
-    if aside > reach or above > (size_m[2] + seen.size_m[2]) / 4.0 + _NEARBY_M:
+    if horizontal > reach or vertical > (size_m[2] + seen.size_m[2]) / 4.0 + _NEARBY_M:
         return FORBIDDEN
-    unlike, alien = size_difference(target, seen), class_difference(target.class_, seen, classes)
-    if unlike > _SAME and target.size_m and _is_one_but_for_its_depth(target, seen):
-        unlike, reach = _SAME_OF_ANOTHER_CLASS, max(reach, 1.5 * aside)
-    if unlike > (_SAME_OF_ANOTHER_CLASS if alien > 0.5 else _SAME):
+    mismatch, class_cost = size_difference(target, seen), class_difference(target.class_, seen, classes)
+    if mismatch > _SAME and target.size_m and _is_one_but_for_its_depth(target, seen):
+        mismatch, reach = _SAME_OF_ANOTHER_CLASS, max(reach, 1.5 * horizontal)
+    if mismatch > (_SAME_OF_ANOTHER_CLASS if class_cost > 0.5 else _SAME):
         return FORBIDDEN
-    return aside / reach + unlike + alien
+    return horizontal / reach + mismatch + class_cost
 
 
-def is_rather_all_of_it(seen: Observation, target: Target) -> bool:
-    """Whether what a picture's edge cuts measures what the class does for which the thing is too large."""
+def is_complete_despite_cut(seen: Observation, target: Target) -> bool:
+    """Return whether a cut observation has its class's typical size, and the thing is too large."""
     if seen.whole or not target.whole or target.size_m is None or target.usual_m is None:
         return False
     usual, before, now = _upright(target.usual_m), _upright(target.size_m), _upright(seen.size_m)
@@ -78,55 +78,57 @@ def _is_one_but_for_its_depth(target: Target, seen: Observation) -> bool:
 
 
 def cost_anywhere(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
-    """How unlike an observation is a thing that has vanished from its place; FORBIDDEN if of another kind.
+    """Return the cost of matching a thing that vanished; FORBIDDEN if it is of another kind.
 
-    Where it is hardly counts, but what has come back to its place may be less like it.
+    The position has little weight. A thing back in its place may be less similar.
     """
     box = target.box
     if box is None:
         return FORBIDDEN
     vague = ANYTHING in (seen.class_, target.class_)
-    unlike = size_difference(target._replace(size_m=box.size_m), seen)
-    alike = classes.related(target.class_, seen.class_) and unlike <= (_OF_ANY_KIND if vague else _OF_A_KIND)
-    if not alike and cost_in_place(target, seen, classes) == FORBIDDEN:
+    mismatch = size_difference(target._replace(size_m=box.size_m), seen)
+    matches = classes.related(target.class_, seen.class_) and mismatch <= (
+        _OF_ANY_KIND if vague else _OF_A_KIND
+    )
+    if not matches and cost_in_place(target, seen, classes) == FORBIDDEN:
         return FORBIDDEN
-    aside, above = _apart(box.pose, box.size_m, seen)
+    horizontal, vertical = _apart(box.pose, box.size_m, seen)
     vaguely = vague and target.class_ != seen.class_
-    alien = _VAGUE if vaguely else class_difference(target.class_, seen, classes)
-    return unlike + alien + 0.1 * math.hypot(aside, above)
+    class_cost = _VAGUE if vaguely else class_difference(target.class_, seen, classes)
+    return mismatch + class_cost + 0.1 * math.hypot(horizontal, vertical)
 
 
 def cost_of_height(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
-    """How far aside something of its kind and as wide stands on the same spot: only its height is another.
+    """Return the cost of matching a thing of the same kind and width that differs only in height.
 
-    FORBIDDEN where there is no such.
+    FORBIDDEN if it cannot match.
     """
     if target.size_m is None or not classes.related(target.class_, seen.class_):
         return FORBIDDEN
     (x, y, z), (u, v, w) = target.pose.position_m, seen.pose.position_m
     wide, now = _upright(target.size_m)[:2], _upright(seen.size_m)[:2]
-    aside = math.hypot(u - x, v - y) / min(wide)
+    horizontal = math.hypot(u - x, v - y) / min(wide)
     as_wide = all(abs(math.log(b / a)) < _AS_WIDE for a, b in zip(wide, now, strict=True))
-    return aside if as_wide and aside < _SAME_SPOT and abs(w - z) < _BLUR_M else FORBIDDEN
+    return horizontal if as_wide and horizontal < _SAME_SPOT and abs(w - z) < _BLUR_M else FORBIDDEN
 
 
 def size_difference(target: Target, seen: Observation) -> float:
-    """How unlike the extents are, however turned: the mean of |log ratio|, or half the worst if that is more.
+    """Return the difference of extents: the mean of |log ratio|, or half the worst if that is more.
 
-    What is seen in part may be smaller. A single extent that is twice too large is that of a thing with its
-    neighbour, however right the others are.
+    The horizontal extents are sorted. A partly visible thing may be smaller. A single extent that is twice
+    too large indicates a thing together with its neighbour.
     """
     if target.size_m is None:
         return 0.0
     pairs = zip(_upright(target.size_m), _upright(seen.size_m), strict=True)
     ratios = [math.log((now + _BLUR_M) / (before + _BLUR_M)) for before, now in pairs]
     shrunk, grown = (1.0 if whole else _HIDDEN_PART for whole in (seen.whole, target.whole))
-    unlike = [ratio * grown if ratio > 0.0 else -ratio * shrunk for ratio in ratios]
-    return max(sum(unlike) / 3.0, max(unlike) / 2.0)
+    mismatch = [ratio * grown if ratio > 0.0 else -ratio * shrunk for ratio in ratios]
+    return max(sum(mismatch) / 3.0, max(mismatch) / 2.0)
 
 
 def class_difference(class_name: str, seen: Observation, classes: ClassHierarchy) -> float:
-    """From 0 for one that is related to what was seen, to 1 for one that it can hardly be."""
+    """Return 0 for a class related to the observed one, up to 1 for an unlikely class."""
     if classes.related(class_name, seen.class_):
         return 0.0
     return max(0.0, 1.0 - sum(p for leaf, p in seen.candidates.items() if classes.is_a(leaf, class_name)))
@@ -138,6 +140,6 @@ def _upright(size_m: Size) -> tuple[float, float, float]:
 
 
 def _apart(pose: Pose, size_m: Size, seen: Observation) -> tuple[float, float]:
-    """Distance of the middles, horizontally and vertically [m]."""
+    """Return the distance of the centres, horizontally and vertically [m]."""
     (x, y, z), (u, v, w) = pose.position_m, seen.pose.position_m
     return math.hypot(u - x, v - y), abs(w + seen.size_m[2] / 2.0 - z - size_m[2] / 2.0)

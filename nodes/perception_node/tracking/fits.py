@@ -1,4 +1,4 @@
-"""What fitting its class's model told of a thing that is tracked. Pure."""
+"""The result of fitting a class's model to a tracked thing. Pure."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from semmap.schemas.entities import Pose, Quaternion
 
 _TURNED_RAD = math.radians(8.0)
-"""A fitted yaw that differs from the map's by more is told."""
+"""The map is updated if the fitted yaw differs by more."""
 
 
 @dataclass(frozen=True)
 class KnownFit:
-    """Of which class the model was, how well it fits, and what its frame is turned by, if that is known.
+    """The class of the fitted model, its score, and the orientation of its frame, if known.
 
-    It holds while the thing rests. `fold` turns of the model about its own z look the same.
+    It is valid while the thing rests. `fold`: rotational symmetry of the model about z.
     """
 
     class_: str
@@ -24,7 +24,7 @@ class KnownFit:
     fold: int
 
     def turned_from(self, pose: Pose) -> bool:
-        """Whether a pose has the thing turned by more than what a fit is off by."""
+        """Return whether a pose differs from the fitted yaw by more than the error of a fit."""
         if self.orientation_wxyz is None or self.fold == 0:
             return False
         fitted = Pose(position_m=pose.position_m, orientation_wxyz=self.orientation_wxyz)

@@ -1,4 +1,4 @@
-"""Fronts: of what stands between others a camera before it sees the front, and how deep it is only later."""
+"""Fronts: a thing between others is first seen from the front, without its depth."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ _FLAT = 0.75
 """A front is less deep than this share of its width."""
 _DEEPER = 1.4
 _DEEPEST = 1.25
-"""How many times as deep as wide what has a front may be."""
+"""Maximum ratio of depth to width of a thing with a front."""
 _ALIKE = 0.25
 _WITHIN = 0.65
 _LEAST_M = 0.3
-"""Of what is narrower a camera sees the sides, too, and of what is lower than wide the top."""
+"""The sides of a narrower thing are visible, and the top of one that is lower than wide."""
 
 
 def is_front(piece: OrientedBox, thing: OrientedBox) -> bool:
-    """Whether a box holds the front of a thing and the other box all of it, as wide and high, but deeper.
+    """Return whether a box is the front of a thing, and the other box the complete thing, which is deeper.
 
-    A table top that is seen in part is none, nor is it with a chair in it all of the table.
+    A partly seen table top is not a front, nor is one merged with a chair the complete table.
     """
     depth, width = sorted(piece.size_m[:2])
     deep, wide = sorted(thing.size_m[:2])

@@ -1,4 +1,4 @@
-"""Legs of furniture: often a camera sees them apart from the seat or the top that they carry."""
+"""Legs of furniture, which a camera may see separately from the seat or top above them."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _AT_CORNER_M = 0.08
 
 
 def is_leg(piece: OrientedBox, thing: OrientedBox) -> bool:
-    """Whether a piece is a leg of a thing: slender, upright, on the floor, and below a corner of its box.
+    """Return whether a piece is a leg of a thing: slender, upright, on the floor, and below a corner.
 
-    A bottle that stands under the middle of a table is none, nor is one that stands beside it.
+    A bottle under the middle of a table, or next to one, is not a leg.
     """
     (x, y, low), (width, depth, height) = piece.pose.position_m, piece.size_m
     (centre_x, centre_y, floor), (wide, deep, tall) = thing.pose.position_m, thing.size_m

@@ -1,4 +1,4 @@
-"""Map updates: the commands that bring the map in line with the tracks. Pure."""
+"""Map updates: the commands that update the map from the tracks. Pure."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from semmap.schemas.perception import DISPLACED, MISSING
 AGENT = "perception_node"
 
 _SURE, _UNSURE = 0.6, 0.25
-"""What one class has more and another has less of the votes than, if the one contradicts the other."""
+"""One class contradicts another if it has more, and the other less, of the votes than these."""
 _LEAST_RESIZE_M = 0.015
 _BESIDE_M, _LARGE_M = 0.5, 2.0
-"""How far beyond a thing that what stands on it may be; how large what is of unknown size may be."""
+"""Distance from a thing within which others may stand on it, and the size of a thing of unknown size."""
 
 
 def subject_of(command: Command) -> str:
-    """What a command is about: an entity or, if it is to be a new one, the class."""
+    """Return the subject of a command: an entity or, for a new one, the class."""
     match command:
         case Add():
             return f"a new {command.class_}"
@@ -39,16 +39,16 @@ def subject_of(command: Command) -> str:
 
 
 def is_sure(track: Track, classes: ClassHierarchy, config: TrackingConfig) -> bool:
-    """Whether a thing was seen at rest often enough to become an entity."""
+    """Return whether a thing was seen at rest often enough to become an entity."""
     if not track.whole:
-        return track.looks >= config.part_looks and not track.unseen
+        return track.frames >= config.part_frames and not track.unseen
     clear = track.votes.share(track.votes.belief(classes), classes) >= config.clear
-    enough = config.clear_looks if clear else config.confirm_looks
-    return track.looks >= enough and not track.unseen
+    enough = config.clear_frames if clear else config.confirm_frames
+    return track.frames >= enough and not track.unseen
 
 
 def additions(tracks: Iterable[Track], taken: Set[str], classes: ClassHierarchy) -> dict[str, Add]:
-    """A new entity for each track, in order, by names that are not taken."""
+    """Return the command to add each track, in order, with unused names."""
     added: dict[str, Add] = {}
     for track in tracks:
         class_name = track.votes.belief(classes)
@@ -72,21 +72,24 @@ def additions(tracks: Iterable[Track], taken: Set[str], classes: ClassHierarchy)
 def update_of(
     entity: Entity, track: Track, classes: ClassHierarchy, config: TrackingConfig
 ) -> Update | Remove | None:
-    """What the map must be told of an entity, if anything; what it is only of perception's own."""
+    """Return the command that updates an entity, if any.
+
+    Class and size are only changed for perception's own entities.
+    """
     own = is_own(entity)
     if track.is_gone(config):
         return _gone(entity, track, own, config)
-    if not track.rests(config.rest_looks):
+    if not track.rests(config.rest_frames):
         return None
     changes: dict[str, Any] = {}
     moved = has_moved(entity, track, config)
     if moved or _is_turned(entity, track):
         corrected = (track.part and track.whole) or track.outsized or _was_front(entity, track)
-        enough = config.kept_looks if track.kept else config.nudge_looks
-        looks = track.borne_out if moved else track.looks
-        if not track.left and not corrected and looks < enough:
+        enough = config.kept_frames if track.kept else config.nudge_frames
+        frames = track.whole_frames if moved else track.frames
+        if not track.left and not corrected and frames < enough:
             return None
-        pose = rounded(track.told_pose)
+        pose = rounded(track.reported_pose)
         changes |= {"at": pose.position_m, "orientation": pose.orientation_wxyz}
     class_name = _other_class(entity, track, classes, config)
     if own:
@@ -97,7 +100,7 @@ def update_of(
         changes["conflict"] = conflict
     if not changes:
         return None
-    reason = f"{entity.name} has moved" if "at" in changes else f"a closer look at {entity.name}"
+    reason = f"{entity.name} has moved" if "at" in changes else f"better view of {entity.name}"
     confidence = _confidence(track, class_name or track.votes.belief(classes), classes)
     return Update(
         source="perception", agent=AGENT, reason=reason, name=entity.name, confidence=confidence, **changes
@@ -107,9 +110,9 @@ def update_of(
 def with_load(
     command: Update | Remove | None, entity: Entity, seen: Iterable[Entity]
 ) -> Update | Remove | None:
-    """A move takes along what stands on the thing and cannot be seen; what is seen says itself where it is.
+    """Return a move that also moves things on top that are not visible; visible things are observed.
 
-    `seen` are the entities that are seen, or whose places are seen to be filled.
+    `seen` are the entities that are visible, or whose places are seen to be filled.
     """
     if not isinstance(command, Update) or command.at is None or entity.pose is None:
         return command
@@ -130,20 +133,22 @@ def _extent(entity: Entity) -> tuple[float, float]:
 
 
 def is_own(entity: Entity) -> bool:
-    """Whether all that the map says of it is by perception."""
+    """Return whether all facts of an entity are from perception."""
     return {entity.shape_provenance.source, entity.reference_provenance.source} == {"perception"}
 
 
 def removal_of_leg(name: str, of: str) -> Remove:
-    """Of what was an entity before the furniture was seen that it is a leg of."""
+    """Return the command to remove an entity that is a leg of furniture."""
     return Remove(source="perception", agent=AGENT, reason=f"{name} is a leg of {of}", names=(name,))
 
 
 def _gone(entity: Entity, track: Track, own: bool, config: TrackingConfig) -> Update | Remove | None:
     if own and config.when_gone == "remove":
-        looks = f"{track.odd or track.unseen} looks in a row"
+        frames = f"{track.odd or track.unseen} consecutive frames"
         found = (
-            f"something else was in its place in {looks}" if track.odd else f"its place was empty in {looks}"
+            f"something else was in its place in {frames}"
+            if track.odd
+            else f"its place was empty in {frames}"
         )
         reason = f"{entity.name} is gone: {found}"
         return Remove(source="perception", agent=AGENT, reason=reason, names=(entity.name,))
@@ -155,7 +160,7 @@ def _gone(entity: Entity, track: Track, own: bool, config: TrackingConfig) -> Up
 
 
 def has_moved(entity: Entity, track: Track, config: TrackingConfig) -> bool:
-    """Whether a thing was last seen elsewhere than the map says, or turned."""
+    """Return whether the pose of a thing differs from the map's."""
     if entity.pose is None:
         return True
     slack = slack_m(track.size_m, config.moved_m)
@@ -163,22 +168,22 @@ def has_moved(entity: Entity, track: Track, config: TrackingConfig) -> bool:
 
 
 def _is_turned(entity: Entity, track: Track) -> bool:
-    """Whether the model of a thing tells another yaw than perception itself told the map."""
+    """Return whether the model of a thing has another yaw than perception sent to the map."""
     own = entity.pose_provenance is not None and entity.pose_provenance.source == "perception"
     return own and track.fit is not None and entity.pose is not None and track.fit.turned_from(entity.pose)
 
 
 def _was_front(entity: Entity, track: Track) -> bool:
-    """Whether the map has but the front of it."""
+    """Return whether the map has only the front of a thing."""
     if entity.pose is None or entity.size_m is None:
         return False
     return is_front(OrientedBox(entity.pose, entity.size_m), OrientedBox(track.pose, track.size_m))
 
 
 def _other_class(entity: Entity, track: Track, classes: ClassHierarchy, config: TrackingConfig) -> str:
-    """The class that a thing turns out to be, if that is more special than the map's, or contradicts it."""
+    """Return the class of a thing, if it is more specific than the map's or contradicts it."""
     believed = track.votes.belief(classes)
-    if track.looks < config.confirm_looks or classes.is_a(entity.class_, believed):
+    if track.frames < config.confirm_frames or classes.is_a(entity.class_, believed):
         return ""
     if classes.is_a(believed, entity.class_):
         return believed
@@ -189,22 +194,23 @@ def _other_class(entity: Entity, track: Track, classes: ClassHierarchy, config: 
 
 
 def _vaguer_class(entity: Entity, track: Track, classes: ClassHierarchy, config: TrackingConfig) -> str:
-    """The class above the map's that a thing turns out to be, by looks that no longer bear that out.
+    """Return a superclass of the map's class, if recent frames no longer support the map's class.
 
-    Only one that looks tell from those below it: what is like nothing known, or what perception learnt.
+    Only a class that vision can distinguish from its subclasses is returned: the unknown class, or a learned
+    one.
     """
     believed = track.votes.belief(classes)
     tells = believed == ANYTHING or believed in classes.usual_m
     if believed == entity.class_ or not tells or not classes.is_a(entity.class_, believed):
         return ""
-    doubted = track.looks >= config.confirm_looks and track.votes.share(entity.class_, classes) < _UNSURE
+    doubted = track.frames >= config.confirm_frames and track.votes.share(entity.class_, classes) < _UNSURE
     return believed if doubted else ""
 
 
 def _described(
     entity: Entity, track: Track, class_name: str, classes: ClassHierarchy, config: TrackingConfig
 ) -> dict[str, Any]:
-    """What is seen better than before: the class, with what it is called after it, and the size."""
+    """Return the changes that a better view gives: class, label and size."""
     changes: dict[str, Any] = {}
     if class_name:
         changes["class_"] = class_name
@@ -212,7 +218,7 @@ def _described(
             changes["ref"] = classes.label(class_name)
     if (
         track.whole
-        and (track.part or track.outsized or _was_front(entity, track) or track.looks >= config.nudge_looks)
+        and (track.part or track.outsized or _was_front(entity, track) or track.frames >= config.nudge_frames)
         and _is_resized(entity, track, config)
     ):
         changes["size"] = _to_millimetres(track.size_m)
@@ -227,13 +233,13 @@ def _is_resized(entity: Entity, track: Track, config: TrackingConfig) -> bool:
 
 
 def _conflict(entity: Entity, track: Track, class_name: str, classes: ClassHierarchy) -> str:
-    """What is seen against an operator's word; what was seen before stays until the word is borne out."""
+    """Return the conflict of an observation with an operator's statement; kept until it is confirmed."""
     if class_name and not classes.is_a(class_name, entity.class_):
         return f"looks like a {class_name}"
-    borne_out = entity.conflict in (MISSING, DISPLACED) or classes.is_a(
+    confirmed = entity.conflict in (MISSING, DISPLACED) or classes.is_a(
         track.votes.belief(classes), entity.class_
     )
-    return "" if borne_out else entity.conflict
+    return "" if confirmed else entity.conflict
 
 
 def _confidence(track: Track, class_name: str, classes: ClassHierarchy) -> float:

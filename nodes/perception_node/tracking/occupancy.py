@@ -17,34 +17,34 @@ from semmap.schemas import errors
 from semmap.schemas.entities import Pose, Size
 
 Occupancy = Literal["free", "occupied", "unknown"]
-"""`free`: one looks through where the thing should be; `occupied`: there is something."""
+"""`free`: the camera looks through the box; `occupied`: something is there."""
 OccupancyOf = Callable[[Pose, Size], Occupancy]
-"""The occupancy of the box of a size that stands at a pose."""
+"""Returns the occupancy of the box of a size at a pose."""
 
 _SHRINK = 0.8
-"""Only the inner part of a box is looked at: its neighbours reach into what was measured too wide."""
+"""Only the inner part of a box is checked, since neighbours may reach into an overestimated box."""
 _MOST_RAYS = 2000
 _FEWEST_RAYS = 12
 _IN_FRONT_M = 0.02
 _NEAREST_M = 0.05
 _IN_VIEW, _UNHIDDEN, _FREE = 0.7, 0.5, 0.75
 _THROUGH = 0.7
-"""A ray that ends behind this share of its way through the box has met nothing in it."""
+"""A ray that ends behind this share of its path through the box passed through."""
 _LARGE_M, _THIN_M, _LARGE_FREE = 0.4, 0.1, 0.9
-"""What is larger, not thin, may be slats and legs, past which most rays go: it is gone if nearly all do."""
+"""A large thing may consist of slats and legs, which most rays miss: it is gone if nearly all rays pass."""
 _EDGE_M, _FOOT_M = 0.02, 0.05
-"""What is so near the sides of its box or so low may be what it stands at or on."""
+"""Points this close to the sides of the box, or this low, may belong to its surroundings."""
 
 
 def occupancy_in(clouds: Sequence[Cloud]) -> OccupancyOf:
-    """What these organised clouds of one moment say of the box that stands at a pose (map frame)."""
+    """Return the occupancy function of organised clouds of one moment (map frame)."""
     usable = [cloud for cloud in clouds if cloud.organised and cloud.intrinsics is not None]
     return partial(_occupancy, usable)
 
 
 def _occupancy(clouds: Sequence[Cloud], pose: Pose, size_m: Size) -> Occupancy:
-    said = {_occupancy_by(cloud, pose, size_m) for cloud in clouds}
-    return "occupied" if "occupied" in said else "free" if "free" in said else "unknown"
+    found = {_occupancy_by(cloud, pose, size_m) for cloud in clouds}
+    return "occupied" if "occupied" in found else "free" if "free" in found else "unknown"
 
 
 def _occupancy_by(cloud: Cloud, pose: Pose, size_m: Size) -> Occupancy:
@@ -57,13 +57,13 @@ def _occupancy_by(cloud: Cloud, pose: Pose, size_m: Size) -> Occupancy:
         return "unknown"
     depth = cloud.points_camera[rows, columns, 2].astype(float)
     enter, leave = _crossing(_rays(rows, columns, cloud.intrinsics), camera_from_box, half)
-    way = leave - enter
-    crossing = way > 0.3 * max(float(way.max(initial=0.0)), 1e-9)
-    depth, enter, way = depth[crossing], enter[crossing], way[crossing]
+    length = leave - enter
+    crossing = length > 0.3 * max(float(length.max(initial=0.0)), 1e-9)
+    depth, enter, length = depth[crossing], enter[crossing], length[crossing]
     unhidden = depth > enter - _IN_FRONT_M  # NaN is hidden
     if depth.size < _FEWEST_RAYS or unhidden.mean() < _UNHIDDEN:
         return "unknown"
-    through = (depth[unhidden] - enter[unhidden]) / way[unhidden] > _THROUGH
+    through = (depth[unhidden] - enter[unhidden]) / length[unhidden] > _THROUGH
     if max(size_m) <= _LARGE_M or min(size_m) <= _THIN_M:
         return "free" if through.mean() >= _FREE else "occupied"
     points = cloud.points_camera[rows, columns][crossing][unhidden]
@@ -72,7 +72,7 @@ def _occupancy_by(cloud: Cloud, pose: Pose, size_m: Size) -> Occupancy:
 
 
 def _inside(points: NDArray[np.float32], camera_from_box: Transform, half: Transform) -> NDArray[np.bool_]:
-    """Which points (N, 3) of a camera's frame are in a box: also at its far side, where its back is."""
+    """Return which points (N, 3) of the camera frame are in a box, with its far side."""
     own = (points - camera_from_box[:3, 3]) @ camera_from_box[:3, :3]
     within = (np.abs(own) < half - _EDGE_M).all(axis=1)
     return np.asarray(within & (own[:, 2] > _FOOT_M - half[2]))
@@ -81,7 +81,7 @@ def _inside(points: NDArray[np.float32], camera_from_box: Transform, half: Trans
 def _pixels(
     cloud: Cloud, camera_from_box: Transform, half: Transform
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Rows and columns that the box covers, some of them if they are many; none if it is hardly in view."""
+    """Return rows and columns that the box covers, subsampled; none if the box is mostly out of view."""
     signs = np.stack(np.meshgrid([-1, 1], [-1, 1], [-1, 1]), axis=-1).reshape(-1, 3)
     corners = signs * half @ camera_from_box[:3, :3].T + camera_from_box[:3, 3]
     nothing = np.empty(0, np.intp)
@@ -104,7 +104,7 @@ def _pixels(
 
 
 def _rays(rows: NDArray[np.intp], columns: NDArray[np.intp], intrinsics: Transform) -> Transform:
-    """(N, 3) what each pixel's middle sees at a depth of 1 m, camera frame."""
+    """Return (N, 3) the ray of each pixel's centre at a depth of 1 m, camera frame."""
     middles = np.stack([columns + 0.5, rows + 0.5, np.ones(rows.size)], axis=-1)
     return np.asarray(middles @ np.linalg.inv(intrinsics).T)
 
@@ -112,7 +112,10 @@ def _rays(rows: NDArray[np.intp], columns: NDArray[np.intp], intrinsics: Transfo
 def _crossing(
     rays: Transform, camera_from_box: Transform, half: Transform
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The depths [m] at which each ray enters and leaves the box, by slabs; it misses where out of order."""
+    """Return the depths [m] at which each ray enters and leaves the box (slab method).
+
+    A ray misses the box if they are out of order.
+    """
     rotation, middle = camera_from_box[:3, :3], camera_from_box[:3, 3]
     eye = -middle @ rotation
     directions = rays @ rotation
@@ -122,7 +125,7 @@ def _crossing(
 
 
 def _map_from_box(pose: Pose, size_m: Size) -> Transform:
-    """(4, 4) of the frame in the box's middle."""
+    """Return the transform (4, 4) of the frame at the box's centre."""
     w, x, y, z = pose.orientation_wxyz
     transform = np.eye(4)
     transform[:3, :3] = [

@@ -1,4 +1,4 @@
-"""How much of one upright box lies in another."""
+"""Overlap of upright boxes."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ _THIN_M = 0.1
 
 
 class OrientedBox(NamedTuple):
-    """The box that a thing fills in the map: `pose` is that of its bottom centre."""
+    """The box of a thing in the map: `pose` is that of its bottom centre."""
 
     pose: Pose
     size_m: Size
 
     @property
     def volume_m3(self) -> float:
-        """Of the box."""
+        """Return the volume."""
         return math.prod(self.size_m)
 
 
 def share(inner: OrientedBox, outer: OrientedBox) -> float:
-    """The part of the volume of `inner` that is in `outer`, roughly, in [0, 1]."""
+    """Return the approximate share of the volume of `inner` in `outer`, in [0, 1]."""
     if _apart(inner, outer):
         return 0.0
     points = _GRID * inner.size_m @ _turn(inner.pose.yaw_rad).T
@@ -41,16 +41,16 @@ def share(inner: OrientedBox, outer: OrientedBox) -> float:
     )
 
 
-def are_of_one(one: OrientedBox, other: OrientedBox) -> bool:
-    """Whether one box may hold a part of the other's thing: they overlap, and neither is tiny."""
+def may_be_same_thing(one: OrientedBox, other: OrientedBox) -> bool:
+    """Return whether boxes may be of one thing: they overlap, and neither is tiny."""
     ratio = one.volume_m3 / other.volume_m3
     return (ratio > _NO_PART and share(one, other) > _A_PART) or (
         1.0 / ratio > _NO_PART and share(other, one) > _A_PART
     )
 
 
-def left_behind(before: OrientedBox, now: OrientedBox) -> list[OrientedBox]:
-    """What of one box is beyond the other, along its own axes: slabs that are not too thin to look into."""
+def uncovered_slabs(before: OrientedBox, now: OrientedBox) -> list[OrientedBox]:
+    """Return the parts of one box outside the other, along its axes, as slabs of a minimum thickness."""
     turn = _turn(before.pose.yaw_rad)
     half, now_half = np.array(before.size_m) / 2.0, np.array(now.size_m) / 2.0
     middle = np.array(now.pose.position_m) - before.pose.position_m
@@ -80,9 +80,9 @@ def left_behind(before: OrientedBox, now: OrientedBox) -> list[OrientedBox]:
 
 def _apart(one: OrientedBox, other: OrientedBox) -> bool:
     reach = (math.hypot(*one.size_m[:2]) + math.hypot(*other.size_m[:2])) / 2.0
-    aside = math.dist(one.pose.position_m[:2], other.pose.position_m[:2])
-    above = other.pose.position_m[2] - one.pose.position_m[2]
-    return aside > reach or above > one.size_m[2] or -above > other.size_m[2]
+    horizontal = math.dist(one.pose.position_m[:2], other.pose.position_m[:2])
+    vertical = other.pose.position_m[2] - one.pose.position_m[2]
+    return horizontal > reach or vertical > one.size_m[2] or -vertical > other.size_m[2]
 
 
 def _turn(yaw_rad: float) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:

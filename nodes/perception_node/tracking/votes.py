@@ -8,43 +8,43 @@ from dataclasses import dataclass, field
 from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
 
 _SURE = 0.4
-"""A class that has this much of the votes is believed."""
+"""Minimum share of the votes of a believed class."""
 _FORGET = 0.9
-"""What a look's vote is worth one look later."""
+"""Weight of a vote after one frame."""
 
 
 @dataclass(frozen=True)
 class Votes:
-    """What was said of one thing, look by look: class to probability, older looks counting less."""
+    """The votes for one thing: class to weighted probability, with exponential decay."""
 
     weights: Mapping[str, float] = field(default_factory=dict)
-    looks: float = 0.0
+    frames: float = 0.0
 
     @staticmethod
     def remembered(class_name: str, probability: float) -> Votes:
-        """What is left of very many looks that said the same, with this mean probability."""
+        """Return the votes after very many frames with this mean probability."""
         looks = 1.0 / (1.0 - _FORGET)
         return Votes({class_name: probability * looks}, looks)
 
-    def cast(self, class_name: str, probability: float, worth: float = 1.0) -> Votes:
-        """One more look, that is worth so many."""
+    def cast(self, class_name: str, probability: float, weight: float = 1.0) -> Votes:
+        """Return the votes with one more, of this weight."""
         weights = {name: weight * _FORGET for name, weight in self.weights.items()}
-        weights[class_name] = weights.get(class_name, 0.0) + probability * worth
-        return Votes(weights, self.looks * _FORGET + worth)
+        weights[class_name] = weights.get(class_name, 0.0) + probability * weight
+        return Votes(weights, self.frames * _FORGET + weight)
 
     def moved(self, class_name: str, to: str) -> Votes:
-        """The same, but what was said of one class is said of another."""
+        """Return the votes with those for one class moved to another."""
         weights = dict(self.weights)
         weights[to] = weights.get(to, 0.0) + weights.pop(class_name, 0.0)
-        return Votes(weights, self.looks)
+        return Votes(weights, self.frames)
 
     def share(self, class_name: str, classes: ClassHierarchy) -> float:
-        """The mean probability that it is of this class."""
+        """Return the mean probability of a class."""
         support = sum(w for voted, w in self.weights.items() if classes.is_a(voted, class_name))
-        return support / self.looks if self.looks else 0.0
+        return support / self.frames if self.frames else 0.0
 
     def belief(self, classes: ClassHierarchy) -> str:
-        """The most special class that is sure enough."""
+        """Return the most specific class that is certain enough."""
         named = {*self.weights, *(a for voted in self.weights for a in classes.ancestors.get(voted, ()))}
         sure = [name for name in named if self.share(name, classes) >= _SURE and classes.is_a(name, ANYTHING)]
         return max(

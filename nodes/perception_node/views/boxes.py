@@ -1,4 +1,4 @@
-"""Upright boxes around points, of the least area on the floor: the yaw is searched for, coarse to fine."""
+"""Upright boxes of minimum floor area around points; the yaw is searched coarse to fine."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LEAST_M = 1e-3
 
 @dataclass(frozen=True)
 class Box:
-    """An upright box: `low` and `high` (3,) [m] along the map's axes turned by `yaw_rad` about z."""
+    """An upright box: `low` and `high` (3,) [m] along the map's axes rotated by `yaw_rad` about z."""
 
     low: Numbers
     high: Numbers
@@ -24,31 +24,31 @@ class Box:
 
     @property
     def size_m(self) -> Numbers:
-        """(3,) extents along its own x, y, z."""
+        """Return the extents (3,) along its own x, y, z."""
         return np.asarray(self.high - self.low)
 
     @property
     def bottom_m(self) -> Numbers:
-        """(3,) its bottom centre in the map frame."""
+        """Return its bottom centre (3,) in the map frame."""
         x, y, _ = (self.low + self.high) / 2
         c, s = np.cos(self.yaw_rad), np.sin(self.yaw_rad)
         return np.array([c * x - s * y, s * x + c * y, self.low[2]])
 
     def quarter_turned(self) -> Box:
-        """The same box with its x axis along what was its y axis."""
+        """Return the same box with its x axis along its former y axis."""
         low = np.array([self.low[1], -self.high[0], self.low[2]])
         high = np.array([self.high[1], -self.low[0], self.high[2]])
         return Box(low, high, self.yaw_rad + np.pi / 2)
 
 
 def in_frame(points: Numbers, yaw_rad: float) -> Numbers:
-    """(N, 3) map points along the map's axes turned by `yaw_rad` about z."""
+    """Return map points (N, 3) along the map's axes rotated by `yaw_rad` about z."""
     c, s = np.cos(yaw_rad), np.sin(yaw_rad)
     return np.asarray(points @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]))
 
 
 def best_yaw(points: Numbers) -> float:
-    """The yaw [rad], to a degree and a quarter turn, of the smallest upright box around points (N, 3)."""
+    """Return the yaw [rad] of the smallest upright box around points (N, 3), modulo a quarter turn."""
     xy = np.ascontiguousarray(points[:, :2].T)
     rough = _COARSE_RAD[np.argmin(_areas(xy, _COARSE_RAD))]
     fine = rough + _FINE_RAD
@@ -62,7 +62,7 @@ def _areas(xy: Numbers, yaws_rad: Numbers) -> Numbers:
 
 
 def box_around(points: Numbers, yaw_rad: float, bottom_m: float) -> Box:
-    """The upright box of this yaw around map points (N, 3), down to `bottom_m`."""
+    """Return the upright box of this yaw around map points (N, 3), down to `bottom_m`."""
     turned = np.ascontiguousarray(in_frame(points, yaw_rad).T)  # a minimum over long rows is faster
     low, high = turned.min(axis=1), turned.max(axis=1)
     low[2] = bottom_m

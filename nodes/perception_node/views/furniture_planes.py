@@ -1,4 +1,4 @@
-"""Planes that are no part of the room but sides of things: table tops, the fronts of cupboards."""
+"""Planes that are sides of furniture, not of the room: table tops, fronts of cupboards."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ from semmap.nodes.perception_node.segmentation import Segmentation
 from semmap.nodes.perception_node.views.segments import Segment
 
 _ROOM_M = 2.2
-"""A wall is higher or wider, as far as it is seen."""
+"""A wall exceeds this height or width in the visible part."""
 
 _NEAR_M = 0.03
 _BENEATH = 0.5
 _HANGING = 0.6
-"""What reaches to less of a top's height stands under it."""
+"""A thing that reaches less than this share of a top's height stands under it."""
 
 _LYING_M = 0.004
-"""What lies on a top, however thin, is mostly so much above it."""
+"""A thing that lies on a top, however thin, is mostly this far above it."""
 _TOP_M = 0.05
 
-_HIGHEST = 0.99  # what is higher may be a few stray points
+_HIGHEST = 0.99  # higher points may be outliers
 _UNDER_M = 0.015
 _STANDING = 0.5
-"""What has a larger share of its points above a top stands on it, and ends there."""
+"""A thing with a larger share of its points above a top stands on it, and ends there."""
 
 EVERY = 4
-"""Of so many rows and columns one is enough to tell how high and how wide a plane is."""
+"""Only every so many rows and columns are used to measure a plane."""
 
 
 def with_furniture(segmentation: Segmentation, thin: Floats) -> tuple[NDArray[np.int32], frozenset[int]]:
-    """Labels (H, W) in which such planes are things too, and the numbers of these.
+    """Return labels (H, W) that include such planes as things, and their numbers.
 
-    `thin`: (H / EVERY, W / EVERY, 3) of every so many rows and columns the points, map frame [m].
+    `thin`: (H / EVERY, W / EVERY, 3) the points of every so many rows and columns, map frame [m].
     """
     labels, planes = segmentation.labels.copy(), segmentation.plane_labels
     thin_planes = planes[::EVERY, ::EVERY]
@@ -60,7 +60,7 @@ def with_furniture(segmentation: Segmentation, thin: Floats) -> tuple[NDArray[np
 def _under(
     top: Floats, labels: NDArray[np.int32], thin: Floats, furniture: frozenset[int]
 ) -> NDArray[np.bool_]:
-    """(H, W) pixels of what stands on a top (M, 3) that are below it: the rim of the table, its legs."""
+    """Return the pixels (H, W) below a top (M, 3) of things that stand on it: the table's rim and legs."""
     own, height = labels[::EVERY, ::EVERY], float(np.median(top[:, 2]))
     ending = np.zeros_like(own)
     for label in np.unique(own[(thin[..., 2] < height - _UNDER_M) & (own > 0)]):
@@ -74,8 +74,8 @@ def _under(
     return np.asarray((whole > 0) & (whole == labels))
 
 
-def with_what_hangs_below(groups: Sequence[Sequence[Segment]]) -> list[list[int]]:
-    """Which groups of segments are one thing: a top, and what is below it and reaches up to near it."""
+def join_legs(groups: Sequence[Sequence[Segment]]) -> list[list[int]]:
+    """Return the groups of segments that are one thing: a top, and parts below that reach close to it."""
     clouds = [np.concatenate([segment.points for segment in group]) for group in groups]
     highest = [float(np.quantile(points[:, 2], _HIGHEST)) for points in clouds]
     tops = [n for n, group in enumerate(groups) if any(segment.carrier for segment in group)]
@@ -96,12 +96,12 @@ def with_what_hangs_below(groups: Sequence[Sequence[Segment]]) -> list[list[int]
 
 
 def _level(heights: Floats, highest: float) -> float:
-    """How high a top is, of which the highest points are noise."""
+    """Return the height of a top, whose highest points are noise."""
     return float(np.median(heights[heights > highest - _TOP_M]))
 
 
 def _beneath(points: Floats, top: Floats) -> NDArray[np.bool_]:
-    """(N,) which of some points (N, 3) are within the hull of those of a top (M, 3), as seen from above."""
+    """Return which points (N, 3) lie within the hull of a top (M, 3), seen from above."""
     sides = ConvexHull(top[:, :2], qhull_options="QJ").equations  # a front alone is a line
     return np.asarray((points[:, :2] @ sides[:, :2].T + sides[:, 2] < _NEAR_M).all(axis=1))
 
@@ -110,7 +110,7 @@ Corners = tuple[NDArray[np.float32], NDArray[np.float32]]
 
 
 def _box(points: Floats) -> Corners:
-    """The map's lowest and highest coordinates (3,) of points (N, 3), a few stray ones apart."""
+    """Return the bounds (3,) of points (N, 3), without outliers."""
     if not len(points):
         return np.full(3, np.inf, np.float32), np.full(3, -np.inf, np.float32)
     low, high = np.quantile(points, [1 - _HIGHEST, _HIGHEST], axis=0).astype(np.float32)
@@ -118,7 +118,7 @@ def _box(points: Floats) -> Corners:
 
 
 def _stands_free(points: Floats, mask: NDArray[np.bool_]) -> bool:
-    """Whether an upright plane ends within the picture and below a room's height."""
+    """Return whether an upright plane ends within the image and below a room's height."""
     if mask[0].any() or mask[:, 0].any() or mask[:, -1].any():
         return False
     low, high = _box(points)
@@ -126,7 +126,7 @@ def _stands_free(points: Floats, mask: NDArray[np.bool_]) -> bool:
 
 
 def _touching(boxes: Sequence[Corners]) -> list[int]:
-    """For each box the number of the first one that it hangs together with."""
+    """Return for each box the first one that it is connected to."""
     group = list(range(len(boxes)))
     for a in range(len(boxes)):
         for b in range(a):

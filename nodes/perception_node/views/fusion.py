@@ -1,4 +1,4 @@
-"""Fusion: which segments of several views show the same thing."""
+"""Fusion: finds segments of several views that show the same thing."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from semmap.nodes.perception_node.views.segmented_view import Sight
+from semmap.nodes.perception_node.views.segmented_view import SegmentedView
 
 _PROBES = 300
 _SAME_SHARE = 0.5
@@ -17,19 +17,21 @@ _LARGE_SHARE = 0.2
 _DOUBT = 0.01
 
 Member = tuple[int, int]
-"""The number of a sight, and that of a segment in its `segments`."""
+"""The index of a view, and that of a segment in its `segments`."""
 
 
-def fuse(sights: Sequence[Sight]) -> list[list[Member]]:
-    """Group segments by the thing they show."""
-    members, same = shown_by_others(sights)
+def group_segments(sights: Sequence[SegmentedView]) -> list[list[Member]]:
+    """Group segments by thing."""
+    members, same = matching_segments(sights)
     return _groups(same | same.T, members)
 
 
-def held_for_one(sights: Sequence[Sight], groups: Sequence[Sequence[Member]]) -> NDArray[np.float64]:
-    """(2, G, G) how likely cameras hold two groups for one: the one that does so least, and most.
+def same_thing_logits(
+    sights: Sequence[SegmentedView], groups: Sequence[Sequence[Member]]
+) -> NDArray[np.float64]:
+    """Return (2, G, G) the minimum and maximum logit, over cameras, that two groups are one thing.
 
-    Logits; 0 where no camera was asked.
+    The value is 0 if no camera compared them.
     """
     group_of = [np.zeros(int(sight.labels.max(initial=0)) + 1, int) for sight in sights]
     for number, members in enumerate(groups, 1):
@@ -49,12 +51,12 @@ def held_for_one(sights: Sequence[Sight], groups: Sequence[Sequence[Member]]) ->
     return np.where(np.isfinite(both), both, 0.0)
 
 
-def shown_by_others(sights: Sequence[Sight]) -> tuple[list[Member], NDArray[np.bool_]]:
-    """All segments, and (M, M) whether another camera takes one for another there.
+def matching_segments(sights: Sequence[SegmentedView]) -> tuple[list[Member], NDArray[np.bool_]]:
+    """Return all segments, and (M, M) whether one matches the other in another view.
 
-    Most of its points that the other sees are of that segment there, and either these are a large share of
-    all its points, or it is so the other way round too. Clouds without intrinsics or pose see nothing of what
-    others do.
+    A match requires that most of its points visible in the other view lie on the other segment, and that
+    these are a large share of all its points or the same holds in reverse. Clouds without intrinsics or pose
+    have no matches.
     """
     members = [(view, n) for view, sight in enumerate(sights) for n in range(len(sight.segments))]
     row = {(view, sights[view].segments[n].label): at for at, (view, n) in enumerate(members)}
@@ -72,12 +74,12 @@ def shown_by_others(sights: Sequence[Sight]) -> tuple[list[Member], NDArray[np.b
                     most[at, there] = count > _SAME_SHARE * len(hits)
                     many[at, there] = count > _LARGE_SHARE * len(probes)
     carrier = np.array([sights[view].segments[n].carrier for view, n in members], dtype=bool)
-    same = (most & many) | (most & most.T)  # few points may lie where two things touch
-    return members, same & (carrier == carrier[:, None])  # what is flat looks like its table to another
+    same = (most & many) | (most & most.T)  # two things may touch in a few points
+    return members, same & (carrier == carrier[:, None])  # a flat thing may merge with its table
 
 
-def _labels_of(points: NDArray[np.float32], sight: Sight) -> NDArray[np.int32]:
-    """The labels of those map points (N, 3) that a camera sees, and not merely what is before them."""
+def _labels_of(points: NDArray[np.float32], sight: SegmentedView) -> NDArray[np.int32]:
+    """Return the labels of map points (N, 3) that a camera sees unoccluded."""
     cloud, pose = sight.cloud, sight.map_from_camera
     if cloud.intrinsics is None or cloud.map_from_camera is None:
         return np.empty(0, np.int32)
@@ -94,6 +96,6 @@ def _labels_of(points: NDArray[np.float32], sight: Sight) -> NDArray[np.int32]:
 
 
 def _groups(same: NDArray[np.bool_], members: Sequence[Member]) -> list[list[Member]]:
-    """The connected components of a symmetrical relation (N, N)."""
+    """Return the connected components of a symmetric relation (N, N)."""
     count, root = connected_components(same, directed=False)
     return [[members[int(at)] for at in np.flatnonzero(root == r)] for r in range(count)]

@@ -1,4 +1,4 @@
-"""A cloud cut up by somebody else's masks: in place of our own segments, or before them."""
+"""Segments a cloud by the masks of an external detector, instead of or in addition to our segments."""
 
 from __future__ import annotations
 
@@ -8,39 +8,39 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from semmap.nodes.perception_node.input.masks import Masks, Said
-from semmap.nodes.perception_node.views.segmented_view import Sight, labelled
+from semmap.nodes.perception_node.input.masks import DetectorLabel, Masks
+from semmap.nodes.perception_node.views.segmented_view import SegmentedView, with_labels
 
 _GAP_M, _GAP_SHARE = 0.015, 0.012
-"""Neighbouring pixels are of one surface if their depths differ by less: metres, and a share of the depth."""
+"""Maximum depth step on one surface: in metres, and as a share of the depth."""
 _FEWEST = 20
 _LEFT = 0.5
-"""What is covered more than this is covered: a segment of our own by masks, a mask by planes of the room."""
+"""A segment or mask that is covered by more than this share counts as covered."""
 
 
-def with_masks(sight: Sight, masks: Masks) -> Sight:
-    """The same cloud cut up by masks; elsewhere our own segments remain, unless they are to stand `alone`.
+def with_masks(sight: SegmentedView, masks: Masks) -> SegmentedView:
+    """Return the view segmented by masks; elsewhere our segments remain, unless the masks are `alone`.
 
     Raises ValueError for masks of another size.
     """
     if masks.labels.shape != sight.labels.shape:
         (h, w), (height, width) = masks.labels.shape, sight.labels.shape
-        raise ValueError(f"the masks are of {w} x {h} pixels, the picture of {width} x {height}")
+        raise ValueError(f"the masks have {w} x {h} pixels, the image {width} x {height}")
     depth_m = sight.cloud.points_camera[..., 2]
     labels, count = np.zeros_like(sight.labels), 0
-    said: dict[int, Said] = {}
-    for number, told in enumerate(masks.said, 1):
+    found: dict[int, DetectorLabel] = {}
+    for number, label in enumerate(masks.detector_labels, 1):
         mask = masks.labels == number
         clear = mask & (sight.planes == 0)
         if np.count_nonzero(clear) < _LEFT * np.count_nonzero(mask):
-            clear = mask  # it lies flat on what it is on, or is a plane itself
+            clear = mask  # it lies flat on a plane, or is one
         own = _of_one_surface(clear, depth_m)
         if np.count_nonzero(own) < _FEWEST:
             continue
         count += 1
         labels[own] = count
-        if told is not None:
-            said[count] = told
+        if label is not None:
+            found[count] = label
     masked, carriers = count, set[int]()
     if not masks.alone:
         for old in range(1, int(sight.labels.max(initial=0)) + 1):
@@ -52,16 +52,16 @@ def with_masks(sight: Sight, masks: Masks) -> Sight:
                 if old in sight.carriers:
                     carriers.add(count)
     undisputed = np.zeros((0, 0), np.float32)
-    cut = labelled(replace(sight, same=undisputed), labels, frozenset(carriers))
+    cut = with_labels(replace(sight, same=undisputed), labels, frozenset(carriers))
     named = tuple(
-        replace(segment, masked=segment.label <= masked, said=said.get(segment.label))
+        replace(segment, masked=segment.label <= masked, detector_label=found.get(segment.label))
         for segment in cut.segments
     )
     return replace(cut, carriers=frozenset(carriers), segments=named)
 
 
 def _of_one_surface(mask: NDArray[np.bool_], depth_m: NDArray[np.float32]) -> NDArray[np.bool_]:
-    """The largest part of a mask without a leap in depth: its rim often lies on what is behind."""
+    """Return the largest part of a mask without a depth step: its rim often lies on the background."""
     seen = mask & np.isfinite(depth_m)
     rows, columns = (np.flatnonzero(seen.any(axis=axis)) for axis in (1, 0))
     if not rows.size:

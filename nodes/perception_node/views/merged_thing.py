@@ -26,12 +26,11 @@ _BODY_M = 0.15
 
 @dataclass(frozen=True)
 class Thing:
-    """One thing as it was seen, not yet completed by what is hidden.
+    """The visible part of one thing.
 
-    `cells`: (N, 3) one point for each small cube that holds any, map frame [m], so that near and far, seen
-    once and seen twice weigh the same; `colors`: (N, 3) their mean colours in [0, 1], or None.
-    `box`: around the cells, down to the support. `eyes`: (V, 3) where the cameras were [m].
-    `lifted_m`: how far above the support the lowest point is.
+    `cells`: (N, 3) one point per occupied voxel, map frame [m], so that near, far and repeated points have
+    equal weight. `colors`: (N, 3) mean colours in [0, 1], or None. `box`: around the cells, down to the
+    support. `eyes`: (V, 3) camera positions [m]. `lifted_m`: height of the lowest point above the support.
     """
 
     segments: tuple[Segment, ...]
@@ -43,29 +42,29 @@ class Thing:
 
     @property
     def carrier(self) -> bool:
-        """Others may stand on it: a top of it was seen."""
+        """Return whether others may stand on it, because a top was seen."""
         return any(segment.carrier for segment in self.segments)
 
     @property
     def masked(self) -> bool:
-        """Somebody else's detector cut it out."""
+        """Return whether it is from an external detector."""
         return any(segment.masked for segment in self.segments)
 
     @property
     def whole(self) -> bool:
-        """No picture's edge cuts it."""
+        """Return whether no image edge cuts it."""
         return not any(segment.cut for segment in self.segments)
 
     @property
     def count(self) -> int:
-        """Points of all views."""
+        """Return the number of points in all views."""
         return sum(segment.count for segment in self.segments)
 
 
 def thing_of(segments: Sequence[Segment], supports: Sequence[Support]) -> Thing:
-    """Put the segments of one thing together; it stands on the highest support that is not above it.
+    """Merge the segments of one thing; it stands on the highest support below it.
 
-    Of a table often the top alone is seen, which is no support of its own.
+    If only a table's top is visible, it is not its own support.
     """
     points = np.concatenate([segment.points for segment in segments])
     shades = [segment.colors for segment in segments if segment.colors is not None]
@@ -88,7 +87,7 @@ def thing_of(segments: Sequence[Segment], supports: Sequence[Support]) -> Thing:
 
 
 def _cells(points: Floats, colors: NDArray[np.uint8] | None) -> tuple[Numbers, Numbers | None]:
-    """The mean point and colour of each occupied cube; lonely points go where others crowd."""
+    """Return mean point and colour of each occupied voxel; isolated points in dense clouds are removed."""
     cell, counts, far = _cubes(points)
     if far.any():
         keep = ~far[cell]
@@ -104,9 +103,9 @@ def _cells(points: Floats, colors: NDArray[np.uint8] | None) -> tuple[Numbers, N
 
 
 def _cubes(points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
-    """(N,) the number of each point's cube, (C,) how many each holds, and which are far from all others.
+    """Return (N,) the voxel of each point, (C,) the counts, and which voxels are far from all others.
 
-    A thing's outline holds some of what is behind it: these few points are far from the thing.
+    The outline of a thing includes some background points, which are far from it.
     """
     corners = np.ascontiguousarray(points.T)  # a minimum over long rows is faster
     low, high = corners.min(axis=1), corners.max(axis=1)

@@ -1,4 +1,4 @@
-"""One cloud, segmented."""
+"""One segmented cloud."""
 
 from __future__ import annotations
 
@@ -10,22 +10,21 @@ from numpy.typing import NDArray
 from semmap.nodes.perception_node.input.cloud import Cloud, Floats
 from semmap.nodes.perception_node.segmentation import Plane, Segmentation, segment
 from semmap.nodes.perception_node.segmentation.gravity import level_plane, room_pose, standing_on
-from semmap.nodes.perception_node.segmentation.picture import as_picture
-from semmap.nodes.perception_node.segmentation.working_picture import grid_of
+from semmap.nodes.perception_node.segmentation.unorganised_cloud import as_image
+from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from semmap.nodes.perception_node.views.furniture_planes import EVERY, with_furniture
 from semmap.nodes.perception_node.views.segments import Segment, cut_out, in_map
 from semmap.nodes.perception_node.views.supports import Support, support_of
 
 
 @dataclass(frozen=True)
-class Sight:
-    """A cloud in the map, with its segments.
+class SegmentedView:
+    """A cloud in the map frame, with its segments.
 
-    `map_from_camera`: (4, 4); where nobody knows it, the floor that is seen is z = 0,
-    or the largest plane where there is but one.
-    `labels`: (H, W) the segment of each pixel, 0 for none. `carriers`: on which others may stand. `planes`:
-    (H, W) the plane of each pixel, 0 for none. `supports`: its level planes. `same`: (N, N) how
-    likely segments n + 1 and m + 1 are one all the same, 0 where nobody knows.
+    `map_from_camera`: (4, 4); if unknown, the visible floor is z = 0, or the largest plane if there is only
+    one. `labels`: (H, W) the segment of each pixel, 0 for none. `carriers`: segments on which others may
+    stand. `planes`: (H, W) the plane of each pixel, 0 for none. `supports`: level planes. `same`: (N, N) the
+    probability that segments n + 1 and m + 1 are one thing, 0 if unknown.
     """
 
     cloud: Cloud
@@ -38,10 +37,10 @@ class Sight:
     segments: tuple[Segment, ...] = ()
 
 
-def see(cloud: Cloud) -> Sight:
-    """Take a cloud apart; one without order as the picture that a camera at its origin has of it."""
+def segment_cloud(cloud: Cloud) -> SegmentedView:
+    """Segment a cloud. An unorganised cloud is converted to the image of a camera at its origin."""
     if not cloud.organised:
-        return _without_order(cloud)
+        return _unorganised_view(cloud)
     placed = _placed(cloud)
     segmentation = segment(placed)
     pose = placed.map_from_camera
@@ -49,35 +48,37 @@ def see(cloud: Cloud) -> Sight:
         pose = _above_largest(segmentation.planes)
     thin = in_map(cloud.points_camera[::EVERY, ::EVERY], pose)
     labels, carriers = segmentation.labels, frozenset[int]()
-    if placed.map_from_camera is not None:  # else the largest plane is taken for the floor, whatever it is
+    if placed.map_from_camera is not None:  # else the largest plane counts as the floor
         labels, carriers = with_furniture(segmentation, thin)
     supports = _supports(segmentation, thin)
-    bare = Sight(cloud, pose, labels, carriers, segmentation.plane_labels, supports, segmentation.same)
-    return labelled(bare, labels, carriers)
+    bare = SegmentedView(
+        cloud, pose, labels, carriers, segmentation.plane_labels, supports, segmentation.same
+    )
+    return with_labels(bare, labels, carriers)
 
 
-def labelled(sight: Sight, labels: NDArray[np.int32], carriers: frozenset[int]) -> Sight:
-    """The same cloud cut up by other labels (H, W)."""
+def with_labels(sight: SegmentedView, labels: NDArray[np.int32], carriers: frozenset[int]) -> SegmentedView:
+    """Return the view segmented by other labels (H, W)."""
     segments = cut_out(sight.cloud, sight.map_from_camera, labels, carriers)
     return replace(sight, labels=labels, carriers=carriers, segments=tuple(segments))
 
 
-def _without_order(cloud: Cloud) -> Sight:
-    picture, pixel = as_picture(cloud)
-    seen = see(picture)
+def _unorganised_view(cloud: Cloud) -> SegmentedView:
+    image, pixel = as_image(cloud)
+    seen = segment_cloud(image)
     labels, planes = (np.append(of.ravel(), np.int32(0))[pixel][None, :] for of in (seen.labels, seen.planes))
-    return labelled(replace(seen, cloud=cloud, planes=planes), labels, seen.carriers)
+    return with_labels(replace(seen, cloud=cloud, planes=planes), labels, seen.carriers)
 
 
 def _placed(cloud: Cloud) -> Cloud:
-    """The cloud with the pose that follows from the floor that it shows, where nobody knows a better one."""
+    """Return the cloud with a pose computed from the visible floor, if its pose is unknown."""
     if cloud.map_from_camera is not None:
         return cloud
     return replace(cloud, map_from_camera=room_pose(grid_of(cloud).points))
 
 
 def _above_largest(planes: tuple[Plane, ...]) -> NDArray[np.float64]:
-    """A map frame whose floor is the largest plane that may be level, or the largest."""
+    """Return a map frame whose floor is the largest plane, preferably level."""
     largest = level_plane(planes) or max(planes, key=lambda plane: plane.points, default=None)
     return np.eye(4) if largest is None else standing_on(largest)
 

@@ -1,4 +1,4 @@
-"""The parts of views that belong to one thing each, in the map frame."""
+"""Segments: the parts of a view that belong to one thing, in the map frame."""
 
 from __future__ import annotations
 
@@ -9,27 +9,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Cloud, Floats, Transform
-from semmap.nodes.perception_node.input.masks import Said
+from semmap.nodes.perception_node.input.masks import DetectorLabel
 
 MOST_POINTS = 3000
-"""A segment of more points is thinned: what is learnt from it does not get better with more."""
+"""A segment of more points is subsampled, since more points do not improve recognition."""
 
 ENDS_EVERY = 8
-"""One in so many of the points at a picture's edge tells where a thing is cut."""
+"""Step between the points at an image edge that are kept as ends."""
 
 _LEAST_M = 0.005
-"""What measures less is no thing, but one point seen again and again."""
+"""A smaller segment is a single point measured repeatedly."""
 
 
 @dataclass(frozen=True)
 class Segment:
-    """What one view shows of one thing.
+    """The part of one thing in one view.
 
-    `points`: (N, 3), map frame [m]. `colors`: (N, 3) rgb, or None. `label`: its number in the view.
-    `eye`: (3,), where the camera was [m]. `cut`: the picture's edge runs through it. `count`: how many points
-    it had before it was thinned. `carrier`: it is a plane on which things may stand, or a side of one.
-    `masked`: somebody else's detector cut it out; `said`: what that takes it for. `ends`: (E, 3), some of its
-    points at the picture's edge, map frame [m].
+    `points`: (N, 3), map frame [m]. `colors`: (N, 3) rgb, or None. `label`: its number in the view. `eye`:
+    (3,), camera position [m]. `cut`: an image edge cuts it. `count`: points before subsampling. `carrier`: a
+    plane on which things may stand, or a side of one. `masked`: it is from an external detector, with label
+    `said`. `ends`: (E, 3), some points at the image edge, map frame [m].
     """
 
     points: Floats
@@ -40,17 +39,17 @@ class Segment:
     count: int
     carrier: bool = False
     masked: bool = False
-    said: Said | None = None
+    detector_label: DetectorLabel | None = None
     ends: Floats = field(default_factory=lambda: np.empty((0, 3), np.float32))
 
 
 def map_points(cloud: Cloud, map_from_camera: Transform) -> Floats:
-    """(H, W, 3) the cloud's points in the map frame [m]."""
+    """Return the cloud's points (H, W, 3) in the map frame [m]."""
     return in_map(cloud.points_camera, map_from_camera)
 
 
 def in_map(points_camera: Floats, map_from_camera: Transform) -> Floats:
-    """(..., 3) points of a camera's frame in the map frame [m]."""
+    """Transform points (..., 3) from a camera's frame to the map frame [m]."""
     pose = map_from_camera.astype(np.float32)
     x, y, z = np.moveaxis(points_camera, -1, 0)
     points = np.empty_like(points_camera)
@@ -65,8 +64,8 @@ def cut_out(
     labels: NDArray[np.int32],
     carriers: frozenset[int] = frozenset(),
 ) -> list[Segment]:
-    """The segments of one labelled view: `labels` (H, W), 0 for background and where nothing was seen."""
-    flat = labels.ravel().astype(np.uint16)  # of which more are compared at once
+    """Return the segments of a labelled view: `labels` (H, W), 0 for background and missing depth."""
+    flat = labels.ravel().astype(np.uint16)  # smaller integers are compared faster
     points_camera = cloud.points_camera.reshape(-1, 3)
     edge = _at_edge(labels.shape) if cloud.organised else np.empty(0, np.intp)
     at_edge = flat[edge]
@@ -97,7 +96,7 @@ def cut_out(
 
 @cache
 def _at_edge(shape: tuple[int, int], margin: int = 2) -> NDArray[np.intp]:
-    """The flat indices of the pixels at the edge of a picture (H, W)."""
+    """Return the flat indices of the pixels at the edge of an image (H, W)."""
     inner = np.zeros(shape, bool)
     inner[margin:-margin, margin:-margin] = True
     return np.flatnonzero(~inner)

@@ -1,4 +1,4 @@
-"""Supports: level planes on which things may stand, and which of them is below a thing."""
+"""Supports: level planes on which things may stand, and the one below a thing."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from semmap.nodes.perception_node.input.cloud import Floats
 from semmap.nodes.perception_node.views.boxes import Numbers
 
 _FLOOR_M = 0.06
-"""What is no higher is the floor, which goes on where nobody sees it."""
+"""A lower support is the floor, which extends everywhere."""
 _MARGIN_M = 0.4
-"""A support may go on for this much where it is hidden."""
+"""A support may extend by this much where it is hidden."""
 _BELOW = 0.5
-"""A support is below a thing if it is below this share of the thing's outline, both taken as rectangles."""
+"""A support is below a thing if it covers this share of the outline, both as rectangles."""
 _STRAY = 0.01
-"""So many of its points may lie elsewhere, on either side."""
+"""Share of outliers on either side."""
 _SMALLER = 0.7
-"""Nothing stands on what is smaller than this share of its own outline."""
+"""Nothing stands on a support smaller than this share of its outline."""
 
 
 class Support(NamedTuple):
-    """A level plane, as far as it is seen: its height [m], and the rectangle around it along the map's axes.
+    """The visible part of a level plane: its height [m], and the bounding rectangle along the map's axes.
 
-    `low_m`, `high_m`: (x, y), map frame; without them it extends everywhere. `area_m2`: that of the rectangle
-    around its largest piece.
+    `low_m`, `high_m`: (x, y), map frame; by default unlimited. `area_m2`: the area of the rectangle around
+    its largest piece.
     """
 
     height_m: float
@@ -37,9 +37,9 @@ class Support(NamedTuple):
     area_m2: float = np.inf
 
     def is_below(self, low: Numbers, high: Numbers) -> bool:
-        """Whether it may bear a thing whose lowest and highest corner are `low` and `high` (3,) [m].
+        """Return whether it may support a thing with the corners `low` and `high` (3,) [m].
 
-        Seats around a table are level with one another, but the table stands on none of them.
+        Seats around a table are level with each other, but the table does not stand on them.
         """
         if self.height_m < _FLOOR_M:
             return True
@@ -51,7 +51,7 @@ class Support(NamedTuple):
 
 
 def support_of(points: Floats, where: NDArray[np.bool_]) -> Support:
-    """That of some points of a view (h, w, 3), map frame, a level plane."""
+    """Return the support of a level plane, given points of a view (h, w, 3), map frame."""
     pieces, _ = ndimage.label(where)
     own, piece = points[where], pieces[where]
     low, high = np.quantile(own[:, :2], [_STRAY, 1.0 - _STRAY], axis=0).tolist()
@@ -63,9 +63,9 @@ def support_of(points: Floats, where: NDArray[np.bool_]) -> Support:
 def height_below(
     supports: Iterable[Support], low: Numbers, high: Numbers, *, most_m: float, floor_m: float
 ) -> float:
-    """How high the highest support is that is below a thing (corners as above); else `floor_m`.
+    """Return the height of the highest support below a thing (corners as above); else `floor_m`.
 
-    Supports that are as high as `most_m` do not count.
+    Supports as high as `most_m` are ignored.
     """
     heights = (s.height_m for s in supports if s.height_m < most_m and s.is_below(low, high))
     return max(heights, default=floor_m)

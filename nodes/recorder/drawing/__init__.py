@@ -1,1 +1,1 @@
-"""What is drawn, as Rerun archetypes."""
+"""Conversion of the recorder's state to Rerun archetypes."""

@@ -1,4 +1,4 @@
-"""The viewer's layout: the scene, camera images below it, commits and graph beside it."""
+"""The layout of the viewer: scene and camera images on the left, commits and graph on the right."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ _MOST_PICTURES = 3
 
 @dataclass(frozen=True)
 class Bounds:
-    """What the eye should see: a square of side `extent_m` around `centre_m`, map frame."""
+    """The visible region: a square of side `extent_m` around `centre_m`, map frame."""
 
     centre_m: Vector = (0.0, 0.0, 0.0)
     extent_m: float = 10.0
 
 
 def bounds_of(poses: Iterable[Pose]) -> Bounds:
-    """The bounds of what stands at `poses`; of ten metres around the origin if there is nothing."""
+    """Return bounds around `poses`, or of ten metres around the origin if there are none."""
     points = [pose.position_m for pose in poses]
     if not points:
         return Bounds()
@@ -38,9 +38,9 @@ def bounds_of(poses: Iterable[Pose]) -> Bounds:
 
 
 def layout(bounds: Bounds, cameras: Sequence[str] = ()) -> rrb.Blueprint:
-    """The blueprint, with the eye in the south-west, half way up, looking at `bounds`.
+    """Build the layout. The eye is in the south-west, half way up, and looks at `bounds`.
 
-    Below the scene are the pictures of `cameras`, with the boxes of what perception saw.
+    Below the scene are the images of `cameras`, with the boxes of observations.
     """
     x, y, z = bounds.centre_m
     e = bounds.extent_m
@@ -57,7 +57,7 @@ def layout(bounds: Bounds, cameras: Sequence[str] = ()) -> rrb.Blueprint:
         line_grid=rrb.LineGrid3D(spacing=1.0, color=_GRID),
         eye_controls=eye,
     )
-    pictures = [_picture(camera) for camera in cameras[:_MOST_PICTURES]]
+    pictures = [_camera_view(camera) for camera in cameras[:_MOST_PICTURES]]
     seen = rrb.Vertical(scene, rrb.Horizontal(*pictures), row_shares=[3, 2]) if pictures else scene
     return rrb.Blueprint(
         rrb.Horizontal(
@@ -86,6 +86,6 @@ def layout(bounds: Bounds, cameras: Sequence[str] = ()) -> rrb.Blueprint:
     )
 
 
-def _picture(camera: str) -> rrb.Spatial2DView:
+def _camera_view(camera: str) -> rrb.Spatial2DView:
     path = camera_path(camera)
     return rrb.Spatial2DView(origin=path, contents=[f"/{path}", f"/{BOXES}"], name=camera)

@@ -1,4 +1,4 @@
-"""The shape of a figure in Rerun's terms. A figure's origin is its bottom centre, z up."""
+"""The shape of a figure as Rerun archetypes. A figure's origin is its bottom centre, z up."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import rerun as rr
 
 from semmap.nodes.drawing.figures import Figure
 from semmap.nodes.drawing.palette import GREY, colour_of
-from semmap.nodes.drawing.sheets import triangles_of
+from semmap.nodes.drawing.triangulation import triangles_of
 from semmap.schemas.polygons import Polygon
 from semmap.schemas.scenes import Surface
 
@@ -20,13 +20,13 @@ _THIN_M = 0.001
 
 
 def shape_of(figure: Figure) -> tuple[rr.AsComponents, ...]:
-    """A box of the figure's size with its name, and what it looks like if that is known.
+    """Return a labelled box of the figure's size, and its surface if that is known.
 
-    A place is a translucent sheet on the floor, of its polygon where it has one.
+    A place is a translucent sheet on the floor, in the shape of its polygon if it has one.
     """
-    if figure.look == "place":
+    if figure.appearance == "place":
         return _sheet(figure)
-    if figure.surface is None or figure.look == "ghost":
+    if figure.surface is None or figure.appearance == "ghost":
         return (_box(figure),)
     return _box(figure), _mesh(figure.surface)
 
@@ -42,11 +42,11 @@ def _mesh(surface: Surface) -> rr.Mesh3D:
 
 def _box(figure: Figure) -> rr.Boxes3D:
     x, y, z = figure.size_m
-    colour = GREY if figure.look == "furniture" else colour_of(figure.class_)
+    colour = GREY if figure.appearance == "furniture" else colour_of(figure.class_)
     return rr.Boxes3D(
         half_sizes=[(x / 2.0, y / 2.0, z / 2.0)],
         centers=[(0.0, 0.0, z / 2.0)],
-        colors=[(*colour, _GHOST_ALPHA if figure.look == "ghost" else 255)],
+        colors=[(*colour, _GHOST_ALPHA if figure.appearance == "ghost" else 255)],
         radii=None if figure.surface is None else [_THIN_M],
         fill_mode=_fill_mode(figure),
         labels=[figure.label],
@@ -55,9 +55,9 @@ def _box(figure: Figure) -> rr.Boxes3D:
 
 
 def _fill_mode(figure: Figure) -> rr.components.FillMode:
-    """The edges only, where there is more to be seen within."""
+    """Return how a box is filled: edges only, if a surface is drawn inside it."""
     usual = rr.components.FillMode.Solid if figure.surface is None else rr.components.FillMode.MajorWireframe
-    return _FILL_MODE.get(figure.look, usual)
+    return _FILL_MODE.get(figure.appearance, usual)
 
 
 _FILL_MODE = {
@@ -67,7 +67,7 @@ _FILL_MODE = {
 
 
 def _borders(figure: Figure, extent: Polygon, z_m: float) -> rr.LineStrips3D:
-    """The borders of a polygon, around the middle of its bounds."""
+    """Return the borders of a polygon, relative to the centre of its bounds."""
     x0, y0, x1, y1 = extent.bounds
     x, y = (x0 + x1) / 2.0, (y0 + y1) / 2.0
     return rr.LineStrips3D(
@@ -78,7 +78,7 @@ def _borders(figure: Figure, extent: Polygon, z_m: float) -> rr.LineStrips3D:
 
 
 def _sheet(figure: Figure) -> tuple[rr.AsComponents, ...]:
-    """Places lie in one another, so the larger a sheet, the lower it lies."""
+    """Draw a place. Places overlap, so a larger sheet is drawn lower."""
     x, y, _ = figure.size_m
     below = -_SHEET_M * (x + y)
     colour = (*colour_of(figure.class_), _SHEET_ALPHA)
@@ -101,7 +101,7 @@ def _sheet(figure: Figure) -> tuple[rr.AsComponents, ...]:
 
 
 def _covered(extent: Polygon, z_m: float, colour: tuple[int, int, int, int]) -> rr.Mesh3D:
-    """What a polygon covers, around the middle of its bounds."""
+    """Return the area of a polygon, relative to the centre of its bounds."""
     points, triangles = triangles_of(extent)
     return rr.Mesh3D(
         vertex_positions=np.column_stack([points, np.full(len(points), z_m, np.float32)]),

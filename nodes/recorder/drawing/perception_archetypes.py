@@ -16,7 +16,7 @@ from semmap.schemas.scenes import CameraFrame
 BOXES = "map/perception/boxes"
 CLOUD = "map/perception/cloud"
 OBSERVATION_FIELDS = "semmap.Observation"
-"""The archetype that holds the observations' fields for programs."""
+"""The archetype with the observations' fields for programs."""
 
 _PICTURE_WIDTH = 320
 _JPEG_QUALITY = 80
@@ -25,12 +25,12 @@ _POINT_M = 0.004
 
 
 def camera_path(camera: str) -> str:
-    """Where what belongs to a camera is drawn."""
+    """Return the path of a camera's drawings."""
     return f"map/perception/cameras/{camera}"
 
 
 def boxes_of(seen: Observations) -> tuple[rr.AsComponents, ...]:
-    """All boxes of a look with class and probability, and the same as fields."""
+    """Return the boxes of all observations of a frame with class and probability, and these as fields."""
     things = seen.observations
     boxes = rr.Boxes3D(
         half_sizes=np.array([thing.size_m for thing in things]).reshape(-1, 3) / 2.0,
@@ -41,7 +41,7 @@ def boxes_of(seen: Observations) -> tuple[rr.AsComponents, ...]:
         labels=[_label(thing) for thing in things],
         show_labels=True,
     )
-    fields = {  # with their types: Rerun knows none of an empty array, and drops the first look at nothing
+    fields = {  # typed, since Rerun drops the first record of an untyped empty array
         "class": rr.components.TextBatch([thing.class_ for thing in things]),
         "probability": rr.components.ScalarBatch([thing.probability for thing in things]),
         "entity": rr.components.TextBatch([thing.entity for thing in things]),
@@ -50,7 +50,7 @@ def boxes_of(seen: Observations) -> tuple[rr.AsComponents, ...]:
 
 
 def points_of(cloud: SegmentedCloud, seen: Observations) -> rr.Points3D:
-    """The points of a look; those of a thing in the colour of its class. Raises ValueError for no cloud."""
+    """Return the points of a frame, coloured by class. Raises ValueError for an invalid cloud."""
     labels = np.frombuffer(cloud.labels, "<u2")
     colors = np.frombuffer(cloud.colors, np.uint8).reshape(-1, 3).copy()
     palette = np.array([GREY, *(colour_of(thing.class_) for thing in seen.observations)], np.uint8)
@@ -60,18 +60,18 @@ def points_of(cloud: SegmentedCloud, seen: Observations) -> rr.Points3D:
 
 
 def camera_pose(frame: CameraFrame) -> Pose:
-    """Where a camera is. Raises ValueError when the frame does not say it."""
+    """Return the pose of a camera. Raises ValueError if the frame has none."""
     x, y, z = np.array(frame.map_from_camera).reshape(4, 4)[:3, 3].tolist()
     return Pose(position_m=(x, y, z))
 
 
-def picture_of(frame: CameraFrame, pixels: bytes) -> tuple[rr.AsComponents, ...]:
-    """A camera with its picture, made small. Raises ValueError when the pixels are not those of the frame."""
-    picture = Image.frombuffer("RGB", (frame.width, frame.height), pixels, "raw", "RGB", 0, 1)
+def image_of(frame: CameraFrame, pixels: bytes) -> tuple[rr.AsComponents, ...]:
+    """Return a camera with its image, scaled down. Raises ValueError if the pixels do not fit the frame."""
+    image = Image.frombuffer("RGB", (frame.width, frame.height), pixels, "raw", "RGB", 0, 1)
     width = min(_PICTURE_WIDTH, frame.width)
     height = max(1, round(frame.height * width / frame.width))
     out = io.BytesIO()
-    picture.resize((width, height), Image.Resampling.BOX).save(out, "JPEG", quality=_JPEG_QUALITY)
+    image.resize((width, height), Image.Resampling.BOX).save(out, "JPEG", quality=_JPEG_QUALITY)
     scale = np.diag([width / frame.width, height / frame.height, 1.0])
     pose = np.array(frame.map_from_camera).reshape(4, 4)
     pinhole = rr.Pinhole(
@@ -79,8 +79,8 @@ def picture_of(frame: CameraFrame, pixels: bytes) -> tuple[rr.AsComponents, ...]
         resolution=[width, height],
         image_plane_distance=_FRUSTUM_M,
     )
-    stands = rr.Transform3D(translation=pose[:3, 3], mat3x3=pose[:3, :3])
-    return stands, pinhole, rr.EncodedImage(contents=out.getvalue(), media_type="image/jpeg")
+    camera = rr.Transform3D(translation=pose[:3, 3], mat3x3=pose[:3, :3])
+    return camera, pinhole, rr.EncodedImage(contents=out.getvalue(), media_type="image/jpeg")
 
 
 def _middle(thing: Observation) -> tuple[float, float, float]:
@@ -89,5 +89,5 @@ def _middle(thing: Observation) -> tuple[float, float, float]:
 
 
 def _label(thing: Observation) -> str:
-    said = f"{thing.class_} {thing.probability:.0%}"
-    return f"{thing.entity}: {said}" if thing.entity else said
+    text = f"{thing.class_} {thing.probability:.0%}"
+    return f"{thing.entity}: {text}" if thing.entity else text

@@ -1,1 +1,1 @@
-"""The model library: what a body of each class looks like, measures and weighs."""
+"""The model library: shape, size and mass of a body of each class."""

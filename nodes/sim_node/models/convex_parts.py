@@ -1,4 +1,4 @@
-"""A model's parts as the knowledge base knows them: segments, ellipsoids and hulls, summed."""
+"""A model's parts as the knowledge base stores them: sums of segments, ellipsoids and hulls."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from semmap.schemas import errors
 
 
 def convex_part(part: Part) -> ConvexPart:
-    """A colliding part; of a mesh its convex hull, which is what collides."""
+    """Convert a colliding part. A mesh is replaced by its convex hull, as it collides."""
     rotation = rotation_matrix(part.turn)
     x, y, z = _columns(rotation * part.half)
     match part.shape:
@@ -31,7 +31,7 @@ def _columns(matrix: Floats) -> list[Corner]:
 
 
 def _hull(part: Part) -> Floats:
-    """The corners of a mesh's hull: (N, 3) [m]."""
+    """Return the corners (N, 3) of a mesh's hull [m]."""
     from scipy.spatial import ConvexHull
 
     if part.mesh is None:

@@ -1,4 +1,4 @@
-"""The surface of a model as triangles, for renderers elsewhere."""
+"""The surface of a model as triangles, for other renderers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _RINGS = 7
 
 
 class Facets(NamedTuple):
-    """`points` and outward unit `normals` (N, 3), `triangles` (M, 3) of rows of these, counterclockwise."""
+    """Vertices `points` and unit `normals` (N, 3), and counterclockwise `triangles` (M, 3) of their rows."""
 
     points: Floats
     normals: Floats
@@ -28,7 +28,7 @@ class Facets(NamedTuple):
 
 @lru_cache(maxsize=512)
 def surface_of(model: Model) -> Surface:
-    """All that is seen of a model, in its own frame: the bottom centre, z up."""
+    """Return all visible parts of a model, in its own frame: the bottom centre, z up."""
     seen = [part for part in model.parts if part.role is not Role.FELT]
     pieces = [facets(part) for part in seen]
     counts = [len(piece.points) for piece in pieces]
@@ -45,7 +45,10 @@ def surface_of(model: Model) -> Surface:
 
 
 def _leaf(joint: Joint, seen: Sequence[Part], starts: Sequence[int]) -> Leaf:
-    """What a joint moves: its parts follow one another. `starts` has where each begins, and the end."""
+    """Return the range of contiguous parts that a joint moves.
+
+    `starts` has the first row of each part, and the end.
+    """
     rows = [row for row, part in enumerate(seen) if part.joint == joint]
     first, end = (starts[rows[0]], starts[rows[-1] + 1]) if rows else (0, 0)
     return Leaf(
@@ -59,7 +62,7 @@ def _leaf(joint: Joint, seen: Sequence[Part], starts: Sequence[int]) -> Leaf:
 
 
 def facets(part: Part) -> Facets:
-    """The surface of one part, in the model's frame."""
+    """Return the surface of one part, in the model's frame."""
     half = np.asarray(part.half)
     match part.shape:
         case Shape.BOX:
@@ -82,18 +85,18 @@ def facets(part: Part) -> Facets:
 _CAN = np.array(
     [(0, -1, 0, -1), (1, -1, 0, -1), (1, -1, 1, 0), (1, 1, 1, 0), (1, 1, 0, 1), (0, 1, 0, 1)], dtype=float
 )
-"""Radius, height, and the normal's share of each, from the bottom up."""
+"""Radius, height, and the components of the normal, from the bottom up."""
 
 
 def _arc(height: float, radius: float) -> Floats:
-    """The profile of a ball, (2 * _RINGS - 1, 4)."""
+    """Return the profile of a ball, (2 * _RINGS - 1, 4)."""
     angle = np.linspace(0.0, np.pi, 2 * _RINGS - 1)
     out, up = np.sin(angle), -np.cos(angle)
     return np.column_stack([radius * out, height + radius * up, out, up])
 
 
 def _turned(profile: Floats) -> Facets:
-    """The profile (K, 4) turned about z."""
+    """Return the surface of revolution of a profile (K, 4) about z."""
     angle = np.linspace(0.0, 2.0 * np.pi, _SLICES + 1)
     cos, sin = np.cos(angle)[:, None], np.sin(angle)[:, None]
     radius, height, out, up = profile.T
@@ -108,7 +111,7 @@ def _turned(profile: Floats) -> Facets:
 
 
 def _box() -> Facets:
-    """A box of half extents one: four corners to each face, so that its edges are sharp."""
+    """Return a box with half extents of one and four corners per face, for sharp edges."""
     square = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
     points, normals = [], []
     for axis in range(3):
@@ -121,7 +124,7 @@ def _box() -> Facets:
 
 
 def _flat(part: Part) -> Facets:
-    """A mesh, each triangle with corners of its own."""
+    """Return a mesh with separate corners for each triangle."""
     if part.mesh is None:
         raise errors.InternalError("the part is not a mesh")
     corners = part.mesh.vertices[part.mesh.faces]

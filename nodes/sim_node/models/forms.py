@@ -1,4 +1,4 @@
-"""Shapes that many models share: legs, hollow walls, turned profiles, panels."""
+"""Shapes that many models share: legs, hollow walls, surfaces of revolution, panels."""
 
 from __future__ import annotations
 
@@ -36,17 +36,17 @@ SCREEN: Colour = (0.10, 0.14, 0.20)
 PAPER: Colour = (0.96, 0.94, 0.88)
 
 WALL_M = 0.02
-"""How thick the walls of closed furniture are at least."""
+"""Minimum thickness of the walls of closed furniture."""
 
 
 def shade(colour: Colour, factor: float) -> Colour:
-    """`colour` made darker (factor < 1) or lighter (> 1)."""
+    """Return `colour` made darker (factor < 1) or lighter (> 1)."""
     red, green, blue = (min(1.0, channel * factor) for channel in colour)
     return (red, green, blue)
 
 
 def legs(x: float, y: float, height: float, thick: float, colour: Colour) -> Parts:
-    """Four square legs at the corners of a footprint x by y; each touches the floor in one point."""
+    """Return four square legs at the corners of a footprint x by y; each touches the floor in one point."""
     a, b = (x - thick) / 2, (y - thick) / 2
     corners = [(sx * a, sy * b, height / 2) for sx in (-1, 1) for sy in (-1, 1)]
     return [
@@ -56,26 +56,26 @@ def legs(x: float, y: float, height: float, thick: float, colour: Colour) -> Par
 
 
 def slab(x: float, y: float, bottom: float, top: float, colour: Colour) -> Part:
-    """A box of footprint x by y between two heights."""
+    """Return a box of footprint x by y between two heights."""
     return box((x, y, top - bottom), (0.0, 0.0, (bottom + top) / 2), colour)
 
 
 def solid(x: float, y: float, bottom: float, top: float) -> Parts:
-    """An invisible box that collides in place of finer parts."""
+    """Return an invisible box that collides in place of finer parts."""
     return felt(slab(x, y, bottom, top, GREY))
 
 
 def front(x: float, y: float, z: float, centre: tuple[float, float], colour: Colour, *, deep: float) -> Parts:
-    """A panel of width y and height z, its outer face at depth x, its centre at (y, z), `deep` thick."""
+    """Return a panel of width y and height z, with its outer face at depth x and its centre at (y, z)."""
     return seen(box((deep, y, z), (x - deep / 2, centre[0], centre[1]), colour))
 
 
 def closed_box(
     size: Vec3, centre: Vec3, colour: Colour, *, boards: Sequence[float] = (), depth: float = 1.0
 ) -> Parts:
-    """A closed box of full extents `size` with room in it: one box to the eye, walls and boards to the touch.
+    """Return a closed box of full extents `size`: a single visible box, but colliding walls and boards.
 
-    Boards lie at these shares of its height, and reach so much of its `depth` from the back, at -x.
+    Boards are at these shares of its height, and extend over this share of its `depth` from the back, at -x.
     """
     x, y, z = size
     wall = min(max(WALL_M, 0.018 * max(x, y)), 0.1 * min(size))
@@ -94,7 +94,7 @@ def closed_box(
 
 
 def hollow_box(x: float, y: float, z: float, wall: float, colour: Colour) -> Parts:
-    """Floor and four walls, open at the top."""
+    """Return a floor and four walls, open at the top."""
     a, b, h = (x - wall) / 2, (y - wall) / 2, z - wall
     middle = wall + h / 2
     return [
@@ -109,7 +109,10 @@ def hollow_box(x: float, y: float, z: float, wall: float, colour: Colour) -> Par
 def ring(
     radii: tuple[float, float], bottom: float, top: float, wall: float, colour: Colour, *, count: int = 12
 ) -> Parts:
-    """A round wall of flat staves from radius `radii[0]` at the bottom to `radii[1]` at the top (outside)."""
+    """Return a round wall of flat staves.
+
+    Its outer radius is `radii[0]` at the bottom and `radii[1]` at the top.
+    """
     low, high = radii
     tilt = math.atan2(high - low, top - bottom)
     length = math.hypot(high - low, top - bottom) - wall * abs(math.sin(tilt))
@@ -125,7 +128,10 @@ def ring(
 
 
 def turned(profile: Sequence[tuple[float, float]], colour: Colour, *, steps: int = 6) -> Parts:
-    """A solid of revolution: discs through the points (radius, height), linear between them; decoration."""
+    """Return a solid of revolution as a visual part.
+
+    It consists of discs through the points (radius, height), linear between them.
+    """
     discs: Parts = []
     for (r0, z0), (r1, z1) in pairwise(profile):
         count = 1 if math.isclose(r0, r1) else steps
@@ -145,12 +151,12 @@ def turned(profile: Sequence[tuple[float, float]], colour: Colour, *, steps: int
 
 
 def column(radius: float, bottom: float, top: float, colour: Colour) -> Part:
-    """An upright cylinder between two heights."""
+    """Return an upright cylinder between two heights."""
     return rod(radius, top - bottom, (0.0, 0.0, (bottom + top) / 2), colour)
 
 
 def shifted(parts: Iterable[Part], *, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Parts:
-    """The same parts elsewhere, with their joints."""
+    """Return the parts shifted, with their joints."""
 
     def there(point: Vec3) -> Vec3:
         return (float(point[0] + x), float(point[1] + y), float(point[2] + z))

@@ -28,24 +28,24 @@ FALLBACK_M: Vec3 = (0.3, 0.3, 0.3)
 """The size of a box for a class without a model and an entity without a size."""
 
 SIZES_M = (0.001, 100.0)
-"""What a body may measure along any axis."""
+"""Limits of a body's size along any axis."""
 
 DENSITY = 150.0
-"""Of a thing that nothing is known of [kg/m^3 of its bounding box]: most are hollow."""
+"""Default density [kg/m^3 of the bounding box]: most things are hollow."""
 
 _HOLDS, _GRAVITY = 1.3, 9.81
-"""What holds a lid where it was left is so much more than what pulls it down."""
+"""A joint's friction exceeds the torque of gravity by this factor, so that a lid stays in place."""
 
 _BOX_COLOUR = (0.72, 0.66, 0.58)
 
 
 class ModelError(ValueError):
-    """A body of this model and size cannot be made; the text says why."""
+    """A body of this model and size cannot be created; the text is the reason."""
 
 
 @dataclass(frozen=True)
 class Leaf:
-    """What one joint of a model moves, a door or a drawer, and what that weighs."""
+    """A part that one joint moves, such as a door or a drawer, and its inertia."""
 
     joint: Joint
     parts: tuple[Part, ...]
@@ -54,9 +54,9 @@ class Leaf:
 
 @dataclass(frozen=True)
 class Model:
-    """A model at one size: its parts, what they weigh, and what it really measures along its own axes [m].
+    """A model at one size: its parts, inertia, and actual size along its own axes [m].
 
-    Of a model with joints, `inertial` is that of what no joint moves, whose parts come first.
+    With joints, `inertial` is that of the fixed parts, which come first.
     """
 
     name: str
@@ -65,25 +65,25 @@ class Model:
     size_m: Vec3
     leaves: tuple[Leaf, ...] = ()
     notes: tuple[str, ...] = ()
-    """What of its file is not in it, or is stiff in it: a clause each."""
+    """What of its file is omitted, or does not move: one clause each."""
 
     @property
     def mass_kg(self) -> float:
-        """What all of it weighs."""
+        """Return the total mass."""
         return self.inertial.mass_kg + sum(leaf.inertial.mass_kg for leaf in self.leaves)
 
     @property
     def frame(self) -> tuple[Part, ...]:
-        """The parts that no joint moves."""
+        """Return the fixed parts."""
         return tuple(part for part in self.parts if part.joint is None) if self.leaves else self.parts
 
 
 @lru_cache(maxsize=1024)
 def build(name: str, size_m: Vec3 | None) -> Model:
-    """The model `name` scaled to `size_m`, or at its own size; a box when there is no such model.
+    """Build the model `name` at `size_m`, or at its own size; a box if there is no such model.
 
-    A size that is long where the model is wide is met by turning the model a quarter. Mass grows with
-    volume. Raises ModelError for a size that no body can have.
+    If the size is long where the model is wide, the model is rotated by a quarter turn. The mass is
+    proportional to the volume. Raises ModelError for an invalid size.
     """
     check_size(size_m)
     kind = KINDS.get(name)
@@ -100,11 +100,13 @@ def build(name: str, size_m: Vec3 | None) -> Model:
 
 
 def check_size(size_m: Sequence[float] | None, hint: str = "") -> None:
-    """Raise ModelError for a size that no body can have; its text ends with `hint`."""
+    """Raise ModelError for an invalid size; its text ends with `hint`."""
     low, high = SIZES_M
     for extent in size_m or ():
         if not low <= extent <= high:
-            raise ModelError(f"a body measures {low:g} to {high:g} m along each axis, not {extent:g} m{hint}")
+            raise ModelError(
+                f"a size must be from {low:g} to {high:g} m along each axis, not {extent:g} m{hint}"
+            )
 
 
 def _is_turned(kind: ModelKind, size_m: Vec3) -> bool:
@@ -119,9 +121,9 @@ def _plain_box(size_m: Vec3) -> Model:
 
 
 def assemble(name: str, parts: Sequence[Part], mass_kg: float, notes: tuple[str, ...] = ()) -> Model:
-    """Parts as a model, moved so that the origin is the bottom centre.
+    """Return parts as a model, moved so that the origin is the bottom centre.
 
-    The mass is shared out by the volumes of what collides.
+    The mass is distributed by the volumes of the colliding parts.
     """
     low, high = bounds(parts)
     parts = shifted(parts, x=-(low[0] + high[0]) / 2, y=-(low[1] + high[1]) / 2, z=-low[2])
@@ -148,7 +150,7 @@ def _leaf(joint: Joint, parts: Sequence[Part], density: float) -> Leaf:
 
 
 def _torque(joint: Joint, weighed: Inertial) -> float:
-    """The greatest by which weight turns a hinge [N m], or pulls at a slide [N]."""
+    """Return the maximum torque of gravity on a hinge [N m], or its force on a slide [N]."""
     weight = _GRAVITY * weighed.mass_kg
     if joint.kind == "slide":
         return weight * abs(joint.axis[2])
@@ -157,7 +159,7 @@ def _torque(joint: Joint, weighed: Inertial) -> float:
 
 
 def _weighed(parts: Sequence[Part], density: float) -> Inertial:
-    """Of what collides; of what does not, a gram where it is seen."""
+    """Return the inertia of colliding parts; without any, of a gram at the visible parts."""
     volume = sum(part.volume for part in parts if part.role is not Role.SEEN)
     if volume == 0.0:
         parts = felt(parts)

@@ -1,4 +1,4 @@
-"""Models read from MJCF files: the geoms of their bodies, and the joints that move some of them."""
+"""Models from MJCF files: the geoms of their bodies, and the joints that move some of them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from semmap.nodes.sim_node.models.library import DENSITY, ModelError
 from semmap.nodes.sim_node.models.parts import Colour, Floats, Joint, Part, Role, Shape, Vec3, bounds, mesh
-from semmap.nodes.sim_node.physics.ends import Ends
+from semmap.nodes.sim_node.physics.joint_texts import JointTexts
 from semmap.schemas import wording
 
 _SHAPES = {
@@ -30,23 +30,23 @@ _SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 
 class MjcfModel(NamedTuple):
-    """What there is in an MJCF file, in metres, as its joints stand at first."""
+    """The content of an MJCF file, in metres, in its initial state."""
 
     parts: list[Part]
     density: float
-    """Of the box around all parts [kg/m^3]."""
+    """Density of the bounding box of all parts [kg/m^3]."""
     notes: tuple[str, ...] = ()
-    """What of the file is not in the model, or is stiff in it: a clause each."""
+    """What of the file is omitted, or does not move: one clause each."""
 
 
 def read_mjcf(path: Path) -> MjcfModel:
-    """Everything that stands on the ground of an MJCF scene.
+    """Read all bodies of an MJCF scene.
 
-    A hinge or slide moves what it moves in the file; one that everything hangs on fastens the model to the
-    world and moves nothing. Raises ModelError, ValueError.
+    Hinges and slides move the same parts as in the file. A joint that moves all parts attaches the model to
+    the world and is ignored. Raises ModelError, ValueError.
     """
     spec = mujoco.MjSpec.from_file(str(path))
-    ends = Ends.of(spec)
+    ends = JointTexts.of(spec)
     left_out = tuple(_left_out(spec))
     model = spec.compile()
     data = mujoco.MjData(model)
@@ -67,7 +67,7 @@ def read_mjcf(path: Path) -> MjcfModel:
 
 
 def _left_out(spec: mujoco.MjSpec) -> Iterator[str]:
-    """What a model in a world of others cannot bring along."""
+    """Yield what a model cannot add to another world."""
     for what, found in (
         ("tendon", spec.tendons),
         ("actuator", spec.actuators),
@@ -75,19 +75,19 @@ def _left_out(spec: mujoco.MjSpec) -> Iterator[str]:
     ):
         if found:
             named = [element.name for element in found if element.name]
-            told = f" ({wording.few(named)})" if named else ""
-            yield f"{len(found)} {what}{'s' if len(found) > 1 else ''}{told} left out"
+            names = f" ({wording.few(named)})" if named else ""
+            yield f"{len(found)} {what}{'s' if len(found) > 1 else ''}{names} omitted"
 
 
 # joints
 
 
 def _joints(
-    model: mujoco.MjModel, data: mujoco.MjData, bodies: set[int], ends: Ends
+    model: mujoco.MjModel, data: mujoco.MjData, bodies: set[int], ends: JointTexts
 ) -> tuple[dict[int, Joint | None], list[str]]:
-    """The joint that moves each of these bodies, if any, and which joints stay as they stand."""
+    """Return the joint that moves each of these bodies, if any, and which joints do not move."""
     chains = {body: list(_chain(model, body)) for body in bodies}
-    while chains and all(chains.values()):  # what everything hangs on moves nothing of it
+    while chains and all(chains.values()):  # a joint that moves everything is ignored
         chains = {body: chain[1:] for body, chain in chains.items()}
     numbers = {body: chain[0] for body, chain in chains.items() if chain}
     names = _names(model, sorted(set(numbers.values())))
@@ -97,18 +97,16 @@ def _joints(
         kind, body = int(model.jnt_type[number]), int(model.jnt_bodyid[number])
         if kind == _FREE or number in joints or body not in chains:
             continue
-        name = model.joint(number).name or f"a joint of {model.body(body).name or 'a nameless body'}"
+        name = model.joint(number).name or f"a joint of {model.body(body).name or 'an unnamed body'}"
         if kind == _BALL:
-            stiff.append(f"{name} stays as it is drawn, because it is a ball joint")
+            stiff.append(f"{name} does not move, because it is a ball joint")
         elif body in numbers:
-            stiff.append(
-                f"{name} stays as it is drawn, because {names[numbers[body]]} moves that body already"
-            )
+            stiff.append(f"{name} does not move, because {names[numbers[body]]} already moves that body")
     return {body: joints[numbers[body]] if body in numbers else None for body in bodies}, stiff
 
 
 def _chain(model: mujoco.MjModel, body: int) -> list[int]:
-    """The hinges and slides between the ground and a body, one of each body on the way."""
+    """Return the hinges and slides between the ground and a body, one per body."""
     found: list[int] = []
     while body:
         first, number = int(model.body_jntadr[body]), int(model.body_jntnum[body])
@@ -118,7 +116,7 @@ def _chain(model: mujoco.MjModel, body: int) -> list[int]:
 
 
 def _names(model: mujoco.MjModel, numbers: list[int]) -> dict[int, str]:
-    """What joints are called: by their own name, by that of their body, or by number; without blanks."""
+    """Return names of joints: their own, that of their body, or a number; without blanks."""
     found: dict[int, str] = {}
     for number in numbers:
         own = model.joint(number).name or model.body(int(model.jnt_bodyid[number])).name or "joint"
@@ -130,15 +128,15 @@ def _names(model: mujoco.MjModel, numbers: list[int]) -> dict[int, str]:
     return found
 
 
-def _joint(model: mujoco.MjModel, data: mujoco.MjData, number: int, name: str, ends: Ends) -> Joint:
-    """A hinge or slide, whose positions count from where it stands in the file."""
+def _joint(model: mujoco.MjModel, data: mujoco.MjData, number: int, name: str, ends: JointTexts) -> Joint:
+    """Return a hinge or slide, whose positions count from its initial one in the file."""
     limits: tuple[float, float] | None = None
     closed: float | None = None
     if model.jnt_limited[number]:
         drawn = float(model.qpos0[model.jnt_qposadr[number]])
         lower, upper = (float(limit) - drawn for limit in model.jnt_range[number])
         limits = (min(lower, 0.0), max(upper, 0.0))
-        end = ends.said(model.joint(number).name) or ("lower" if -lower <= upper else "upper")
+        end = ends.closed_end(model.joint(number).name) or ("lower" if -lower <= upper else "upper")
         closed = limits[0] if end == "lower" else limits[1]
     return Joint(
         name=name,
@@ -156,7 +154,7 @@ def _joint(model: mujoco.MjModel, data: mujoco.MjData, number: int, name: str, e
 
 
 def _shape(model: mujoco.MjModel, geom: int) -> Shape | None:
-    """None for planes and height fields, and for the ground beneath bodies."""
+    """Return the shape of a geom; None for planes and height fields, and for static geoms."""
     if model.geom_bodyid[geom] == 0 and model.nbody > 1:
         return None
     return _SHAPES.get(int(model.geom_type[geom]))
@@ -179,7 +177,7 @@ def _part(model: mujoco.MjModel, data: mujoco.MjData, geom: int, shape: Shape) -
 
 def _half(model: mujoco.MjModel, geom: int) -> Vec3:
     a, b, c = (float(value) for value in model.geom_size[geom])
-    kind = int(model.geom_type[geom])  # a NumPy integer is never among enumerations
+    kind = int(model.geom_type[geom])  # a NumPy integer does not equal an enumeration
     if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
         return (a, a, a)
     if kind in (mujoco.mjtGeom.mjGEOM_CYLINDER, mujoco.mjtGeom.mjGEOM_CAPSULE):

@@ -1,4 +1,4 @@
-"""Models read from files: OBJ, STL and GLB here, MJCF by `mjcf_files`."""
+"""Models from files: OBJ, STL and GLB here, MJCF by `mjcf_files`."""
 
 from __future__ import annotations
 
@@ -36,15 +36,14 @@ _LARGEST_FILE_BYTES = 64 << 20
 
 @lru_cache(maxsize=256)
 def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
-    """The model in a file, in metres, stretched to `size_m`; `version` tells a changed file apart.
+    """Read the model in a file, in metres, stretched to `size_m`; `version` identifies the file's content.
 
-    MJCF is taken as it stands at first, with the joints that move parts of it, and weighs what its bodies
-    weigh. A mesh need not be closed: it collides as its hull, and weighs what most things of its size do.
-    Raises ModelError, OSError.
+    An MJCF file is used in its initial state, with its joints and masses. A mesh need not be closed: it
+    collides as its hull, and has the default density. Raises ModelError, OSError.
     """
     check_size(size_m)
     if path.stat().st_size > _LARGEST_FILE_BYTES:
-        raise ModelError(f"the model file {path} is larger than {_LARGEST_FILE_BYTES >> 20} MB")
+        raise ModelError(f"model file {path} is larger than {_LARGEST_FILE_BYTES >> 20} MB")
     try:
         parts, density, notes = _read_meshes(path) if path.suffix in MESHES else read_mjcf(path)
         if all(part.role is Role.SEEN for part in parts):
@@ -59,24 +58,24 @@ def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
     except OSError:
         raise
     except ModelError as error:
-        raise ModelError(f"cannot use the model file {path}: {error}") from None
-    except Exception as error:  # the readers of the file formats raise whatever they come across
-        said = " ".join(str(error).split())
-        if not isinstance(error, ValueError):  # a reader that stumbled, not one that complains
-            said = f"its content is invalid ({type(error).__name__}: {said})"
-        raise ModelError(f"cannot use the model file {path}: {said}") from None
+        raise ModelError(f"cannot use model file {path}: {error}") from None
+    except Exception as error:  # file readers raise arbitrary exceptions
+        reason = " ".join(str(error).split())
+        if not isinstance(error, ValueError):  # an unexpected failure of a reader
+            reason = f"its content is invalid ({type(error).__name__}: {reason})"
+        raise ModelError(f"cannot use model file {path}: {reason}") from None
     return model
 
 
 def _extents(parts: list[Part]) -> Vec3:
-    """What parts measure together [m]."""
+    """Return the joint extents of parts [m]."""
     low, high = bounds(parts)
     return _vec3(high - low)
 
 
 def _read_meshes(path: Path) -> MjcfModel:
-    """What there is in a mesh file."""
-    import trimesh  # takes a second, which a start without such files need not wait
+    """Read a mesh file."""
+    import trimesh  # slow to import, so only if needed
 
     scene = trimesh.load_scene(path)
     up = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]) if path.suffix == ".glb" else np.eye(3)  # glTF: y up
@@ -90,16 +89,16 @@ def _read_meshes(path: Path) -> MjcfModel:
 def _colour(read: Any) -> Colour:
     try:
         red, green, blue = np.asarray(read.visual.to_color().main_color)[:3] / 255.0
-    except Exception:  # a texture that is missing leaves the mesh grey
+    except Exception:  # without its texture, a mesh is grey
         return _GREY
     return (float(red), float(green), float(blue))
 
 
 def stretched(parts: Sequence[Part], size_m: Vec3) -> list[Part]:
-    """Parts that measure `size_m` together.
+    """Return parts stretched to a total size of `size_m`.
 
-    Meshes are stretched along the model's axes, primitives along their own, which are mostly the same.
-    A hinge turns as far as before, a slide further or less far.
+    Meshes are stretched along the model's axes, primitives along their own, which are usually the same.
+    Ranges of hinges stay, ranges of slides are scaled.
     """
     low, high = bounds(parts)
     factors = np.asarray(size_m) / np.maximum(high - low, 1e-6)
@@ -111,7 +110,7 @@ def stretched(parts: Sequence[Part], size_m: Vec3) -> list[Part]:
         else:
             x, y, z = np.linalg.norm(factors[:, None] * rotation_matrix(part.turn), axis=0)
             if part.shape in (Shape.CYLINDER, Shape.CAPSULE):
-                x = y = np.sqrt(x * y)  # what is round stays so
+                x = y = np.sqrt(x * y)  # round parts stay round
             half = _vec3(np.asarray(part.half) * (x, y, z))
             scaled.append(replace(part, half=half, centre=_vec3(np.asarray(part.centre) * factors)))
     joints = {part.joint: _stretched_joint(part.joint, factors) for part in parts if part.joint}
@@ -134,7 +133,7 @@ def _stretched_joint(joint: Joint, factors: Floats) -> Joint:
 
 
 def keyed(parts: Sequence[Part], key: str) -> list[Part]:
-    """Meshes get names that are theirs alone."""
+    """Return parts whose meshes have unique names."""
     return [
         part if part.mesh is None else replace(part, mesh=replace(part.mesh, key=f"{key}:{number}"))
         for number, part in enumerate(parts)
@@ -142,7 +141,7 @@ def keyed(parts: Sequence[Part], key: str) -> list[Part]:
 
 
 def _try_out(model: Model) -> None:
-    """Compile it alone, so that a bad one cannot spoil the world. Raises ModelError."""
+    """Compile a model alone, so that an invalid one cannot break the world. Raises ModelError."""
     spec = mujoco.MjSpec()
     body = spec.worldbody.add_body()
     for part in model.parts:
@@ -152,7 +151,7 @@ def _try_out(model: Model) -> None:
     try:
         spec.compile()
     except ValueError as error:
-        fault, *_ = str(error).splitlines()  # the other lines name elements that are ours, not the file's
+        fault, *_ = str(error).splitlines()  # the other lines refer to elements that are not in the file
         raise ModelError(fault.removeprefix("Error: ")) from None
 
 

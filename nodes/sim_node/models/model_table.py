@@ -1,4 +1,4 @@
-"""Every model: how it is built, what it measures and weighs by default, and its colour.
+"""All models: builder, default size and mass, and colour.
 
 Sizes are those of common household things, masses those of full or furnished ones.
 """

@@ -1,4 +1,4 @@
-"""What opens: boxes without a front, and the doors, flaps and drawers before them. The front is at +x."""
+"""Boxes without a front, and the doors, flaps and drawers before them. The front is at +x."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from semmap.nodes.sim_node.models.forms import WALL_M, shade, shifted
 from semmap.nodes.sim_node.models.parts import Colour, Joint, Part, Parts, Vec3, box, moving
 
 WIDE = math.radians(100.0)
-"""How far a door opens [rad]."""
+"""Opening angle of a door [rad]."""
 GAP_M = 0.002
-"""Between what moves and what does not."""
+"""Gap between moving and fixed parts."""
 SIDES = ((-1, "left"), (1, "right"))
-"""Of who stands before it: the sign of y, and what a door there is called."""
+"""Sides as seen from the front: the sign of y, and the name of a door there."""
 
 
 def cabinet_box(
@@ -25,9 +25,9 @@ def cabinet_box(
     depth: float = 1.0,
     lining: Colour | None = None,
 ) -> Parts:
-    """A box of full extents `size` that is open at its front, with room in it and boards.
+    """Return a box of full extents `size` that is open at its front, with boards.
 
-    Boards lie at these shares of its height, and reach so much of its `depth` from the back.
+    Boards are at these shares of its height, and extend over this share of its `depth` from the back.
     """
     x, y, z = size
     wall = wall_of(size)
@@ -59,7 +59,7 @@ def framed_box(
     boards: Sequence[float] = (),
     depth: float = 1.0,
 ) -> Parts:
-    """The same with a front that has a hole in it: its least and greatest y, least and greatest z [m]."""
+    """Return such a box with a front that has an opening: its minimum and maximum y and z [m]."""
     x, y, z = size
     wall = wall_of(size)
     left, right, bottom, top = hole
@@ -83,7 +83,7 @@ def framed_box(
 
 
 def flap(name: str, parts: Part | Iterable[Part], hinge: Vec3, *, opens: float = math.pi / 2) -> Parts:
-    """What tips forwards and down about a level hinge below it, as the door of an oven."""
+    """Return a flap that tips forwards and down about a horizontal hinge below, as an oven door does."""
     joint = Joint(name=name, kind="hinge", anchor=hinge, axis=(0.0, 1.0, 0.0), range=(0.0, opens))
     return moving(joint, _parts(parts))
 
@@ -99,9 +99,9 @@ def pull_out(
     face: Part | Iterable[Part] = (),
     travel: float = 0.65,
 ) -> Parts:
-    """A drawer: a tray of full extents `size`, with a front panel of width and height `panel` before it.
+    """Return a drawer: a tray of full extents `size`, with a front panel of width and height `panel`.
 
-    It slides out by the share `travel` of its depth; `face` is what is seen on the panel.
+    It slides out by the share `travel` of its depth; `face` are the visible parts of the panel.
     """
     x, y, z = size
     cx, cy, cz = centre
@@ -129,7 +129,7 @@ def pull_out(
 
 
 def wall_of(size: Vec3) -> float:
-    """How thick the walls of a box of this size are [m]."""
+    """Return the wall thickness of a box of this size [m]."""
     return min(max(WALL_M, 0.018 * max(size[0], size[1])), 0.1 * min(size))
 
 
@@ -144,7 +144,7 @@ def side_door(
     opens: float = WIDE,
     friction: float = 0.4,
 ) -> Parts:
-    """A leaf that turns about an upright hinge at its +y side (`hinge` 1) or its -y side (-1)."""
+    """Return a door that turns about an upright hinge at its +y side (`hinge` 1) or its -y side (-1)."""
     x, y, _ = size
     joint = Joint(
         name=name,

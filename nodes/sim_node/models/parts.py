@@ -1,4 +1,4 @@
-"""Models as plain data: primitive parts in metres, the origin at the bottom centre, the front facing +x."""
+"""Models as plain data: primitive parts in metres, the origin at the bottom centre, the front at +x."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ UPRIGHT: Quat = (1.0, 0.0, 0.0, 0.0)
 
 
 class Shape(Enum):
-    """The primitives; what `half` means for each."""
+    """The primitives, with the meaning of `half` for each."""
 
     BOX = "box"  # half extents
     ELLIPSOID = "ellipsoid"  # semi-axes
@@ -30,16 +30,16 @@ class Shape(Enum):
 
 
 class Role(Enum):
-    """What a part is there for."""
+    """The purpose of a part."""
 
-    BOTH = "both"  # seen and felt
-    SEEN = "seen"  # decoration: collides with nothing
-    FELT = "felt"  # a simpler stand-in for what is seen
+    BOTH = "both"  # visible and colliding
+    SEEN = "seen"  # visible, does not collide
+    FELT = "felt"  # invisible, collides in place of visible parts
 
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles: `vertices` (N, 3) [m] around the middle of their bounding box, `faces` (M, 3)."""
+    """Triangles: `vertices` (N, 3) [m] relative to the centre of their bounding box, `faces` (M, 3)."""
 
     key: str
     vertices: Floats
@@ -48,11 +48,11 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Joint:
-    """How some parts of a model move against the rest; where they are drawn, the joint is at 0.
+    """How some parts of a model move relative to the others; they are drawn with the joint at 0.
 
-    A hinge turns about `axis` through `anchor` [m], a slide shifts along it. `range` is from the least to
-    the greatest position [rad, m], `closed` the end of it at which what moves is shut; without limits both
-    are None, and it opens nothing. `friction` [N m, N] holds it where it was left.
+    A hinge turns about `axis` through `anchor` [m], a slide shifts along it. `range` is from the minimum to
+    the maximum position [rad, m], and `closed` is the closed end of it; without limits both are None, and it
+    opens nothing. `friction` [N m, N] holds it in place.
     """
 
     name: str
@@ -83,7 +83,7 @@ class Part:
 
     @property
     def volume(self) -> float:
-        """Volume [m^3]."""
+        """Return the volume [m^3]."""
         a, b, c = self.half
         match self.shape:
             case Shape.BOX | Shape.MESH:
@@ -96,7 +96,7 @@ class Part:
                 return math.pi * a * a * (2.0 * c + 4.0 / 3.0 * a)
 
     def reach(self) -> Floats:
-        """Half extents of its axis-aligned bounding box in the model's axes: (3,) [m]."""
+        """Return half extents (3,) of its axis-aligned bounding box in the model's axes [m]."""
         rotation = rotation_matrix(self.turn)
         radial, half = np.abs(rotation), np.asarray(self.half)
         match self.shape:
@@ -118,30 +118,30 @@ Parts = list[Part]
 
 
 def box(size: Sequence[float], centre: Vec3, colour: Colour, turn: Quat = UPRIGHT) -> Part:
-    """A box of full extents `size`."""
+    """Return a box of full extents `size`."""
     x, y, z = size
     return Part(Shape.BOX, (x / 2, y / 2, z / 2), centre, colour, turn)
 
 
 def ball(size: Sequence[float], centre: Vec3, colour: Colour, turn: Quat = UPRIGHT) -> Part:
-    """An ellipsoid of full extents `size`."""
+    """Return an ellipsoid of full extents `size`."""
     x, y, z = size
     return Part(Shape.ELLIPSOID, (x / 2, y / 2, z / 2), centre, colour, turn)
 
 
 def rod(radius: float, height: float, centre: Vec3, colour: Colour, turn: Quat = UPRIGHT) -> Part:
-    """A cylinder along its z axis."""
+    """Return a cylinder along its z axis."""
     return Part(Shape.CYLINDER, (radius, radius, height / 2), centre, colour, turn)
 
 
 def pill(radius: float, height: float, centre: Vec3, colour: Colour, turn: Quat = UPRIGHT) -> Part:
-    """A capsule along its z axis, `height` long from tip to tip."""
+    """Return a capsule along its z axis, `height` long from tip to tip."""
     straight = max(height / 2 - radius, 1e-4)
     return Part(Shape.CAPSULE, (radius, radius, straight), centre, colour, turn)
 
 
 def mesh(vertices: Floats, faces: NDArray[np.int32], colour: Colour, role: Role = Role.BOTH) -> Part:
-    """Triangles where their `vertices` (N, 3) [m] are; they have yet to be given a key."""
+    """Return triangles with `vertices` (N, 3) at their positions [m], without a key."""
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle, half = (low + high) / 2.0, (high - low) / 2.0
     triangles = Mesh("", vertices - middle, np.asarray(faces, dtype=np.int32))
@@ -149,12 +149,12 @@ def mesh(vertices: Floats, faces: NDArray[np.int32], colour: Colour, role: Role 
 
 
 def seen(parts: Part | Iterable[Part]) -> Parts:
-    """The same, as decoration."""
+    """Return the parts as visual parts."""
     return _with_role(parts, Role.SEEN)
 
 
 def felt(parts: Part | Iterable[Part]) -> Parts:
-    """The same, as an invisible stand-in."""
+    """Return the parts as invisible collision parts."""
     return _with_role(parts, Role.FELT)
 
 
@@ -163,7 +163,7 @@ def _with_role(parts: Part | Iterable[Part], role: Role) -> Parts:
 
 
 def about(axis: str, angle_rad: float) -> Quat:
-    """The rotation by `angle_rad` about the axis x, y or z."""
+    """Return the rotation by `angle_rad` about the axis x, y or z."""
     vector = [math.sin(angle_rad / 2) if axis == name else 0.0 for name in "xyz"]
     return (math.cos(angle_rad / 2), vector[0], vector[1], vector[2])
 
@@ -173,7 +173,7 @@ ALONG_Y: Quat = about("x", -math.pi / 2)
 
 
 def quarter_turned(parts: Iterable[Part]) -> Parts:
-    """The model turned by -90 degrees about z, so that its front faces -y."""
+    """Return the model rotated by -90 degrees about z, so that its front is at -y."""
     turn = about("z", -math.pi / 2)
 
     def turned(vector: Vec3) -> Vec3:
@@ -192,12 +192,12 @@ def quarter_turned(parts: Iterable[Part]) -> Parts:
 
 
 def moving(joint: Joint, parts: Part | Iterable[Part]) -> Parts:
-    """The same parts, carried by a joint."""
+    """Return the parts, moved by a joint."""
     return [replace(part, joint=joint) for part in ([parts] if isinstance(parts, Part) else parts)]
 
 
 def moved(part: Part, position: float) -> Part:
-    """A part where it is when its joint is at `position` [rad, m]; what has no joint stays."""
+    """Return a part with its joint at `position` [rad, m]."""
     joint = part.joint
     if joint is None or position == 0.0:
         return part
@@ -211,7 +211,7 @@ def moved(part: Part, position: float) -> Part:
 
 
 def product(a: Quat, b: Quat) -> Quat:
-    """The rotation b followed by the rotation a."""
+    """Return the rotation b followed by the rotation a."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
     return (
@@ -223,7 +223,7 @@ def product(a: Quat, b: Quat) -> Quat:
 
 
 def rotation_matrix(turn: Sequence[float]) -> Floats:
-    """(3, 3) rotation of a unit quaternion wxyz."""
+    """Return the (3, 3) rotation of a unit quaternion wxyz."""
     w, x, y, z = turn
     return np.array(
         [
@@ -235,7 +235,7 @@ def rotation_matrix(turn: Sequence[float]) -> Floats:
 
 
 def bounds(parts: Iterable[Part]) -> tuple[Floats, Floats]:
-    """Lowest and highest corner, each (3,) [m], of the box around all parts."""
+    """Return lowest and highest corner, each (3,) [m], of the box around all parts."""
     pairs = [(np.asarray(part.centre), part.reach()) for part in parts]
     low = np.min([centre - reach for centre, reach in pairs], axis=0)
     high = np.max([centre + reach for centre, reach in pairs], axis=0)
@@ -252,10 +252,10 @@ class Inertial:
 
 
 def inertial(parts: Iterable[Part], mass_kg: float) -> Inertial:
-    """Of the felt parts as solids of one density.
+    """Return the inertia of the colliding parts as solids of one density.
 
-    Products of inertia are left out: the models are nearly symmetrical, and a body whose frame is its
-    centre of mass with diagonal inertia is what MuJoCo compiles and steps fastest.
+    Products of inertia are omitted: the models are nearly symmetric, and MuJoCo is fastest for a body whose
+    frame is its centre of mass with diagonal inertia.
     """
     solid = [part for part in parts if part.role is not Role.SEEN]
     volumes = np.array([part.volume for part in solid])
@@ -271,7 +271,7 @@ def inertial(parts: Iterable[Part], mass_kg: float) -> Inertial:
 
 
 def _realisable(moments: Floats) -> Floats:
-    """Moments raised until none is so small beside the others that contacts make it ring."""
+    """Raise moments that are so small relative to the others that contacts would oscillate."""
     return np.asarray(np.maximum(np.maximum(moments, 0.02 * moments.max()), 1e-7))
 
 

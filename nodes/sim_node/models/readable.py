@@ -1,6 +1,6 @@
-"""Which files a model may be made of: those of the folders that whoever runs the system has named.
+"""Restricts the files of models to configured folders.
 
-The name of a model comes from the map, which others may change.
+The name of a model comes from the map, which other users may change.
 """
 
 from __future__ import annotations
@@ -13,31 +13,31 @@ from semmap.nodes.sim_node.models.library import ModelError
 
 _FOLDERS = ("meshdir", "texturedir", "assetdir")
 _DEEPEST = 20
-"""Files that include one another."""
+"""Maximum number of files that include one another."""
 
 
 def require_readable(path: Path, roots: Sequence[Path]) -> None:
-    """Raises ModelError for a path that leads outside all `roots`, by whatever links, or to a pipe or device.
+    """Raise ModelError for a path outside all `roots` (after resolving links), or to a pipe or device.
 
-    Reading those might never end.
+    Reading these might never end.
     """
     real = path.resolve()
     if not any(real.is_relative_to(root.resolve()) for root in roots):
         where = " or ".join(map(str, roots)) or "the folder given by `semmap up --models DIR`"
-        raise ModelError(f"the model file {path} is not read: only files in {where} may be read")
+        raise ModelError(f"cannot read model file {path}: only files in {where} are allowed")
     if real.exists() and not (real.is_file() or real.is_dir()):
-        raise ModelError(f"the model file {path} is not read: it is a pipe or a device, not a file")
+        raise ModelError(f"cannot read model file {path}: not a regular file")
 
 
 def require_references(path: Path, roots: Sequence[Path]) -> None:
-    """The same for all that an MJCF file includes or refers to. What is no XML is left to MuJoCo to refuse.
+    """Check the same for all files that an MJCF file includes or refers to. MuJoCo rejects invalid XML.
 
     Raises ModelError, OSError.
     """
     folders, files = {path.parent}, [path]
-    for depth, file in enumerate(files):  # grows meanwhile
+    for depth, file in enumerate(files):  # the list grows in the loop
         if depth > _DEEPEST:
-            raise ModelError(f"the model file {path} includes more than {_DEEPEST} files")
+            raise ModelError(f"model file {path} includes more than {_DEEPEST} files")
         try:
             root = ElementTree.fromstring(file.read_bytes())
         except ElementTree.ParseError:
@@ -54,7 +54,7 @@ def require_references(path: Path, roots: Sequence[Path]) -> None:
 
 
 def _values(element: ElementTree.Element, names: Sequence[str]) -> Iterator[str]:
-    """Those of attributes of this element, or for folders of all its `compiler` elements."""
+    """Return the values of these attributes, for folders those of all `compiler` elements."""
     elements = element.iter("compiler") if names is _FOLDERS else (element,)
     for one in elements:
         yield from (value for name in dict.fromkeys(names) if (value := one.get(name)))

@@ -16,12 +16,11 @@ from semmap.schemas.errors import did_you_mean
 
 @dataclass(frozen=True)
 class Models:
-    """Models of files in `folder` or at a path, before the library's own.
+    """Models of files in `folder` or at a path, with precedence over the library's.
 
-    `chair.glb` in the folder takes the place of the model `chair`. A model may itself be a path
-    (`/home/me/sofa.obj`), within the folder or `data`: what the map names must not make this process read any
-    other file. Called with a model's name and a size, it answers the model;
-    raises ModelError for a file that cannot be used.
+    `chair.glb` in the folder replaces the model `chair`. A model may itself be a path (`/home/me/sofa.obj`)
+    within the folder or `data`; other files must not be read because of a name in the map. Called with a name
+    and a size, it returns the model, or raises ModelError for an invalid file.
     """
 
     folder: Path | None = None
@@ -29,7 +28,7 @@ class Models:
     """The data folder of the system."""
 
     def __call__(self, name: str, size_m: Vec3 | None) -> Model:
-        """The model `name` at `size_m`, or at its own size."""
+        """Return the model `name` at `size_m`, or at its own size."""
         path = self._path(name)
         if path is None:
             return built_in(name, size_m)
@@ -40,13 +39,13 @@ class Models:
                 require_references(path, roots)
             return read_model(path, size_m, path.stat().st_mtime_ns)
         except OSError as error:
-            raise ModelError(f"cannot read the model file {path}: {error.strerror}") from None
+            raise ModelError(f"cannot read model file {path}: {error.strerror}") from None
 
     def _path(self, name: str) -> Path | None:
         if name.endswith(SUFFIXES):
             if self.folder is None and not Path(name).is_absolute():
                 raise ModelError(
-                    f"the model file {name} is looked up in the folder given by `semmap up --models DIR`,"
+                    f"model file {name} is searched in the folder given by `semmap up --models DIR`,"
                     " but none was given"
                 )
             return (self.folder or Path()) / name
@@ -54,8 +53,8 @@ class Models:
         return next((path for path in candidates if path.is_file()), None)
 
 
-def passed_over(folder: Path, models: Collection[str]) -> list[str]:
-    """The model files of `folder` that are none of `models`, those of the classes, and what they are near."""
+def ignored_files(folder: Path, models: Collection[str]) -> list[str]:
+    """Return the model files of `folder` that match none of `models`, with suggestions."""
     return [
         path.name + (f" ({hint.removeprefix('; ')})" if (hint := did_you_mean(path.stem, models)) else "")
         for path in sorted(folder.iterdir())
@@ -64,5 +63,5 @@ def passed_over(folder: Path, models: Collection[str]) -> list[str]:
 
 
 def is_one_of(path: Path, models: Collection[str]) -> bool:
-    """Whether a file is that of one of these models."""
+    """Return whether a file is that of one of these models."""
     return path.suffix in SUFFIXES and any(name in models for name in (path.stem, path.name, str(path)))

@@ -1,10 +1,10 @@
-"""A model's support surfaces and interiors, read off its geometry.
+"""A model's support surfaces and interiors, computed from its geometry.
 
-Vertical lines through a grid over the footprint are cut with every part, which gives the solid intervals
-above each cell. A *support surface* is a patch of neighbouring cells whose solids end at one height with
-room above. An *interior* is a body of free cells with a floor below and walls on all four sides; its top may
-be open, as a bowl's is. What collides counts for surfaces; for interiors also what is seen, for a cup is
-solid to the physics and hollow to the eye, as a fridge is the other way round.
+Vertical lines through a grid over the footprint are intersected with every part, which gives the solid
+intervals above each cell. A *support surface* is a patch of neighbouring cells whose solids end at one height
+with free space above. An *interior* is a set of free cells with a floor below and walls on all four sides;
+its top may be open, as of a bowl. Surfaces use colliding parts. Interiors also use visible parts, since a cup
+collides as a solid but looks hollow, and a fridge the other way round.
 """
 
 from __future__ import annotations
@@ -31,22 +31,22 @@ LEVELS = 64
 HEADROOM_M = 0.03
 """Free height above a support surface."""
 LEVEL_M = 0.006
-"""Neighbouring cells whose heights differ by less belong to one surface."""
+"""Maximum height difference of neighbouring cells of one surface."""
 LEAST_AREA = 0.02
-"""Of the footprint; smaller patches are edges and handles."""
+"""Share of the footprint; smaller patches are edges and handles."""
 LEAST_FILL = 0.25
-"""Of the rectangle around a patch; what is thinner is a rim, which carries things only at the model's top."""
+"""Share of the rectangle around a patch; a thinner one is a rim, a support only at the model's top."""
 LEAST_VOLUME = 0.03
-"""Of the bounding box."""
+"""Share of the bounding box."""
 LEAST_TRAY = 0.004
-"""The same, of what a drawer holds."""
+"""The same, for a drawer."""
 
 Intervals = list[tuple[Floats, Floats]]
-"""For each part both ends of its cut with each cell's vertical line: (nx, ny), nan for none."""
+"""For each part both ends of its intersection with each cell's vertical line: (nx, ny), nan for none."""
 
 
 def shape_of(model: Model) -> ModelShape:
-    """The support surfaces and interiors of a model at its size, in metres in its own frame."""
+    """Return the support surfaces and interiors of a model at its size, in metres in its own frame."""
     x, y, z = model.size_m
     step = max(x, y) / CELLS
     xs = np.arange(-x / 2 + step / 2, x / 2, step)
@@ -55,7 +55,7 @@ def shape_of(model: Model) -> ModelShape:
     walls = [(part, _cut(_as_thick_as(step, part), xs, ys)) for part in model.parts]
 
     def hollows(joints: Collection[str | None], least: float = LEAST_VOLUME) -> list[Interior]:
-        """Those between the parts that these joints carry."""
+        """Return the interiors between the parts of these joints."""
         some = [(part.role, cut) for part, cut in walls if (part.joint and part.joint.name) in joints]
         seen, felt = ([cut for role, cut in some if role is not out] for out in (Role.FELT, Role.SEEN))
         return _together(*(_interiors(one, xs, ys, step, z, least) for one in (seen, felt)))
@@ -97,7 +97,7 @@ def shape_of(model: Model) -> ModelShape:
 
 
 def _as_thick_as(step: float, part: Part) -> Part:
-    """A wall that no line of the grid would meet, made so thick that one does."""
+    """Return a thin wall made so thick that a line of the grid intersects it."""
     if part.shape is not Shape.BOX or min(part.half) > step / 2.0:
         return part
     x, y, z = (max(extent, 0.51 * step) for extent in part.half)
@@ -105,7 +105,7 @@ def _as_thick_as(step: float, part: Part) -> Part:
 
 
 def _is_among(room: Interior, others: Iterable[Interior]) -> bool:
-    """Whether a hollow is still there, no smaller and no more open than it was."""
+    """Return whether an interior still exists, no smaller and no more open."""
     return any(
         room.open >= other.open
         and other.fill > 0.9 * room.fill
@@ -115,13 +115,13 @@ def _is_among(room: Interior, others: Iterable[Interior]) -> bool:
 
 
 def _shared(one: Interior, other: Interior) -> float:
-    """The volume that two hollows have in common [m^3]."""
+    """Return the common volume of two interiors [m^3]."""
     extents = np.minimum(one.high, other.high) - np.maximum(one.low, other.low)
     return float(np.prod(np.maximum(extents, 0.0)))
 
 
 def _is_one(one: Surface, other: Surface) -> bool:
-    """Whether two surfaces are level, and most of the first is the second's."""
+    """Return whether two surfaces are level, and most of the first is in the second."""
     extents = np.minimum(one.high, other.high) - np.maximum(one.low, other.low)
     shared = float(np.prod(np.maximum(extents, 0.0)))
     return abs(one.height - other.height) < LEVEL_M and shared > 0.5 * float(
@@ -130,7 +130,7 @@ def _is_one(one: Surface, other: Surface) -> bool:
 
 
 def _up_to_the_lid(tray: Interior, rooms: Iterable[Interior]) -> Interior:
-    """A drawer holds also what is higher than its sides: up to what is above it when it is shut."""
+    """Extend a drawer's interior above its sides, up to the part above it when it is closed."""
     x, y, z = tray.high
     lid = max([z, *(room.high[2] for room in rooms if _shared(tray, room) > 0.5 * _volume(tray))])
     return structs.replace(tray, high=(x, y, lid))
@@ -178,7 +178,7 @@ def _patch(
     start: tuple[int, int, int],
     owner: dict[tuple[int, int, int], int],
 ) -> list[tuple[int, int, int]]:
-    """The tops that are level with the first and joined to it."""
+    """Return the tops that are level with the first and connected to it."""
     level = tops[start[0], start[1]][start[2]].height
     patch, waiting = [start], [start]
     owner[start] = 1
@@ -195,7 +195,7 @@ def _patch(
 
 
 def _tops(cuts: Intervals) -> dict[tuple[int, int], list[_Top]]:
-    """The upper ends of the solid intervals above each cell, from below, with the room above each."""
+    """Return the upper ends of the solid intervals above each cell, from below, with the free heights."""
     lows = np.stack([low for low, _ in cuts])
     highs = np.stack([high for _, high in cuts])
     tops: dict[tuple[int, int], list[_Top]] = {}
@@ -259,7 +259,7 @@ def _interiors(
 def _floor_and_lid(
     cuts: Intervals, cells: NDArray[np.int64], low_m: float, high_m: float, rise: float
 ) -> tuple[float, float]:
-    """Where what is below some free cells ends and what is above them begins, not rounded to cells."""
+    """Return the exact heights of the solids below and above some free cells."""
     columns = np.unique(cells[:, :2], axis=0)
     ends = np.concatenate([high[columns[:, 0], columns[:, 1]] for _, high in cuts])
     starts = np.concatenate([low[columns[:, 0], columns[:, 1]] for low, _ in cuts])
@@ -272,7 +272,7 @@ def _floor_and_lid(
 
 
 def _together(one: list[Interior], other: list[Interior]) -> list[Interior]:
-    """The interiors of both readings; of those that meet the larger."""
+    """Return the interiors of both variants; of those that overlap, the larger."""
     kept: list[Interior] = []
     for room in sorted([*one, *other], key=lambda room: -_volume(room)):
         if not any(_meet(room, known) for known in kept):
@@ -289,7 +289,7 @@ def _volume(room: Interior) -> float:
 
 
 def _cut(part: Part, xs: Floats, ys: Floats) -> tuple[Floats, Floats]:
-    """Where the vertical lines enter and leave a part: two arrays (nx, ny), nan where they miss it."""
+    """Return where the vertical lines enter and leave a part: two arrays (nx, ny), nan for none."""
     rotation = rotation_matrix(part.turn)
     grid = np.stack(np.broadcast_arrays(xs[:, None], ys[None, :], 0.0), axis=-1) - np.asarray(part.centre)
     origin, up = grid @ rotation, rotation[2]  # in the part's own axes
@@ -362,7 +362,7 @@ def _can(origin: Floats, up: Floats, radius: float, half: float) -> tuple[Floats
 
 
 def _hull(part: Part, origin: Floats, up: Floats) -> tuple[Floats, Floats]:
-    """A mesh collides as its convex hull: the planes of the hull cut each line."""
+    """Intersect the lines with the planes of a mesh's convex hull, as it collides."""
     from scipy.spatial import ConvexHull
 
     if part.mesh is None:

@@ -1,7 +1,7 @@
-"""Models of things that a class has beside its usual one, and what tells them from that one.
+"""Alternative models of classes, and how one is chosen.
 
-The TBox names one model a class. Of that one and its varieties an entity has the one that its name says, or
-else the one that its size is nearest to (`ontology/model_choice.py`).
+The TBox names one model per class. Among it and its alternatives, an entity gets the one that its name says,
+or else the nearest in size (`ontology/model_choice.py`).
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from semmap.nodes.sim_node.models.model_table import MODELS, ModelKind
 
 
 class Variety(NamedTuple):
-    """A model, and the models `of` classes beside which it stands.
+    """A model, and the models `of` classes to which it is an alternative.
 
-    `words` are what it is called in an entity's name, beside its own name; each may be several words. One
-    that is `only_named` has nearly the size of its fellows, so that size alone says nothing.
+    `words` are its names within an entity's name, in addition to its own; each may be several words. One that
+    is `only_named` cannot be distinguished by size.
     """
 
     kind: ModelKind

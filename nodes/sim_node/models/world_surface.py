@@ -1,4 +1,4 @@
-"""What the geoms of a world look like, as triangles: its walls, and the bodies that its file has."""
+"""The geoms of a world as triangles: its walls, and the bodies of its file."""
 
 from __future__ import annotations
 
@@ -25,14 +25,13 @@ _SHAPES = {
 
 
 _MOST_TRIANGLES: Final = 100_000
-"""A body of more than that is not drawn as it looks."""
+"""A body of more triangles is not drawn in detail."""
 
 
 def world_surface(model: mujoco.MjModel, data: mujoco.MjData, names: Sequence[str]) -> Surface:
-    """The surface, in the map frame, of the geoms that belong to no body, by `names` (ngeom,): those of "".
+    """Return the surface, in the map frame, of geoms of no body, which are "" in `names` (ngeom,).
 
-    What has no end (planes) or no triangles of its own (height fields) is left out, and so is what cannot be
-    seen.
+    Planes, height fields and invisible geoms are omitted.
     """
     return _surface(
         model, data, [geom for geom, name in enumerate(names) if not name], np.zeros(3), np.eye(3)
@@ -42,10 +41,10 @@ def world_surface(model: mujoco.MjModel, data: mujoco.MjData, names: Sequence[st
 def body_surface(
     model: mujoco.MjModel, data: mujoco.MjData, names: Sequence[str], name: str, pose: Floats
 ) -> Surface | None:
-    """The surface of a body of the world's own, as its parts stand just now, in its frame.
+    """Return the surface of a body of the world file, with its parts as they are now, in its frame.
 
-    `names` (ngeom,) says whose each geom is, and `pose` (7,) where the body is: position [m] and quaternion
-    wxyz, map frame. None for one that cannot be seen or has too many triangles.
+    `names` (ngeom,) is the body of each geom, and `pose` (7,) that of the body: position [m] and quaternion
+    wxyz, map frame. Returns None if it is invisible or has too many triangles.
     """
     turn = np.zeros(9)
     mujoco.mju_quat2Mat(turn, np.asarray(pose[3:], dtype=float))
@@ -57,7 +56,10 @@ def body_surface(
 def _surface(
     model: mujoco.MjModel, data: mujoco.MjData, geoms: Sequence[int], origin: Floats, frame: Floats
 ) -> Surface:
-    """That of these geoms, in a frame: its `origin` (3,) [m] and its axes, the columns of `frame` (3, 3)."""
+    """Return the surface of these geoms in a frame.
+
+    `origin` (3,) [m] is its origin, and the columns of `frame` (3, 3) are its axes.
+    """
     points, normals, colours, triangles, count = [], [], [], [], 0
     for geom in geoms:
         if (part := _part(model, geom)) is None:
@@ -81,7 +83,7 @@ def _rows(pieces: Sequence[NDArray[Any]]) -> NDArray[Any]:
 
 
 def _part(model: mujoco.MjModel, geom: int) -> Part | None:
-    """A geom in its own frame; None for one that is not drawn."""
+    """Return a geom in its own frame; None if it is not drawn."""
     shape = _SHAPES.get(mujoco.mjtGeom(model.geom_type[geom]))
     red, green, blue, alpha = _rgba(model, geom)
     if shape is None or alpha == 0.0 or model.geom_group[geom] >= FELT_GROUP:

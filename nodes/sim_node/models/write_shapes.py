@@ -1,4 +1,7 @@
-"""The shapes of all models of the library, for the knowledge base, which does not have it: `make shapes`."""
+"""Writes the shapes of the library's models for the knowledge base: `make shapes`.
+
+The knowledge base does not load the library.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,7 @@ _DIGITS = 4
 
 
 def library_shapes() -> dict[str, ModelShape]:
-    """Model name to shape at its own size, and where it is a variety what it is one of."""
+    """Return the shape of each model at its own size, and for an alternative the model it replaces."""
     found = {name: shape_of(build(name, None)) for name in ("", *sorted(KINDS))}
     for name, (_, of, words, only_named) in VARIETIES.items():
         found[name] = structs.replace(found[name], of=of, words=words, only_named=only_named)
@@ -30,9 +33,9 @@ def library_shapes() -> dict[str, ModelShape]:
 
 
 def own_shapes(folder: Path) -> dict[str, ModelShape]:
-    """Those of the model files in a folder, by the names that a TBox may have for them.
+    """Return the shapes of the model files in a folder, by possible names in a TBox.
 
-    A file that cannot be used has none: the simulator says why when it meets it.
+    An invalid file has none; the simulator reports the reason when it uses it.
     """
     models = Models(folder)
     found: dict[str, ModelShape] = {}
@@ -49,9 +52,9 @@ def own_shapes(folder: Path) -> dict[str, ModelShape]:
 
 
 def own_notes(folder: Path, names: Collection[str]) -> list[str]:
-    """What of the model files in a folder is not in the models, or is stiff in them: a line for each file.
+    """Return notes on the model files in a folder: what is omitted or does not move, one line per file.
 
-    `names` are those of the classes' models; files that are none of these are passed over.
+    `names` are the classes' models; other files are ignored.
     """
     models = Models(folder)
     told: list[str] = []
@@ -72,7 +75,7 @@ def write_own(folder: Path | None, target: Path) -> None:
 
 
 def as_json(shapes: dict[str, ModelShape]) -> str:
-    """The file's text: a line for each model."""
+    """Return the file's text: one line per model."""
     rows = (
         f"  {json.dumps(name)}: {json.dumps(_rounded(msgspec.to_builtins(shape)))}"
         for name, shape in shapes.items()

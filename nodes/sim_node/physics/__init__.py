@@ -1,1 +1,1 @@
-"""MuJoCo's side: the compiled model with slots for bodies, the base scene, rest and sleep."""
+"""The MuJoCo engine: the compiled model with slots for bodies, the base scene, rest and sleep."""

@@ -16,13 +16,20 @@ from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.bodies import BodyRecord, Floats, pose_of
 from semmap.nodes.sim_node.physics.build import FELT_GROUP, IMPEDANCE
-from semmap.nodes.sim_node.physics.ends import CLOSED_TEXT, ENDS, OFF_TEXT, Ends, said, tied
+from semmap.nodes.sim_node.physics.joint_texts import (
+    CLOSED_TEXT,
+    ENDS,
+    OFF_TEXT,
+    JointTexts,
+    coupled_joints,
+    read_texts,
+)
 from semmap.nodes.sim_node.vision.view import OPTICAL, View, look_at
 from semmap.schemas.entities import NAME_PATTERN
 from semmap.schemas.errors import BadFile
 from semmap.schemas.joints import Joint
 
-# else MuJoCo writes a file into the working directory
+# by default MuJoCo writes a log file into the working directory
 mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
 
 _TIMESTEP_S = 0.002
@@ -38,7 +45,7 @@ _SLEEP_WITH = {
     int(mujoco.mjtEq.mjEQ_WELD),
     int(mujoco.mjtEq.mjEQ_JOINT),
 }
-"""The equality constraints whose bodies MuJoCo can put to sleep; with another it would stop with an error."""
+"""The equality constraints with which MuJoCo supports sleep; with others it would fail."""
 _DEFAULT_IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
 
 OVERVIEW = "overview"
@@ -48,7 +55,7 @@ OVERVIEW_FOVY_RAD = math.radians(58.0)
 
 
 def bare_floor(views: Iterable[tuple[str, View]] | None = None) -> mujoco.MjSpec:
-    """An endless floor with these cameras, each with its name or ""; else with one that looks over it."""
+    """Return an infinite floor with these named cameras; by default with one overview camera."""
     spec = mujoco.MjSpec()
     spec.modelname = "empty"
     spec.option.timestep = _TIMESTEP_S
@@ -68,39 +75,39 @@ def bare_floor(views: Iterable[tuple[str, View]] | None = None) -> mujoco.MjSpec
 
 
 def aim(camera: mujoco.MjsCamera, view: View) -> None:
-    """Put a camera where the view is seen from."""
+    """Set a camera to the pose of a view."""
     camera.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
     camera.pos, camera.fovy = view.map_from_camera[:3, 3], np.degrees(view.fovy_rad)
     mujoco.mju_mat2Quat(camera.quat, (view.map_from_camera[:3, :3] @ OPTICAL).ravel())
 
 
 def read_mjcf(path: Path, *, compiles: bool = True) -> mujoco.MjSpec:
-    """A scene from a file. Raises BadFile if it is missing or, where that is asked for, does not compile."""
+    """Read a scene from a file. Raises BadFile if it is missing or, if requested, does not compile."""
     try:
         spec = mujoco.MjSpec.from_file(str(path))
-        if compiles:  # not a copy of it, which has lost what refers to a name that there is not
+        if compiles:  # not a copy, which drops references to missing names
             mujoco.MjSpec.from_file(str(path)).compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
         reason = _one_line(error)
-        if "allocate memory" in reason:  # of very many bodies MuJoCo estimates far more than they take
-            reason += '; say in the file how much it may take: <size memory="200M"/>'
-        raise BadFile(f"the world file {path} is not an MJCF scene that compiles: {reason}") from None
+        if "allocate memory" in reason:  # MuJoCo overestimates the memory of very many bodies
+            reason += '; set the limit in the file: <size memory="200M"/>'
+        raise BadFile(f"cannot compile world file {path}: {reason}") from None
     return spec
 
 
 class Compiled(NamedTuple):
-    """A world as MuJoCo has it: of thousands of bodies it takes seconds to make."""
+    """A compiled world. For thousands of bodies, compilation takes seconds."""
 
     model: mujoco.MjModel
     data: mujoco.MjData
-    """With the frames of its bodies as they stand at first."""
+    """The initial state, with the frames of its bodies."""
 
 
 def prepare(spec: mujoco.MjSpec) -> Compiled:
-    """Set what the simulator relies on: one bad body does not reset the world, and bodies at rest sleep.
+    """Set the options of the simulator: no automatic reset, and sleep for resting bodies.
 
-    In a world with equality constraints on tendons or flexible things nothing sleeps: MuJoCo cannot do it.
-    What it returns has no unseen floor, which is the ground's.
+    With equality constraints on tendons or flexible bodies, MuJoCo does not support sleep. The result does
+    not include the hidden floor, which is added to the specification.
     """
     if all(int(equality.type) in _SLEEP_WITH for equality in spec.equalities):
         spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
@@ -108,38 +115,38 @@ def prepare(spec: mujoco.MjSpec) -> Compiled:
         spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
     if spec.option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL and spec.option.impratio == 1.0:
-        # what a file does not choose: with these, things that lean on one another do not creep
+        # unless the file sets them: with these, leaning bodies do not creep
         spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
         for geom in spec.geoms:
             if np.array_equal(geom.solimp, _DEFAULT_IMPEDANCE):
                 geom.solimp = IMPEDANCE
     quality = spec.visual.quality
     quality.shadowsize = quality.offsamples = 0  # shadows and MSAA cost 40 times the frame on a CPU
-    # a third of the default's time: what is round shrinks by a fiftieth of its radius at most
+    # a third of the default's time; round shapes shrink by at most 2 %
     quality.numslices, quality.numstacks, quality.numquads = 24, 8, 1
     _add_names(spec)
     compiled = _compiled(spec)
-    if np.isnan(spec.stat.extent):  # how far an endless floor is drawn; nothing may be there to begin with
+    if np.isnan(spec.stat.extent):  # extent of the drawn floor, if the scene is empty
         spec.stat.extent = max(_EXTENT_M, float(compiled.model.stat.extent))
     _add_net(spec, *compiled)
     return compiled
 
 
 def _add_names(spec: mujoco.MjSpec) -> None:
-    """Bodies that move, or parts of which do, joints and cameras get a name if they lack one."""
+    """Name moving bodies, joints and cameras that have no name."""
     _name(spec.worldbody.bodies, "body", spec.bodies, lambda body: bool(body.name) or not _has_joints(body))
     _name(spec.joints, "joint", spec.joints, lambda joint: bool(joint.name))
-    # a camera's is a part of the keys of its planes
+    # a camera's name is part of its keys
     _name(spec.cameras, "camera", spec.cameras, lambda camera: bool(re.match(NAME_PATTERN, camera.name)))
 
 
 def _has_joints(body: mujoco.MjsBody) -> bool:
-    """Whether it moves, or any part of it."""
+    """Return whether a body or any of its parts moves."""
     return bool(body.joints) or any(_has_joints(part) for part in body.bodies)
 
 
 def _name(elements: Sequence[Any], stem: str, kin: Iterable[Any], is_named: Callable[[Any], bool]) -> None:
-    """Give names to those that are not named, such that none of their `kin` has."""
+    """Give unnamed elements a name that none of their `kin` has."""
     taken = {other.name for other in kin}
     for number, element in enumerate(elements, start=1):
         if not is_named(element):
@@ -148,7 +155,7 @@ def _name(elements: Sequence[Any], stem: str, kin: Iterable[Any], is_named: Call
 
 
 def _add_net(spec: mujoco.MjSpec, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-    """An endless floor, unseen, below a world that has none: what falls off it comes to rest somewhere."""
+    """Add a hidden infinite floor below a world without one, so that falling bodies come to rest."""
     static = np.flatnonzero(model.body_weldid[model.geom_bodyid] == 0)
     if not (model.geom_type[static] == int(mujoco.mjtGeom.mjGEOM_PLANE)).any():
         low, _ = _extents(model, data, static, 0)
@@ -172,18 +179,18 @@ def _compiled(spec: mujoco.MjSpec) -> Compiled:
 def bodies_of(
     spec: mujoco.MjSpec, compiled: Compiled, is_class: Callable[[str], bool] = lambda word: False
 ) -> dict[str, BodyRecord]:
-    """The world's own bodies: every named one on the top level, and of those within others every `_is_body`.
+    """Return the world's own bodies: all named ones on the top level, and nested ones with `_is_body`.
 
-    A joint is of the body that it moves or, if that is none of these, of the nearest one that it is part of.
+    A joint belongs to the body that it moves, or else to its nearest parent body.
     """
     model, data = compiled
     classes = _declared(spec)
-    ends = Ends.of(spec)
+    ends = JointTexts.of(spec)
     switches = {joint for joint in range(model.njnt) if ends.is_switch(model, joint)}
-    follow = tied(model, switches)  # the burner that a knob lowers opens nothing
+    follow = coupled_joints(model, switches)  # a burner coupled to a knob opens nothing
     records: dict[str, BodyRecord] = {}
     owner = [""] * model.nbody
-    for number in range(1, model.nbody):  # wholes have lower numbers than their parts
+    for number in range(1, model.nbody):  # parents have lower numbers than their parts
         name, whole = model.body(number).name, int(model.body_parentid[number])
         if name and (whole == 0 or _is_body(name, classes, is_class)):
             class_ = classes.get(name) or class_from_name(name)
@@ -195,7 +202,7 @@ def bodies_of(
 
 
 def _is_body(name: str, classes: Mapping[str, str], is_class: Callable[[str], bool]) -> bool:
-    """Is a part of another body one of its own: by a text, or by a name like that of a class?"""
+    """Return whether a nested body is a separate body: declared by a text, or named like a class."""
     if not re.match(NAME_PATTERN, name):
         return False
     word = class_from_name(name)
@@ -203,62 +210,73 @@ def _is_body(name: str, classes: Mapping[str, str], is_class: Callable[[str], bo
 
 
 def ignored(spec: mujoco.MjSpec) -> list[str]:
-    """What texts declare in vain, each with the reason, in the order of the texts."""
+    """Return declarations in texts without effect, each with the reason, in order."""
     if not any(text.name.startswith((_CLASS_TEXT, CLOSED_TEXT, OFF_TEXT)) for text in spec.texts):
         return []
-    model, _ = _compiled(spec)  # to ask a large specification takes longer than to compile it
+    model, _ = _compiled(spec)  # compiling is faster than queries of a large specification
     named = {model.body(number).name for number in range(1, model.nbody)}
     joints = {model.joint(number).name for number in range(model.njnt)}
-    told = []
+    found = []
     for name in _declared(spec):
         if name not in named:
-            told.append(f"{name} (no such body)")
+            found.append(f"{name} (no such body)")
         elif not re.match(NAME_PATTERN, name):
-            told.append(f"{name} (no entity can have this name)")
+            found.append(f"{name} (no entity can have this name)")
     for prefix, how in ((CLOSED_TEXT, "closed"), (OFF_TEXT, "off")):
-        for name, end in said(spec, prefix):
+        for name, end in read_texts(spec, prefix):
             if name not in joints:
-                told.append(f"{name} (no such joint)")
+                found.append(f"{name} (no such joint)")
             elif end not in ENDS:
-                told.append(f"{name} ({how} at '{end}'; say lower or upper)")
-    return told
+                found.append(f"{name} ({how} at '{end}'; use lower or upper)")
+    return found
 
 
 def left_out(model: mujoco.MjModel, records: Collection[str]) -> tuple[str, ...]:
-    """The bodies of a world that are none of `records`, by name; one without a name by what it is part of."""
+    """Return the bodies of a world that are not in `records`, by name or by their parent."""
     names = [model.body(number).name for number in range(model.nbody)]
-    told = []
+    found = []
     above = [""] * model.nbody
-    for number in range(1, model.nbody):  # wholes have lower numbers than their parts
+    for number in range(1, model.nbody):  # parents have lower numbers than their parts
         whole = above[model.body_parentid[number]]
         above[number] = names[number] or whole
         if not names[number]:
-            told.append(f"a nameless part of {whole or 'the ground'}")
+            found.append(f"a nameless part of {whole or 'the ground'}")
         elif names[number] not in records:
-            told.append(names[number])
-    return tuple(told)
+            found.append(names[number])
+    return tuple(found)
 
 
 def names_classes(spec: mujoco.MjSpec) -> bool:
-    """Does it depend on the classes' names what is a body here?"""
+    """Return whether names of classes determine the bodies of this scene."""
     known = {*_declared(spec), *(body.name for body in spec.worldbody.bodies), ""}
     return any(body.name not in known for body in spec.bodies[1:])
 
 
 def _declared(spec: mujoco.MjSpec) -> dict[str, str]:
-    """The classes that the world's texts declare, by name of the body."""
-    return dict(said(spec, _CLASS_TEXT))
+    """Return the classes declared in the world's texts, by name of the body."""
+    return dict(read_texts(spec, _CLASS_TEXT))
 
 
 def _give_joints(
-    record: BodyRecord, model: mujoco.MjModel, body: int, ends: Ends, switches: set[int], follow: set[int]
+    record: BodyRecord,
+    model: mujoco.MjModel,
+    body: int,
+    ends: JointTexts,
+    switches: set[int],
+    follow: set[int],
 ) -> None:
-    """Add the joints that move a body to a record; those that `follow` switches do nothing by themselves."""
+    """Add the joints that move a body to a record; `follow` are joints that depend on others."""
     first = int(model.body_jntadr[body])
     joints = range(first, first + int(model.body_jntnum[body]))
     numbers = [joint for joint in joints if int(model.jnt_type[joint]) in _KINDS]
     record.joints += tuple(
-        _joint(model, number, ends.said(model.joint(number).name), number in switches, number in follow)
+        _joint(
+            model,
+            number,
+            ends.closed_end(model.joint(number).name),
+            number in switches,
+            number in follow,
+        )
         for number in numbers
     )
     record.joint_names += tuple(model.joint(number).name for number in numbers)
@@ -267,9 +285,9 @@ def _give_joints(
 def _joint(
     model: mujoco.MjModel, number: int, closed_end: str | None, is_switch: bool, follows: bool
 ) -> Joint:
-    """A joint of the world as it stands at first; it opens or switches something if it has limits.
+    """Return a joint in its initial position; with limits, it opens or switches something.
 
-    Without a word on it, it is closed, or off, at the limit that is nearest to where it stands.
+    Without a text, it is closed, or off, at the nearest limit.
     """
     name = model.joint(number).name
     kind = _KINDS[int(model.jnt_type[number])]
@@ -294,7 +312,7 @@ def _joint(
 
 
 def class_from_name(name: str) -> str | None:
-    """`chair_3` is a `chair`; a name that is all digits says nothing."""
+    """Return the class part of a name: `chair` for `chair_3`; None for digits only."""
     return re.sub(r"[\W_]*\d*$", "", name) or None
 
 
@@ -324,20 +342,20 @@ def _record(
 
 
 def _within(model: mujoco.MjModel, body: int) -> NDArray[np.bool_]:
-    """(nbody,) which bodies are this one or parts of it; parts have higher numbers than their wholes."""
+    """Return (nbody,) which bodies are this one or its parts, which have higher numbers."""
     within = np.zeros(model.nbody, dtype=bool)
     within[body] = True
     for part in range(body + 1, model.nbody):
         within[part] = within[model.body_parentid[part]]
         if not within[part] and model.body_parentid[part] < body:
-            break  # the parts of a body follow it without a gap
+            break  # the parts of a body follow it contiguously
     return within
 
 
 def _extents(
     model: mujoco.MjModel, data: mujoco.MjData, geoms: NDArray[np.intp], body: int
 ) -> tuple[Floats, Floats]:
-    """Lowest and highest corner (3,) of the box around `geoms`, in the frame of a body."""
+    """Return lowest and highest corner (3,) of the box around `geoms`, in the frame of a body."""
     if not len(geoms):
         return np.full(3, -0.005), np.full(3, 0.005)
     world_from_body = data.xmat[body].reshape(3, 3)

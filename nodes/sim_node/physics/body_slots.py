@@ -1,8 +1,8 @@
-"""Body slots: spare bodies of a compiled model that newcomers are written into.
+"""Body slots: spare bodies of a compiled model into which new bodies are written.
 
-To compile costs time with the square of the number of free bodies, so a model is compiled with some bodies
-more than are asked for. A newcomer is written into one of these: the rows that it has in a model compiled of
-it alone are copied. Who leaves is hidden, touches nothing and is too heavy to move, until another comes.
+Compilation time grows with the square of the number of free bodies, so a model is compiled with some spare
+bodies. A new body is written into a spare one by copying its rows from a model that contains only this body.
+A deleted body is hidden, does not collide and is too heavy to move until the slot is reused.
 """
 
 from __future__ import annotations
@@ -28,18 +28,19 @@ _GEOM = (
 _NODE = ("depth", "child", "aabb")
 _IMMOVABLE_KG = 1e9
 _SPARES = (4, 32)
-"""At least and at most so many are compiled to spare: one to every `_SPARE_OF` bodies in between."""
+"""Minimum and maximum number of spare slots: one for every `_SPARE_OF` bodies in between."""
 
 _SPARE_OF = 8
 _SPARE_PARTS = (14, 14, 14, 28)
-"""Nine models out of ten have no more than 18 parts, three out of four 12."""
+"""Nine models out of ten have at most 18 parts, three out of four at most 12."""
 
 
 @dataclass(frozen=True)
-class Berth:
-    """Body number `body` of a model, which stays where it is put if `static`.
+class BodySlot:
+    """Body number `body` of a model, without free joint if `static`.
 
-    It has `geoms` geoms from number `geom` on and `nodes` nodes of the tree of bounding boxes from `node` on.
+    It has `geoms` geoms from number `geom` on, and `nodes` nodes of the bounding volume hierarchy from `node`
+    on.
     """
 
     body: int
@@ -50,10 +51,10 @@ class Berth:
     nodes: int
 
     @staticmethod
-    def of(model: mujoco.MjModel, name: str) -> Berth:
-        """The body of that name in a model as it was compiled."""
+    def of(model: mujoco.MjModel, name: str) -> BodySlot:
+        """Return the slot of a named body in a newly compiled model."""
         body = model.body(name).id
-        return Berth(
+        return BodySlot(
             body=body,
             static=bool(model.body_weldid[body] == 0),
             geom=int(model.body_geomadr[body]),
@@ -62,40 +63,40 @@ class Berth:
             nodes=int(model.body_bvhnum[body]),
         )
 
-    def takes(self, alone: mujoco.MjModel, *, static: bool) -> bool:
-        """Whether a body has room here."""
+    def has_room_for(self, alone: mujoco.MjModel, *, static: bool) -> bool:
+        """Return whether a body fits."""
         return self.static == static and self.geoms >= alone.ngeom and self.nodes >= alone.body_bvhnum[1]
 
 
-def spare_parts(bodies: int) -> list[tuple[bool, int]]:
-    """The berths to compile beside so many bodies: for each whether it is static, and for how many parts."""
+def spare_slots(bodies: int) -> list[tuple[bool, int]]:
+    """Return the spare slots for this many bodies: for each whether it is static, and its number of parts."""
     least, most = _SPARES
     count = min(most, least + bodies // _SPARE_OF)
     return [(i % 6 == 5, _SPARE_PARTS[i % len(_SPARE_PARTS)]) for i in range(count)]
 
 
-def moor(
+def fill_slot(
     model: mujoco.MjModel,
     data: mujoco.MjData,
-    berth: Berth,
+    slot: BodySlot,
     newcomer: tuple[BodyRecord, mujoco.MjModel],
     pose: Pose,
 ) -> None:
-    """Make `berth` the body of the newcomer, whose model `alone` is, standing at `pose` and awake."""
-    (record, alone), body = newcomer, berth.body
-    clear(model, data, berth)
+    """Write a body, whose model is `alone`, into a slot, at `pose` and awake."""
+    (record, alone), body = newcomer, slot.body
+    clear_slot(model, data, slot)
     for field in _BODY:
         getattr(model, f"body_{field}")[body] = getattr(alone, f"body_{field}")[1]
-    geoms = slice(berth.geom, berth.geom + alone.ngeom)
+    geoms = slice(slot.geom, slot.geom + alone.ngeom)
     for field in _GEOM:
         getattr(model, f"geom_{field}")[geoms] = getattr(alone, f"geom_{field}")
-    _copy_boxes(model, berth, alone)
+    _copy_boxes(model, slot, alone)
     if record.ghost:
         model.geom_contype[geoms] = model.geom_conaffinity[geoms] = 0
         model.body_contype[body] = model.body_conaffinity[body] = 0
     position, quaternion = frame_of(pose, record.origin_m)
     model.body_pos[body], model.body_quat[body] = position, quaternion
-    if not berth.static:
+    if not slot.static:
         dof = int(model.body_dofadr[body])
         for field in _DOF:
             getattr(model, f"dof_{field}")[dof : dof + 6] = getattr(alone, f"dof_{field}")
@@ -103,56 +104,54 @@ def moor(
         joint = int(model.jnt_qposadr[model.body_jntadr[body]])
         data.qpos[joint : joint + 7] = np.concatenate([position, quaternion])
         sleep.wake(data, int(model.body_treeid[body]))
-    _set_frames(model, data, berth, position, quaternion)
+    _set_frames(model, data, slot, position, quaternion)
 
 
-def clear(model: mujoco.MjModel, data: mujoco.MjData, berth: Berth) -> None:
-    """Nobody is here: nothing to see, nothing to touch, nothing that moves, and no name."""
-    body = berth.body
-    model.name_bodyadr[body] = (
-        model.nnames - 1
-    )  # where the last name ends; names themselves cannot be written
-    geoms = slice(berth.geom, berth.geom + berth.geoms)
+def clear_slot(model: mujoco.MjModel, data: mujoco.MjData, slot: BodySlot) -> None:
+    """Clear a slot: it is invisible, does not collide or move, and has no name."""
+    body = slot.body
+    model.name_bodyadr[body] = model.nnames - 1  # the end of the last name; names are read-only
+    geoms = slice(slot.geom, slot.geom + slot.geoms)
     model.geom_contype[geoms] = model.geom_conaffinity[geoms] = 0
     model.geom_group[geoms] = build.FELT_GROUP
     model.body_contype[body] = model.body_conaffinity[body] = 0
     data.xfrc_applied[body] = 0.0
-    if not berth.static:
+    if not slot.static:
         model.name_jntadr[model.body_jntadr[body]] = model.nnames - 1
         dofs = slice(int(model.body_dofadr[body]), int(model.body_dofadr[body]) + 6)
         model.dof_M0[dofs] = _IMMOVABLE_KG
         data.qvel[dofs] = data.qacc_warmstart[dofs] = 0.0
 
 
-def _copy_boxes(model: mujoco.MjModel, berth: Berth, alone: mujoco.MjModel) -> None:
-    """The tree of bounding boxes, whose leaves name geoms by number."""
+def _copy_boxes(model: mujoco.MjModel, slot: BodySlot, alone: mujoco.MjModel) -> None:
+    """Copy the bounding volume hierarchy, whose leaves refer to geoms by number."""
     count = int(alone.body_bvhnum[1])
-    nodes = slice(berth.node, berth.node + count)
+    nodes = slice(slot.node, slot.node + count)
     for field in _NODE:
         getattr(model, f"bvh_{field}")[nodes] = getattr(alone, f"bvh_{field}")[:count]
     leaves = alone.bvh_nodeid[:count]
-    model.bvh_nodeid[nodes] = np.where(leaves < 0, leaves, leaves + berth.geom)
-    model.body_bvhnum[berth.body] = count
+    model.bvh_nodeid[nodes] = np.where(leaves < 0, leaves, leaves + slot.geom)
+    model.body_bvhnum[slot.body] = count
 
 
 def _set_frames(
-    model: mujoco.MjModel, data: mujoco.MjData, berth: Berth, position: Floats, quaternion: Floats
+    model: mujoco.MjModel, data: mujoco.MjData, slot: BodySlot, position: Floats, quaternion: Floats
 ) -> None:
-    """What kinematics would work out; it passes over what is static or was asleep."""
+    """Set the frames, since MuJoCo's kinematics skips static and sleeping bodies."""
     rotation = rotation_matrix(quaternion.tolist())
-    data.xpos[berth.body] = data.xipos[berth.body] = position
-    data.xquat[berth.body] = quaternion
-    data.xmat[berth.body] = data.ximat[berth.body] = rotation.ravel()
-    for geom in range(berth.geom, berth.geom + berth.geoms):
+    data.xpos[slot.body] = data.xipos[slot.body] = position
+    data.xquat[slot.body] = quaternion
+    data.xmat[slot.body] = data.ximat[slot.body] = rotation.ravel()
+    for geom in range(slot.geom, slot.geom + slot.geoms):
         data.geom_xpos[geom] = position + rotation @ model.geom_pos[geom]
         data.geom_xmat[geom] = (rotation @ rotation_matrix(model.geom_quat[geom].tolist())).ravel()
 
 
 @lru_cache(maxsize=256)
 def compiled_alone(model: Model) -> mujoco.MjModel | None:
-    """A MuJoCo model of nothing but this one body, free.
+    """Return a MuJoCo model of only this body, free.
 
-    None if it has meshes, which no berth knows, or joints, whose bodies no berth has.
+    None for a body with meshes or joints, which slots do not support.
     """
     if model.leaves or any(part.mesh for part in model.parts):
         return None

@@ -1,4 +1,4 @@
-"""Bodies into and out of a MuJoCo specification."""
+"""Adds bodies to a MuJoCo specification."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _GEOM = {
 }
 _GROUP = {Role.BOTH: 0, Role.SEEN: 2, Role.FELT: 3}
 FELT_GROUP = _GROUP[Role.FELT]
-"""The geom group that no camera sees."""
+"""The geom group that is invisible to cameras."""
 
 _JOINT = {"hinge": mujoco.mjtJoint.mjJNT_HINGE, "slide": mujoco.mjtJoint.mjJNT_SLIDE}
 _WIDTH = {
@@ -39,11 +39,13 @@ _BATCH = 50
 _PATIENCE_S = 0.01
 _FRICTION = (0.8, 0.01, 0.004)
 IMPEDANCE = (0.99, 0.99, 0.001, 0.5, 2.0)
-"""How hard contacts are (`solimp`): so hard that what leans or lies on a slope does not creep. MuJoCo's other
-means, friction stiffer than the normal force, takes the solver a tenth more time."""
+"""Hardness of contacts (`solimp`), chosen so that leaning bodies and bodies on slopes do not creep.
+
+MuJoCo's alternative, friction stiffer than the normal force, slows the solver by ten percent.
+"""
 
 _SPIN_S = 1.0
-"""A body's spin dies away in about this time; so a can that rolls stops, without costly contacts."""
+"""Time constant of a body's spin, which stops rolling cans without costly contacts."""
 
 _HULL_VERTICES = 64
 _MEMORY_BYTES = 32 << 20
@@ -53,8 +55,8 @@ _MEMORY_BYTES_A_BODY = 100 << 10
 def add_bodies(spec: mujoco.MjSpec, newcomers: Sequence[tuple[BodyRecord, Model, Pose]]) -> None:
     """Add bodies, each at its pose.
 
-    To add one costs time in proportion to all that the specification holds already, so many are put
-    together in small ones of their own, which are then attached.
+    The time to add one grows with the size of the specification, so bodies are collected in small batches
+    that are attached.
     """
     plain = [newcomer for newcomer in newcomers if not any(part.mesh for part in newcomer[1].parts)]
     for start in range(0, len(plain), _BATCH):
@@ -63,14 +65,14 @@ def add_bodies(spec: mujoco.MjSpec, newcomers: Sequence[tuple[BodyRecord, Model,
             add_body(batch, record, model, pose)
         _attach(spec, batch)
     for record, model, pose in newcomers:
-        if any(part.mesh for part in model.parts):  # meshes are shared, so they are known to the whole
+        if any(part.mesh for part in model.parts):  # meshes are shared by the whole specification
             add_body(spec, record, model, pose)
         if model.leaves:
-            _let_pass(spec, record.name, model)
+            _exclude_self_collisions(spec, record.name, model)
 
 
 def _attach(spec: mujoco.MjSpec, batch: mujoco.MjSpec) -> None:
-    """Take over all bodies of a small specification, with their names."""
+    """Attach all bodies of a small specification, with their names."""
     names = [(element, element.name) for element in (*batch.bodies[1:], *batch.joints)]
     spec.attach(batch, prefix=f"batch{len(spec.frames)}/", frame=spec.worldbody.add_frame())
     for element, name in names:
@@ -78,7 +80,7 @@ def _attach(spec: mujoco.MjSpec, batch: mujoco.MjSpec) -> None:
 
 
 def add_body(spec: mujoco.MjSpec, record: BodyRecord, model: Model, pose: Pose) -> None:
-    """One body whose frame is its centre of mass; see `parts.inertial` for why."""
+    """Add one body whose frame is its centre of mass; see `parts.inertial`."""
     position, quaternion = frame_of(pose, record.origin_m)
     body = spec.worldbody.add_body(name=record.name, pos=position, quat=quaternion)
     if not record.static:
@@ -95,18 +97,18 @@ def add_body(spec: mujoco.MjSpec, record: BodyRecord, model: Model, pose: Pose) 
 
 
 def leaf_name(body: str, joint: str) -> str:
-    """What a joint and what it moves are called in MuJoCo; no entity has a slash in its name."""
+    """Return the name of a joint and its moving part in MuJoCo; entity names contain no slash."""
     return f"{body}/{joint}"
 
 
 def _add_leaf(spec: mujoco.MjSpec, body: mujoco.MjsBody, record: BodyRecord, leaf: Leaf) -> None:
-    """What a joint moves, as a body within the body; its frame, too, is its centre of mass."""
+    """Add the part that a joint moves as a child body, whose frame is its centre of mass."""
     x, y, z = (-centre for centre in leaf.inertial.centre_m)
     position = [shift - own for shift, own in zip(record.origin_m, (x, y, z), strict=True)]
     name = leaf_name(record.name, leaf.joint.name)
     child = body.add_body(name=name, pos=position)
     child.explicitinertial, child.ipos, child.iquat = True, [0.0] * 3, [1.0, 0.0, 0.0, 0.0]
-    child.gravcomp = 1.0  # as by a spring: friction alone would let a lid creep down
+    child.gravcomp = 1.0  # like a spring: with friction alone, a lid would creep down
     child.mass, child.inertia = leaf.inertial.mass_kg, list(leaf.inertial.moments)
     joint = child.add_joint(
         name=name,
@@ -118,7 +120,7 @@ def _add_leaf(spec: mujoco.MjSpec, body: mujoco.MjsBody, record: BodyRecord, lea
     if leaf.joint.range is not None:
         joint.limited = mujoco.mjtLimited.mjLIMITED_TRUE
         joint.range = [_as_compiled(spec, leaf.joint.kind, limit) for limit in leaf.joint.range]
-        joint.solimp_limit = IMPEDANCE  # what stands on a lid does not press it in
+        joint.solimp_limit = IMPEDANCE  # a load does not press the lid in
     else:
         joint.limited = mujoco.mjtLimited.mjLIMITED_FALSE
     joint.damping = [0.1 * leaf.joint.friction, 0.0, 0.0]
@@ -129,22 +131,22 @@ def _add_leaf(spec: mujoco.MjSpec, body: mujoco.MjsBody, record: BodyRecord, lea
 
 
 def _as_compiled(spec: mujoco.MjSpec, kind: str, limit: float) -> float:
-    """A limit in the unit in which a specification's angles are."""
+    """Return a limit in the angle unit of the specification."""
     return math.degrees(limit) if kind == "hinge" and spec.compiler.degree else limit
 
 
-def _let_pass(spec: mujoco.MjSpec, name: str, model: Model) -> None:
-    """A door does not collide with its own frame, nor one drawer with the next."""
+def _exclude_self_collisions(spec: mujoco.MjSpec, name: str, model: Model) -> None:
+    """Exclude collisions among the parts of a body, such as a door and its frame."""
     bodies = [name, *(leaf_name(name, leaf.joint.name) for leaf in model.leaves)]
     for one, other in combinations(bodies, 2):
         spec.add_exclude(bodyname1=one, bodyname2=other)
 
 
-def add_spares(spec: mujoco.MjSpec, parts: Sequence[tuple[bool, int]]) -> list[str]:
-    """Bodies for those to come, each static or free and of so many parts; their names, no entity's."""
+def add_spare_bodies(spec: mujoco.MjSpec, parts: Sequence[tuple[bool, int]]) -> list[str]:
+    """Add spare bodies, each static or free with this many parts; return their names."""
     names, batch = [], mujoco.MjSpec()
     for number, (static, count) in enumerate(parts):
-        body = batch.worldbody.add_body(name=f"berth/{number}")
+        body = batch.worldbody.add_body(name=f"slot/{number}")
         names.append(body.name)
         if not static:
             body.add_freejoint(name=body.name)
@@ -157,7 +159,7 @@ def add_spares(spec: mujoco.MjSpec, parts: Sequence[tuple[bool, int]]) -> list[s
 
 
 def add_mesh(spec: mujoco.MjSpec, mesh: Mesh) -> None:
-    """Make the mesh known to `spec`, once; it collides as its convex hull."""
+    """Add a mesh once; it collides as its convex hull."""
     if spec.mesh(mesh.key) is None:
         spec.add_mesh(
             name=mesh.key,
@@ -171,7 +173,7 @@ def add_mesh(spec: mujoco.MjSpec, mesh: Mesh) -> None:
 def add_part(
     body: mujoco.MjsBody, part: Part, *, origin_m: Vec3 = (0.0, 0.0, 0.0), ghost: bool = False
 ) -> None:
-    """One geom; `origin_m` is where the model's bottom centre is in the body's frame."""
+    """Add one geom; `origin_m` is the model's bottom centre in the body's frame."""
     contype, conaffinity = (0, 0) if ghost else mask_of(part)
     body.add_geom(
         type=_GEOM[part.shape],
@@ -195,19 +197,19 @@ def _geom_size(part: Part) -> list[float]:
 
 
 def mask_of(part: Part) -> tuple[int, int]:
-    """Contype and conaffinity of a part."""
+    """Return contype and conaffinity of a part."""
     return (0, 0) if part.role is Role.SEEN else (1, 1)
 
 
 def set_standing(spec: mujoco.MjSpec, record: BodyRecord, pose: Pose) -> None:
-    """Make the body in `spec` stand at `pose`, solid or ghost, free or held, as the record says."""
+    """Set the pose of a body in `spec`, and its collision and joints as in the record."""
     body = spec.body(record.name)
     position, quaternion = frame_of(pose, record.origin_m)
     body.pos, body.quat = position, quaternion
     body.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
     for geom, (contype, conaffinity) in zip(body.geoms, record.masks, strict=True):
         geom.contype, geom.conaffinity = (0, 0) if record.ghost else (contype, conaffinity)
-    if record.robot:  # only what can move may sleep
+    if record.robot:  # only movable bodies may sleep
         policies = mujoco.mjtSleepPolicy
         body.sleep = policies.mjSLEEP_AUTO if record.static else policies.mjSLEEP_ALLOWED
     joints = body.joints
@@ -219,20 +221,20 @@ def set_standing(spec: mujoco.MjSpec, record: BodyRecord, pose: Pose) -> None:
         body.add_freejoint(name=record.name)
 
 
-def aside(make: Callable[[], Made], meanwhile: Callable[[], None]) -> Made:
-    """What `make` makes, on a thread of its own while `meanwhile` is called again and again.
+def run_in_background(make: Callable[[], Made], while_waiting: Callable[[], None]) -> Made:
+    """Run `make` on another thread, and call `while_waiting` repeatedly until it is done.
 
-    To compile a thousand bodies takes a second, and five thousand half a minute.
+    Compiling a thousand bodies takes a second, and five thousand half a minute.
     """
     with ThreadPoolExecutor(max_workers=1, thread_name_prefix="compile") as thread:
         making = thread.submit(make)
         while not wait([making], timeout=_PATIENCE_S).done:
-            meanwhile()
+            while_waiting()
         return making.result()
 
 
 def set_memory(spec: mujoco.MjSpec, bodies: int) -> None:
-    """Room for the contacts of so many bodies; untouched pages cost nothing."""
+    """Reserve memory for the contacts of this many bodies; unused pages are not allocated."""
     spec.memory = _MEMORY_BYTES + bodies * _MEMORY_BYTES_A_BODY
 
 
@@ -243,7 +245,7 @@ def carry_joints(
     new_data: mujoco.MjData,
     names: Iterable[str],
 ) -> None:
-    """Give the joints of these names, and what else of state a world file may define, the state they had."""
+    """Copy the state of these joints, and other state of a world file, to a new model."""
     for name in names:
         was, now = (mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) for model in (old, new))
         if min(was, now) < 0 or old.jnt_type[was] != new.jnt_type[now]:

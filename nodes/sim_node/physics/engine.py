@@ -10,113 +10,115 @@ from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_of
 from semmap.nodes.sim_node.models.library import Model
-from semmap.nodes.sim_node.physics import base_scene, body_slots, build, grips, sleep
-from semmap.nodes.sim_node.physics.body_slots import Berth
+from semmap.nodes.sim_node.physics import attachments, base_scene, body_slots, build, sleep
+from semmap.nodes.sim_node.physics.body_slots import BodySlot
 from semmap.nodes.sim_node.physics.drives import STEPS_A_PUSH, Drives
-from semmap.nodes.sim_node.physics.rest import JointWatch, RestWatch
-from semmap.nodes.sim_node.placement.obstacles import Stage
-from semmap.nodes.sim_node.robots.courses import Courses
+from semmap.nodes.sim_node.physics.rest import JointRestDetector, RestDetector
+from semmap.nodes.sim_node.placement.obstacles import Obstacles
+from semmap.nodes.sim_node.robots.base_controller import BaseController
 from semmap.nodes.sim_node.vision.view import View
 from semmap.schemas.entities import Pose, compose
 
-_STEPS_A_LOOK = 25
+_STEPS_A_CHECK = 25
 
 
 class Engine:
-    """Steps the bodies; compiles anew when one comes, or changes between held and free, and finds no berth.
+    """Simulates the bodies, and recompiles the model if no slot is free for a new or changed body.
 
-    `records` has every body, in the order of `index`; `resting` (N,) says which rest. `revision` grows with
-    every change of the model; while the next is made (`compiling`) bodies are asked about and stepped only.
+    `records` has every body, in the order of `index`; `resting` (N,) marks resting bodies. `revision`
+    increases with every change of the model. During compilation (`compiling`), bodies may only be queried and
+    stepped.
     """
 
     def __init__(
         self,
         ground: mujoco.MjSpec,
-        meanwhile: Callable[[], None],
+        while_waiting: Callable[[], None],
         is_class: Callable[[str], bool] = lambda word: False,
     ) -> None:
-        """A world of nothing but its ground yet; `meanwhile` is called while it compiles, and may `step`.
+        """Compile the ground without bodies. `while_waiting` is called repeatedly, and may call `step`.
 
-        `is_class` tells the names of classes, by which parts of the world's bodies are bodies of their own.
+        `is_class` returns whether a word names a class, which makes parts of the world's bodies separate
+        bodies.
         """
-        world = build.aside(lambda: base_scene.prepare(ground), meanwhile)
-        self._meanwhile = meanwhile
+        world = build.run_in_background(lambda: base_scene.prepare(ground), while_waiting)
+        self._while_waiting = while_waiting
         self._ground = ground
         self._shapes: dict[str, Model] = {}
-        self._berths: dict[str, Berth] = {}
-        self._vacant: list[Berth] = []
+        self._slots: dict[str, BodySlot] = {}
+        self._free_slots: list[BodySlot] = []
         self.records = base_scene.bodies_of(ground, world, is_class)
         self.left_out = base_scene.left_out(world.model, self.records)
-        """The bodies of the world that are only parts of others, each by name or by what it is part of."""
+        """Bodies of the world file that are only parts of others, by name or by their parent."""
         self.revision = 0
         self.compiling = False
         self.model: mujoco.MjModel
         self.data: mujoco.MjData
         self.index: BodyIndex
         self._compile({name: record.ordered for name, record in self.records.items()})
-        self._rest = RestWatch(self.poses(), self.data.time)
-        self._joint_rest = JointWatch(self.positions(), self.data.time)
+        self._rest = RestDetector(self.poses(), self.data.time)
+        self._joint_rest = JointRestDetector(self.positions(), self.data.time)
         self._drives = Drives()
-        self.courses = Courses()
+        self.base_controller = BaseController()
         self.resting: NDArray[np.bool_] = self.index.tree < 0
 
     def poses(self) -> Floats:
-        """(N, 7): bottom centre [m] and quaternion wxyz of each body, map frame."""
+        """Return (N, 7) bottom centre [m] and quaternion wxyz of each body, map frame."""
         return self.index.poses(self.data)
 
     def positions(self) -> Floats:
-        """(J,): where each joint of a body stands [rad, m], in the order of the index."""
+        """Return (J,) the position of each body joint [rad, m], in the order of the index."""
         return self.index.positions(self.data)
 
-    def stage(self) -> Stage:
-        """The scene as it is now, for questions of who is in whose way."""
+    def obstacles(self) -> Obstacles:
+        """Return the current collision geometry."""
         mujoco.mj_kinematics(self.model, self.data)
-        return Stage(self.model, self.data, self.index, self.records)
+        return Obstacles(self.model, self.data, self.index, self.records)
 
     def has(self, name: str) -> bool:
-        """Whether there is a body of this name, or a part of one of the world's own."""
+        """Return whether a body of this name exists, or a part of one of the world's own."""
         return name in self.records or self._ground.body(name) is not None
 
     def shape(self, name: str) -> Model | None:
-        """The model that a body was made from; None for the world's own, and for one that is not there."""
+        """Return the model of a body; None for the world's own and for unknown bodies."""
         return self._shapes.get(name)
 
-    # bodies come, go and change
+    # Changes of bodies
 
     def add(self, newcomers: Sequence[tuple[BodyRecord, Model]]) -> None:
-        """Put bodies where their records say."""
+        """Add bodies at their ordered poses."""
         for record, shape in newcomers:
             self.records[record.name], self._shapes[record.name] = record, shape
         self._arrange({record.name: record.ordered for record, _ in newcomers})
 
     def remove(self, names: Sequence[str]) -> None:
-        """Take bodies out."""
+        """Remove bodies."""
         own = [name for name in names if name not in self._shapes]
         jointed = any(self._shapes[name].leaves for name in names if name in self._shapes)
-        jointed = grips.concerned(names, self.records) or jointed
+        jointed = attachments.involves_attachment(names, self.records) or jointed
         for record in self.records.values():
             if record.held_by in names:
                 record.held_by, record.grip, record.grip_commit = "", None, -1
         for name in names:
             self._drives.stop(self.records[name].joint_names)
-            self._leave(name)
+            self._release_slot(name)
             self._shapes.pop(name, None)
             del self.records[name]
         for name in own:
-            if (body := self._ground.body(name)) is not None:  # else it went with what it was part of
+            if (body := self._ground.body(name)) is not None:  # else it was removed with its parent
                 self._ground.delete(body)
         if own or jointed:
             self._recompile({})
         else:
-            self._renew()
+            self._reindex()
 
     def hold(self, poses: Mapping[str, Pose]) -> None:
-        """Fix bodies at these poses or set them free there, solid or ghost, as their records say now."""
+        """Set bodies at these poses static or free, and colliding or not, as in their records."""
         if poses:
             self._arrange(poses)
 
     def put(self, poses: Mapping[str, Pose]) -> None:
-        """Set free bodies down at these poses, with no speed."""
+        """Set free bodies to these poses, without speed."""
         for name, pose in poses.items():
             row = self.index.row[name]
             address, dof = self.index.qpos[row], self.index.dof[row]
@@ -127,15 +129,15 @@ class Engine:
             self.data.qacc_warmstart[dof : dof + 6] = 0.0
 
     def grip(self, names: Collection[str]) -> None:
-        """Have bodies held, or let go, as their records say now; who is held goes where it is held."""
+        """Attach or detach bodies as in their records; an attached body moves to its attach pose."""
         poses = self.poses()
         self._recompile({name: pose_of(poses[self.index.row[name]]) for name in names})
         self.carry(names)
 
     def carry(self, names: Collection[str]) -> None:
-        """Put bodies, and all that these hold, where they are held."""
-        for record in grips.held(self.records):
-            above = grips.chain(record.name, self.records)
+        """Move attached bodies, and those attached to them, to their attach poses."""
+        for record in attachments.attached_records(self.records):
+            above = attachments.holders_of(record.name, self.records)
             if record.static or record.grip is None or not {record.name, *above} & set(names):
                 continue
             mujoco.mj_kinematics(self.model, self.data)
@@ -144,7 +146,7 @@ class Engine:
         mujoco.mj_kinematics(self.model, self.data)
 
     def drive(self, name: str, targets: Mapping[str, float]) -> None:
-        """Begin to move joints of a body, by their own names, to these positions [rad, m]."""
+        """Start to move joints of a body, by name, to these positions [rad, m]."""
         record = self.records[name]
         of = {
             joint.name: in_mujoco for joint, in_mujoco in zip(record.joints, record.joint_names, strict=True)
@@ -159,13 +161,13 @@ class Engine:
     def drive_base(
         self, name: str, points: Sequence[tuple[float, float]], yaw_rad: float | None, speed_m_s: float
     ) -> None:
-        """Begin to drive a robot's base through these points [m], at the end to face `yaw_rad`."""
-        self.courses.begin(name, points, yaw_rad, speed_m_s)
+        """Start to drive a robot's base through these points [m], finally facing `yaw_rad`."""
+        self.base_controller.begin(name, points, yaw_rad, speed_m_s)
         sleep.wake(self.data, int(self.index.tree[self.index.row[name]]))
         self._keep_awake((name,))
 
     def set_joints(self, names: Iterable[str]) -> None:
-        """Put the joints of these bodies where their records say, with no speed and not pushed any more."""
+        """Set the joints of these bodies to the positions in their records, without speed or force."""
         for name in names:
             record = self.records[name]
             self._drives.stop(record.joint_names)
@@ -174,50 +176,53 @@ class Engine:
                 if joint.kind != "ball":
                     self.data.qpos[self.index.joint_qpos[row]] = joint.position
                     self.data.qvel[self.index.joint_dof[row]] = 0.0
-                    self.data.qfrc_applied[self.index.joint_dof[row]] = 0.0  # else a drive's last push stays
+                    # else the last force of a drive remains
+                    self.data.qfrc_applied[self.index.joint_dof[row]] = 0.0
 
     def lift(self, row: int, rise_m: float) -> None:
         """Raise a free body."""
         self.data.qpos[self.index.qpos[row] + 2] += rise_m
 
     def _arrange(self, poses: Mapping[str, Pose]) -> None:
-        """Give each of these bodies a berth at its pose; compile anew if there are not enough."""
+        """Assign a slot to each of these bodies at its pose; recompile if there are not enough."""
         for name in poses:
-            self._leave(name)
-        enough = len(poses) <= len(self._vacant) and not grips.concerned(poses, self.records)
-        if enough and all(self._moor(name, pose) for name, pose in poses.items()):
-            self._renew()
+            self._release_slot(name)
+        enough = len(poses) <= len(self._free_slots) and not attachments.involves_attachment(
+            poses, self.records
+        )
+        if enough and all(self._assign_slot(name, pose) for name, pose in poses.items()):
+            self._reindex()
         else:
             self._recompile(poses)
 
-    def _leave(self, name: str) -> None:
-        berth = self._berths.pop(name, None)
-        if berth is not None:
-            body_slots.clear(self.model, self.data, berth)
-            self._vacant.append(berth)
+    def _release_slot(self, name: str) -> None:
+        slot = self._slots.pop(name, None)
+        if slot is not None:
+            body_slots.clear_slot(self.model, self.data, slot)
+            self._free_slots.append(slot)
 
-    def _moor(self, name: str, pose: Pose) -> bool:
-        """Give the body the smallest berth that will do; False if there is none."""
+    def _assign_slot(self, name: str, pose: Pose) -> bool:
+        """Assign the smallest slot that fits; return False if there is none."""
         record, shape = self.records[name], self._shapes.get(name)
         alone = body_slots.compiled_alone(shape) if shape is not None else None
         if alone is None:
             return False
-        fitting = [berth for berth in self._vacant if berth.takes(alone, static=record.static)]
+        fitting = [slot for slot in self._free_slots if slot.has_room_for(alone, static=record.static)]
         if not fitting:
             return False
-        berth = min(fitting, key=lambda berth: berth.geoms)
-        self._vacant.remove(berth)
-        self._berths[name] = berth
-        body_slots.moor(self.model, self.data, berth, (record, alone), pose)
+        slot = min(fitting, key=lambda slot: slot.geoms)
+        self._free_slots.remove(slot)
+        self._slots[name] = slot
+        body_slots.fill_slot(self.model, self.data, slot, (record, alone), pose)
         return True
 
     def _recompile(self, poses: Mapping[str, Pose]) -> None:
-        """Compile everything anew, these bodies at new poses, the others in the state they have by then."""
+        """Recompile the model with these bodies at new poses, and the others in their current state."""
         model, data, index = self.model, self.data, self.index
         now = {name: pose_of(row) for name, row in zip(index.names, self.poses(), strict=True)}
         now.update(poses)
         self._compile(now)
-        slept = sleep.drowsy(data, index.tree)
+        slept = sleep.asleep_or_ready(data, index.tree)
         self.data.time = data.time
         joints = [name for record in self.records.values() for name in record.joint_names]
         kept = dict.fromkeys([*(joint.name for joint in self._ground.joints), *joints])
@@ -231,133 +236,130 @@ class Engine:
             getattr(self.data, field)[to[:, None] + offsets] = getattr(data, field)[of[:, None] + offsets]
         self.set_joints(name for name in poses if name not in index.row and self.records[name].joints)
         mujoco.mj_kinematics(self.model, self.data)
-        sleep.lull(self.data, self.index.tree[stays & np.append(slept, False)[before]])
-        self._follow(before)
+        sleep.let_sleep(self.data, self.index.tree[stays & np.append(slept, False)[before]])
+        self._carry_rest_state(before)
 
     def _compile(self, poses: Mapping[str, Pose]) -> None:
-        """A new model of all bodies, each at its pose, and of some vacant slots."""
+        """Compile a model of all bodies, each at its pose, with some spare slots."""
         self.compiling = True
         try:
-            self.model, spares = build.aside(lambda: self._compiled(poses), self._meanwhile)
+            self.model, spares = build.run_in_background(lambda: self._compiled(poses), self._while_waiting)
         finally:
             self.compiling = False
         self.data = mujoco.MjData(self.model)
-        berthed = [name for name, shape in self._shapes.items() if not shape.leaves]
-        self._berths = {name: Berth.of(self.model, name) for name in berthed}
-        self._vacant = [Berth.of(self.model, name) for name in spares]
-        for berth in self._vacant:
-            body_slots.clear(self.model, self.data, berth)
+        slotted = [name for name, shape in self._shapes.items() if not shape.leaves]
+        self._slots = {name: BodySlot.of(self.model, name) for name in slotted}
+        self._free_slots = [BodySlot.of(self.model, name) for name in spares]
+        for slot in self._free_slots:
+            body_slots.clear_slot(self.model, self.data, slot)
         mujoco.mj_kinematics(self.model, self.data)
         self.index = self._indexed()
         self.revision += 1
 
     def _compiled(self, poses: Mapping[str, Pose]) -> tuple[mujoco.MjModel, list[str]]:
-        """That model, and the names of the vacant slots."""
+        """Return that model, and the names of the spare slots."""
         spec = self._ground.copy()
         made = [(self.records[name], shape, poses[name]) for name, shape in self._shapes.items()]
         build.add_bodies(spec, made)
-        spares = build.add_spares(spec, body_slots.spare_parts(len(made)))
+        spares = build.add_spare_bodies(spec, body_slots.spare_slots(len(made)))
         for name, record in self.records.items():
             if record.static and not record.anchored and name not in self._shapes:
                 build.set_standing(spec, record, poses[name])
-        grips.add_grips(spec, self.records)
+        attachments.add_welds(spec, self.records)
         build.set_memory(spec, len(self.records) + len(spares))
         return spec.compile(), spares
 
     def _indexed(self) -> BodyIndex:
         numbers = {
-            name: self._berths[name].body if name in self._berths else self.model.body(name).id
+            name: self._slots[name].body if name in self._slots else self.model.body(name).id
             for name in self.records
         }
         return BodyIndex.of(self.model, self.records, numbers)
 
     def _rows_in(self, index: BodyIndex) -> NDArray[np.int64]:
-        """(N,) the row that each body has in another index, -1 if none."""
+        """Return (N,) the row of each body in another index, -1 if none."""
         return np.array([index.row.get(name, -1) for name in self.index.names], dtype=np.int64)
 
-    def _renew(self) -> None:
-        """Go on with other bodies in the same model."""
+    def _reindex(self) -> None:
+        """Update the index after a change of bodies in the same model."""
         index = self.index
         self.index = self._indexed()
         self.revision += 1
-        self._follow(self._rows_in(index))
+        self._carry_rest_state(self._rows_in(index))
 
-    def _follow(self, before: NDArray[np.int64]) -> None:
-        """Those who were there, in the rows `before`, and rested rest on."""
-        self._rest = self._rest.carried(self.poses(), self.data.time, before)
+    def _carry_rest_state(self, before: NDArray[np.int64]) -> None:
+        """Keep the rest state of bodies that existed before, in the rows `before`."""
+        self._rest = self._rest.carried_over(self.poses(), self.data.time, before)
         rested = np.append(self.resting, False)[before]
-        self._joint_rest = JointWatch(self.positions(), self.data.time)
+        self._joint_rest = JointRestDetector(self.positions(), self.data.time)
         self.resting = (self.index.tree < 0) | rested
 
     def aim(self, camera: str, view: View) -> None:
-        """Put a camera of the ground where the view is seen from."""
+        """Set a camera of the ground to the pose of a view."""
         base_scene.aim(self._ground.camera(camera), view)
         self._recompile({})
 
-    # time goes on
+    # Simulation
 
     def step(self, duration_s: float) -> None:
-        """Let `duration_s` of simulated time pass; it costs nothing while everything sleeps."""
+        """Advance the simulated time by `duration_s`; this takes no time while everything sleeps."""
         end = self.data.time + duration_s
         timestep = self.model.opt.timestep
         while (left := round((end - self.data.time) / timestep)) > 0:
             if self.asleep:
                 self.data.time = end
             else:
-                before, most = self.data.qpos.copy(), _STEPS_A_LOOK
+                before, most = self.data.qpos.copy(), _STEPS_A_CHECK
                 if self._drives:
                     arrived = self._drives.push(self.model, self.data, self.index)
                     self._joint_rest.arrive(arrived, self.positions(), self.data.time)
                     most = STEPS_A_PUSH
-                if self.courses:
-                    self.courses.steer(self.model, self.data, self.index)
+                if self.base_controller:
+                    self.base_controller.steer(self.model, self.data, self.index)
                     most = STEPS_A_PUSH
                 mujoco.mj_step(self.model, self.data, nstep=min(left, most))
                 if not np.isfinite(self.data.qpos).all():
-                    self._calm(before)
+                    self._stop_diverged(before)
             asleep = sleep.sleeping(self.data, self.index.tree)
             self.resting = self._rest.update(self.poses(), self.data.time, asleep)
             if len(self.index.joint):
                 still = self._joint_rest.update(self.positions(), self.data.time)
                 still[self._drives.rows(self.index)] = False
                 self.resting[self.index.joint_body[~still]] = False
-            self._keep_awake(self.courses.names)
+            self._keep_awake(self.base_controller.names)
 
     def _keep_awake(self, names: Iterable[str]) -> None:
-        """Robots that drive do not rest, also before they move and where something is in their way."""
+        """Mark driving robots as not resting, also while they are blocked."""
         for name in names:
             if (row := self.index.row.get(name)) is not None:
                 self.resting[row] = False
 
     @property
     def asleep(self) -> bool:
-        """Nothing moves: every body sleeps, and none is about to be woken."""
-        return not self._drives and not self.courses and sleep.all_asleep(self.data)
+        """Return whether every body sleeps and none is about to wake."""
+        return not self._drives and not self.base_controller and sleep.all_asleep(self.data)
 
     @property
     def awake(self) -> int:
-        """How many bodies do not sleep, vacant berths with them."""
+        """Return the number of awake bodies, including spare slots."""
         return sleep.awake(self.data)
 
     def wake(self, names: Iterable[str]) -> None:
-        """Wake bodies, and with each the heap that it sleeps in."""
+        """Wake bodies, each with the island that it sleeps in."""
         for name in names:
             if name in self.records:
                 sleep.wake(self.data, self.index.tree[self.index.row[name]])
 
     def disturb(self, rows: Sequence[int]) -> None:
-        """These bodies were taken in hand: those that are free do not rest before they were still anew.
-
-        Nor does what moves along with them, as a robot's gripper does.
-        """
+        """Restart rest detection of these bodies, and of bodies in the same kinematic tree."""
         tree = self.index.tree
         along = np.flatnonzero((tree >= 0) & np.isin(tree, tree[list(rows)]))
         taken = [*rows, *along.tolist()]
         self._rest.disturb(taken, self.data.time)
         self.resting[taken] = tree[taken] < 0
 
-    def _calm(self, before: Floats) -> None:
-        """A body whose motion ran out of bounds stops where it was a step ago."""
+    def _stop_diverged(self, before: Floats) -> None:
+        """Stop a body whose state is no longer finite, at its previous position."""
         bad = ~np.isfinite(self.data.qpos)
         self.data.qpos[bad] = before[bad]
         self.data.qvel[~np.isfinite(self.data.qvel)] = 0.0

@@ -1,4 +1,4 @@
-"""What of the world itself stands in the way, seen from above: its own geometry, but not that of bodies."""
+"""The outlines of the world's static geometry, seen from above, without bodies."""
 
 from __future__ import annotations
 
@@ -12,25 +12,23 @@ from scipy.spatial import ConvexHull, QhullError
 from semmap.nodes.sim_node.bodies import Floats
 from semmap.schemas.plans import Outline
 
-_PASSED_OVER: Final = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
+_FLOORS: Final = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
 _ROUND: Final = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_CYLINDER))
 _SIDES: Final = 16
 _DIGITS: Final = 6
 
 
 def walls(model: mujoco.MjModel, data: mujoco.MjData, bodies: Collection[int]) -> tuple[Outline, ...]:
-    """The outlines of what collides and cannot move, but of none of these bodies, by number.
+    """Return the outlines of static colliding geometry, except of these bodies, by number.
 
-    Planes and height fields are floors. What is round has sixteen corners.
+    Planes and height fields are floors. Round shapes have sixteen corners.
     """
     found: list[Outline] = []
     for geom in range(model.ngeom):
         body = int(model.geom_bodyid[geom])
         if model.body_weldid[body] != 0 or int(model.body_rootid[body]) in bodies:
             continue
-        if model.geom_type[geom] in _PASSED_OVER or not (
-            model.geom_contype[geom] or model.geom_conaffinity[geom]
-        ):
+        if model.geom_type[geom] in _FLOORS or not (model.geom_contype[geom] or model.geom_conaffinity[geom]):
             continue
         if (outline := _outline(_points(model, data, geom))) is not None:
             found.append(outline)
@@ -38,7 +36,7 @@ def walls(model: mujoco.MjModel, data: mujoco.MjData, bodies: Collection[int]) -
 
 
 def _points(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Floats:
-    """(N, 3) points whose hull is the geometry, or around it; map frame [m]."""
+    """Return points (N, 3) whose hull contains the geometry; map frame [m]."""
     kind = int(model.geom_type[geom])
     centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
     if kind == int(mujoco.mjtGeom.mjGEOM_MESH):
@@ -60,7 +58,7 @@ def _points(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Floats:
 
 
 def _outline(points: Floats) -> Outline | None:
-    """Seen from above; None for what has no area."""
+    """Return the outline seen from above; None if it has no area."""
     try:
         hull = ConvexHull(points[:, :2])
     except QhullError:

@@ -8,13 +8,13 @@ import numpy as np
 from semmap.nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, Ints
 
 TOLERANCE_M = 0.004
-"""Overlap this shallow is left to the contact forces."""
+"""Smaller overlap is resolved by contact forces."""
 
 CLEARANCE_M = 0.0005
 SAME_SPOT_M = 0.02
 LOW_M = 0.2
 GROUND = -1
-# as numbers, which numpy compares a hundred times faster than MuJoCo's enumeration
+# as numbers, which NumPy compares a hundred times faster than MuJoCo's enumeration
 _PLANE, _HEIGHTS = int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD)
 _FLAT = (
     _PLANE,
@@ -24,10 +24,11 @@ _FLAT = (
 )
 
 
-class Stage:
-    """The felt geoms of a scene at one moment. Rows are those of the index; `GROUND` is the world itself.
+class Obstacles:
+    """The colliding geoms of a scene at one moment. Rows are those of the index; `GROUND` is the world.
 
-    `standing` (N,) tells who counts as an obstacle: not who is held, and makes way with what holds it.
+    `standing` (N,) marks bodies that are obstacles. Attached bodies are not, since they move with their
+    holder.
     """
 
     def __init__(
@@ -39,7 +40,7 @@ class Stage:
         self._bottoms = index.poses(data)[:, :3]
         rows = np.full(model.nbody, GROUND)
         rows[index.body] = np.arange(len(index.names))
-        self._owner = rows[model.body_rootid][model.geom_bodyid]  # a part belongs to its whole
+        self._owner = rows[model.body_rootid][model.geom_bodyid]  # a part belongs to its parent
         felt = (model.geom_contype | model.geom_conaffinity) != 0
         for row, record in enumerate(self._records):
             if record.ghost:
@@ -57,7 +58,7 @@ class Stage:
         self.volume = np.prod(self.body_high - self.body_low, axis=1)
 
     def _boxes(self) -> tuple[Floats, Floats]:
-        """World bounding boxes of the felt geoms; a plane fills all that is below it."""
+        """Return bounding boxes of the colliding geoms; a plane fills the space below it."""
         geoms = self._felt
         rotation = self._data.geom_xmat[geoms].reshape(-1, 3, 3)
         aabb = self._model.geom_aabb[geoms]
@@ -83,11 +84,11 @@ class Stage:
         return low, high
 
     def is_fixed(self, row: int) -> bool:
-        """Whether the body is held where it is said to be."""
+        """Return whether the body is fixed at its pose."""
         return self._records[row].fixed
 
     def raise_(self, row: int, rise_m: float) -> None:
-        """Lift one body, here only."""
+        """Raise one body, only in this object."""
         here = self._slice(row)
         self._data.geom_xpos[self._felt[here], 2] += rise_m
         for corner in (self._low[here], self._high[here]):
@@ -97,7 +98,7 @@ class Stage:
         self.body_high[row, 2] += rise_m
 
     def hits(self, row: int, depth_m: float = TOLERANCE_M) -> list[int]:
-        """The standing rows (and the ground) that the body is in, deeper than `depth_m`."""
+        """Return the standing rows (and the ground) that the body overlaps by more than `depth_m`."""
         rows = [other for other in self.touched(row, -depth_m) if other != row and self.standing[other]]
         if self._records[row].fixed:
             rows = [other for other in rows if not self._records[other].fixed]
@@ -107,9 +108,9 @@ class Stage:
         return [other for other in (*ground, *rows) if self._touches(row, other, depth_m)]
 
     def touched(self, row: int, margin_m: float) -> list[int]:
-        """All rows whose boxes come within `margin_m` of the body's."""
+        """Return all rows whose boxes are within `margin_m` of the body's."""
         near = np.ones(len(self._records), dtype=bool)
-        for axis in range(3):  # column by column: a tenth of the time of a reduction over threes
+        for axis in range(3):  # column by column: ten times as fast as a reduction over three values
             near &= self.body_low[:, axis] - margin_m < self.body_high[row, axis]
             near &= self.body_high[:, axis] + margin_m > self.body_low[row, axis]
         return np.flatnonzero(near).tolist()
@@ -134,7 +135,7 @@ class Stage:
         return bool(distance < -depth_m)
 
     def carries(self, support: int, row: int) -> bool:
-        """Whether a thing may be lifted onto another: it fits on top, and is much smaller or squat."""
+        """Return whether a body may be lifted onto another: it fits on top, and is much smaller or squat."""
         return self._fits(row, self.footprint[support], float(self.volume[support]))
 
     def _fits(self, row: int, footprint: Floats, volume: float) -> bool:
@@ -144,11 +145,11 @@ class Stage:
         return fits and bool(self.volume[row] < 0.2 * volume or squat)
 
     def shared_spot(self, row: int) -> list[int]:
-        """Supports at the very spot of the body: who says so of a cup and a table means *on* it."""
+        """Return supports at the same position as the body, which is therefore meant to be on them."""
         return [other for other in self._at_spot(row) if self._belongs_on(row, other)]
 
     def small_at_spot(self, row: int) -> list[int]:
-        """The other way round: bodies at the very spot of a support."""
+        """Return bodies at the same position as a support, which are meant to be on it."""
         return [other for other in self._at_spot(row) if self._belongs_on(other, row)]
 
     def _at_spot(self, row: int) -> list[int]:
@@ -163,9 +164,9 @@ class Stage:
         return bool(tall and much_smaller) and not self.is_fixed(row) and self.carries(support, row)
 
     def surfaces(self, row: int) -> list[tuple[float, int]]:
-        """Flat tops under the middle of the body that can carry it and are above its bottom, lowest first.
+        """Return flat tops below the body's centre that can carry it and are above its bottom, lowest first.
 
-        Each with the row that has it.
+        Each is returned with its row.
         """
         x, y = ((self.body_low[row] + self.body_high[row]) / 2.0)[:2]
         owners = self._owner[self._felt]

@@ -1,4 +1,4 @@
-"""Settling: adds, removes and sets down bodies; one without room is a ghost until there is room."""
+"""Settling: adds, removes and moves bodies; one without free space is a ghost until there is space."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 import numpy as np
 
 from semmap.nodes.sim_node.bodies import pose_of
-from semmap.nodes.sim_node.orders import Newcomer
+from semmap.nodes.sim_node.order_validation import Newcomer
 from semmap.nodes.sim_node.physics.engine import Engine
 from semmap.nodes.sim_node.placement.clearance import place
 from semmap.schemas.entities import Pose
@@ -16,24 +16,24 @@ _NEAR_M = 0.02
 
 
 class Settling:
-    """Changes an engine's bodies so that nobody stands in another, and all that a change touches wakes.
+    """Changes an engine's bodies so that none overlap, and wakes all bodies that a change affects.
 
-    `version` grows with each change of who is there, and of who is a ghost.
+    `version` increases with each change of bodies, and of ghosts.
     """
 
     def __init__(self, engine: Engine) -> None:
         self.version = 0
         self._engine = engine
-        self._haunted: set[str] = set()  # where ghosts are to be looked at again once all is at rest
+        self._ghosts_to_check: set[str] = set()  # bodies to be checked again once all bodies rest
 
     def add(self, newcomers: Mapping[str, Newcomer]) -> None:
-        """Bodies come, each to where its record says, all in one go."""
+        """Add bodies at their ordered poses, in one step."""
         self._engine.add(list(newcomers.values()))
         self._find_room(newcomers)
         self.version += 1
 
     def remove(self, names: Sequence[str]) -> None:
-        """Bodies go, all in one go."""
+        """Remove bodies in one step."""
         disturbed = self._neighbours(names)
         self._engine.remove(names)
         self._engine.wake(disturbed)
@@ -41,7 +41,7 @@ class Settling:
         self.version += 1
 
     def put(self, poses: Mapping[str, Pose]) -> None:
-        """Bodies are set down, with no speed; all that touches them at either place takes notice."""
+        """Set bodies to poses without speed, and wake bodies that touch them at either place."""
         if not poses:
             return
         engine = self._engine
@@ -59,7 +59,7 @@ class Settling:
         self._free_ghosts(disturbed)
 
     def grip(self, names: Collection[str]) -> None:
-        """Bodies are held from now on, or let go, as their records say; what they touched takes notice."""
+        """Attach or detach bodies as in their records, and wake bodies that they touched."""
         engine = self._engine
         disturbed = self._neighbours(names)
         for name in names:
@@ -72,25 +72,25 @@ class Settling:
         self.version += 1
 
     def step(self, duration_s: float) -> None:
-        """Let time pass; ghosts near whom something moved are looked at again when all rests."""
+        """Advance the time; ghosts near moved bodies are checked again when all bodies rest."""
         engine, rested = self._engine, self._engine.resting
         engine.step(duration_s)
         if not engine.index.ghost.any():
             return
         woken = np.flatnonzero(rested & ~engine.resting)
         if len(woken):
-            self._haunted |= self._neighbours(engine.index.names[row] for row in woken)
-        if self._haunted and engine.resting.all() and not engine.compiling:
-            haunted, self._haunted = self._haunted, set()
-            self._free_ghosts(haunted)
+            self._ghosts_to_check |= self._neighbours(engine.index.names[row] for row in woken)
+        if self._ghosts_to_check and engine.resting.all() and not engine.compiling:
+            to_check, self._ghosts_to_check = self._ghosts_to_check, set()
+            self._free_ghosts(to_check)
 
     def _find_room(self, names: Iterable[str]) -> None:
-        """Lift those of these bodies that can be lifted; what has no room is a ghost, all else solid."""
+        """Lift bodies that can be lifted; bodies without free space become ghosts, all others collide."""
         engine = self._engine
         rows = [engine.index.row[name] for name in names if not engine.records[name].held_by]
-        stage, poses = engine.stage(), engine.poses()
+        obstacles, poses = engine.obstacles(), engine.poses()
         turned: dict[str, Pose] = {}
-        for row, placed in place(stage, rows).items():
+        for row, placed in place(obstacles, rows).items():
             record = engine.index.records[row]
             in_the_way = "" if placed.in_the_way is None else engine.index.names[placed.in_the_way]
             self.version += in_the_way != record.in_the_way
@@ -102,17 +102,17 @@ class Settling:
                 engine.lift(row, placed.rise_m)
         engine.hold(turned)
         engine.disturb(rows)
-        self._haunted.update(turned)
+        self._ghosts_to_check.update(turned)
         self.version += bool(turned)
 
     def _free_ghosts(self, names: Iterable[str]) -> None:
-        """Of these bodies the ghosts for which there is room now turn solid, the earlier before the later."""
+        """Make ghosts that have free space now colliding, in the order of creation."""
         engine = self._engine
         ghosts = [name for name in names if name in engine.records and engine.records[name].ghost]
         if ghosts:
             self._find_room(sorted(ghosts, key=engine.index.row.__getitem__))
 
     def _neighbours(self, names: Iterable[str]) -> set[str]:
-        """These bodies and all that touch them."""
-        stage, index = self._engine.stage(), self._engine.index
-        return {index.names[row] for name in names for row in stage.touched(index.row[name], _NEAR_M)}
+        """Return these bodies and all that touch them."""
+        obstacles, index = self._engine.obstacles(), self._engine.index
+        return {index.names[row] for name in names for row in obstacles.touched(index.row[name], _NEAR_M)}

@@ -1,1 +1,1 @@
-"""Robots: an MJCF model in the world, and how its base is driven."""
+"""Robots: an MJCF model in the world, and control of its base."""

@@ -1,4 +1,4 @@
-"""A robot's MJCF, put into a world: one body with its parts, cameras and actuators."""
+"""Adds a robot's MJCF to a world: one body with its parts, cameras and actuators."""
 
 from __future__ import annotations
 
@@ -13,26 +13,24 @@ from semmap.nodes.sim_node.physics import base_scene
 from semmap.schemas.errors import BadFile
 
 SHIPPED: Final = {"porter": Path(__file__).with_name("porter.xml")}
-"""Those that come with semmap, by the word for them."""
+"""The robots that ship with semmap, by name."""
 
 
-def put(ground: mujoco.MjSpec, robot: RobotConfig) -> None:
-    """Put a robot into a world that is not compiled yet, facing `yaw_rad`, where `at_m` is on the floor.
+def add_robot(ground: mujoco.MjSpec, robot: RobotConfig) -> None:
+    """Add a robot to a world that is not compiled yet, at `at_m` on the floor, facing `yaw_rad`.
 
-    The file has one body on the top level, which is called `name` from then on; all else of it is called
-    `name_...`, its cameras too. Raises BadFile for a file that cannot be used.
+    The file must have one body on the top level, which gets the name `name`; all other elements, including
+    cameras, get the prefix `name_`. Raises BadFile for an invalid file.
     """
     spec = read(robot.path)
     (root,) = spec.worldbody.bodies
     if any(body.name == robot.name for body in ground.bodies):
-        raise BadFile(
-            f"the world has a body named {robot.name} already; name it otherwise: --robot-name NAME"
-        )
+        raise BadFile(f"the world already has a body named {robot.name}; use another name: --robot-name NAME")
     if not any(joint.type == mujoco.mjtJoint.mjJNT_FREE for joint in root.joints):
         root.add_freejoint()
     own = [*spec.bodies[1:], *spec.joints, *spec.cameras, *spec.sites, *spec.actuators]
     names = [(element, element.name) for element in own]
-    said = [(text.name, text.data) for text in spec.texts]
+    texts = [(text.name, text.data) for text in spec.texts]
     frame = ground.worldbody.add_frame(
         pos=list(robot.at_m), quat=[math.cos(robot.yaw_rad / 2), 0.0, 0.0, math.sin(robot.yaw_rad / 2)]
     )
@@ -40,22 +38,22 @@ def put(ground: mujoco.MjSpec, robot: RobotConfig) -> None:
     ground.attach(spec, prefix=prefix, frame=frame)
     for element, name in names:
         element.name = robot.name if element is names[0][0] else f"{prefix}{name}" if name else ""
-    for name, class_ in said:  # which of its parts are entities
+    for name, class_ in texts:  # which of its parts are entities
         head, colon, part = name.partition(":")
         if colon and head == "semmap":
             ground.add_text(name=f"semmap:{prefix}{part}", data=class_)
     root = ground.body(robot.name)
-    root.sleep = mujoco.mjtSleepPolicy.mjSLEEP_ALLOWED  # else what has actuators never does
+    root.sleep = mujoco.mjtSleepPolicy.mjSLEEP_ALLOWED  # else a body with actuators never sleeps
 
 
 def read(path: Path) -> mujoco.MjSpec:
-    """The robot of a file. Raises BadFile for what does not compile, or has not just one body at the top."""
+    """Read the robot of a file. Raises BadFile unless it compiles and has exactly one top-level body."""
     spec = base_scene.read_mjcf(path)
     bodies = [body.name or "(nameless)" for body in spec.worldbody.bodies]
     if len(bodies) != 1:
         there = ", ".join(bodies) or "none"
-        raise BadFile(f"{path} is not one robot: it must have one body on the top level; it has {there}")
-    for geom in list(spec.worldbody.geoms):  # a floor to try it out on
+        raise BadFile(f"{path} is not a robot: it must have one top-level body; it has {there}")
+    for geom in list(spec.worldbody.geoms):  # such as a floor for trying it out
         spec.delete(geom)
     for light in list(spec.worldbody.lights):
         spec.delete(light)

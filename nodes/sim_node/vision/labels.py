@@ -1,4 +1,4 @@
-"""Names written on a picture, each beside the thing that it is of."""
+"""Draws names on an image, each next to its thing."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from semmap.nodes.sim_node.vision.view import View
 Box = tuple[float, float, float, float]
 
 _TRIES: Final = 15
-"""Places that are tried for a label: at the thing, and above and below it."""
+"""Number of positions that are tried for a label: at the thing, and above and below it."""
 _SMALLEST_PX, _LARGEST_PX = 9, 16
 _AHEAD_M: Final = 0.05
 _INK, _PAPER, _LINE = (20, 20, 20), (255, 255, 255, 215), (255, 255, 255, 200)
 
 
-def projected(view: View, points: Mapping[str, Floats]) -> dict[str, tuple[float, float]]:
-    """Where points (3,) of the map frame [m] are in a picture [pixel]; not those behind or beside it."""
+def project_points(view: View, points: Mapping[str, Floats]) -> dict[str, tuple[float, float]]:
+    """Return the image positions [pixel] of visible map points (3,) [m]."""
     camera_from_map = np.linalg.inv(view.map_from_camera)
     found = {}
     for name, point in points.items():
@@ -33,8 +33,8 @@ def projected(view: View, points: Mapping[str, Floats]) -> dict[str, tuple[float
     return found
 
 
-def written(image: Image.Image, points: Mapping[str, tuple[float, float]]) -> Image.Image:
-    """The picture with a name at each point [pixel]. One that finds no free place beside it is left out."""
+def draw_labels(image: Image.Image, points: Mapping[str, tuple[float, float]]) -> Image.Image:
+    """Draw a name at each point [pixel]. A name without free space next to its point is omitted."""
     size_px = min(_LARGEST_PX, max(_SMALLEST_PX, image.height // 45))
     font = ImageFont.load_default(size_px)
     out = image.convert("RGBA")
@@ -57,9 +57,9 @@ def written(image: Image.Image, points: Mapping[str, tuple[float, float]]) -> Im
 def free_place(
     at: tuple[float, float], size: tuple[float, float], within: tuple[int, int], taken: Iterable[Box]
 ) -> Box | None:
-    """A rectangle of this size (width, height) near a point, over none that is taken; None if there is none.
+    """Return a free rectangle (width, height) near a point; None if there is none.
 
-    Pixels; a rectangle is left, top, right, bottom, and lies within the picture.
+    Pixels; a rectangle is left, top, right, bottom, and lies within the image.
     """
     taken = tuple(taken)
     width, height = size

@@ -15,10 +15,10 @@ _DROPOUT = 0.004
 
 
 def kinect_noise(depth_m: NDArray[np.float32], rng: np.random.Generator) -> NDArray[np.float32]:
-    """Depth (H, W) [m] as such a camera would give it; 0 where it gives nothing.
+    """Return depth (H, W) [m] with the noise of such a camera; 0 for no measurement.
 
-    Noise and steps grow with the square of the distance (3 mm at 1 m, 12 mm at 2 m), borders of things
-    are lost in the projector's shadow, and there is nothing nearer than 0.5 m or farther than 6 m.
+    Noise and steps grow with the square of the distance (3 mm at 1 m, 12 mm at 2 m). Edges of things are lost
+    in the projector's shadow, and depth is limited to 0.5 to 6 m.
     """
     seen = (depth_m >= _NEAREST_M) & (depth_m <= _FARTHEST_M)
     disparity = _FOCAL_BASELINE_PX_M / np.where(seen, depth_m, 1.0)
@@ -29,7 +29,7 @@ def kinect_noise(depth_m: NDArray[np.float32], rng: np.random.Generator) -> NDAr
 
 
 def _shadow(depth_m: NDArray[np.float32]) -> NDArray[np.bool_]:
-    """Pixels to the left of a step towards the camera, where the projector does not reach."""
+    """Return pixels to the left of a step towards the camera, which the projector does not reach."""
     step = np.zeros(depth_m.shape, dtype=bool)
     step[:, :-1] = depth_m[:, :-1] - depth_m[:, 1:] > _EDGE_STEP * depth_m[:, 1:]
     wide = step.copy()

@@ -1,4 +1,4 @@
-"""Rendering with OpenGL off screen; the context is kept from one model to the next."""
+"""Offscreen rendering with OpenGL; the context is reused for several models."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _of_thread = threading.local()
 
 
 def open_gl() -> Any | None:
-    """This thread's OpenGL context off screen, or None where there is none to be had.
+    """Return this thread's offscreen OpenGL context, or None if OpenGL is not available.
 
-    `MUJOCO_GL` chooses (egl, osmesa, disabled); by default EGL, on macOS CGL. A thread has one for all its
-    life: what is drawn with is freed, at any time, in the context that is current, and under the same
-    numbers another context would have things of its own.
+    `MUJOCO_GL` selects the backend (egl, osmesa, disabled); the default is EGL, on macOS CGL. A thread keeps
+    one context forever: resources are freed at any time in the current context, and in another one the same
+    ids would be other resources.
     """
     if not hasattr(_of_thread, "gl"):
         _of_thread.gl = _new_gl()
@@ -41,13 +41,13 @@ def _new_gl() -> Any | None:
     try:
         context = importlib.import_module(f"mujoco.{choice}").GLContext(*MAX_PIXELS)
         context.make_current()
-    except Exception:  # the loaders fail each in its own way: ImportError, RuntimeError, AttributeError, ...
+    except Exception:  # each loader raises other errors: ImportError, RuntimeError, AttributeError, ...
         return None
     return context
 
 
 class Offscreen:
-    """Renders views of a model that changes. Bound to the thread that made it."""
+    """Renders views of a changing model. Bound to the thread that created it."""
 
     def __init__(self, gl: Any) -> None:
         self._gl = gl
@@ -60,7 +60,7 @@ class Offscreen:
     def render(
         self, model: mujoco.MjModel, data: mujoco.MjData, view: View
     ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-        """Rgb (H, W, 3) and depth (H, W) [m] along the optical axis, 0 where nothing is seen."""
+        """Return rgb (H, W, 3) and depth (H, W) [m] along the optical axis, 0 for no measurement."""
         context, scene = self._prepare(model, view)
         self._aim(model, data, scene, view)
         rect = mujoco.MjrRect(0, 0, view.width, view.height)
@@ -71,7 +71,7 @@ class Offscreen:
         return rgb[::-1].copy(), _depth_m(buffer[::-1])
 
     def segment(self, model: mujoco.MjModel, data: mujoco.MjData, view: View) -> NDArray[np.int32]:
-        """(H, W) the geom that each pixel sees, -1 for none."""
+        """Return (H, W) the geom of each pixel, -1 for none."""
         context, scene = self._prepare(model, view)
         self._aim(model, data, scene, view)
         flags = [mujoco.mjtRndFlag.mjRND_SEGMENT.value, mujoco.mjtRndFlag.mjRND_IDCOLOR.value]
@@ -89,9 +89,9 @@ class Offscreen:
         return np.asarray(geoms[np.clip(ids, 0, scene.ngeom)])
 
     def _prepare(self, model: mujoco.MjModel, view: View) -> tuple[mujoco.MjrContext, mujoco.MjvScene]:
-        """The scene is renewed with the model; the costly context only when meshes or textures change.
+        """Update the scene for the model; the expensive context is only recreated with meshes or textures.
 
-        The buffer has the size of the view, because all of it is cleared for each picture.
+        The buffer has the size of the view, because all of it is cleared for each image.
         """
         self._gl.make_current()
         assets = (
@@ -130,7 +130,7 @@ class Offscreen:
 
 
 def _depth_m(buffer: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Depth [m] from the reversed depth buffer, in which 0 is far and 1 near."""
+    """Return depth [m] from the reversed depth buffer, in which 0 is far and 1 near."""
     depth = buffer * np.float32(1.0 / _NEAR_M - 1.0 / _FAR_M)
     depth += np.float32(1.0 / _FAR_M)
     np.reciprocal(depth, out=depth)

@@ -11,7 +11,7 @@ from semmap.nodes.sim_node.physics.build import FELT_GROUP
 from semmap.nodes.sim_node.vision.view import View, pixel_rays
 
 _SKY_LOW, _SKY_HIGH = np.array([0.90, 0.93, 0.96]), np.array([0.60, 0.74, 0.88])
-_LIGHT_M = np.array([-3.0, -5.0, 12.0])  # from the middle of what is seen
+_LIGHT_M = np.array([-3.0, -5.0, 12.0])  # from the centre of the visible points
 _AMBIENT, _HEAD, _LAMP, _SHADOW = 0.30, 0.18, 0.48, 0.55
 
 _VISIBLE = np.array([group != FELT_GROUP for group in range(6)], dtype=np.uint8)
@@ -20,9 +20,9 @@ _VISIBLE = np.array([group != FELT_GROUP for group in range(6)], dtype=np.uint8)
 def raycast(
     model: mujoco.MjModel, data: mujoco.MjData, view: View, *, shadows: bool = False
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.int32]]:
-    """What the view sees: rgb (H, W, 3), depth (H, W) [m] along the optical axis, geom (H, W).
+    """Render the view: rgb (H, W, 3), depth (H, W) [m] along the optical axis, geom (H, W).
 
-    Where nothing is seen the depth is 0 and the geom -1.
+    Where nothing is hit, the depth is 0 and the geom -1.
     """
     shape = (view.height, view.width)
     rays = pixel_rays(view)
@@ -74,14 +74,14 @@ def _light(directions: Floats, normals: Floats, to_lamp: Floats) -> Floats:
 
 
 def _in_shadow(model: mujoco.MjModel, data: mujoco.MjData, lamp: Floats, points: Floats) -> NDArray[np.bool_]:
-    ways = points - lamp
-    lengths = np.linalg.norm(ways, axis=1)
-    _, distance, _ = _cast(model, data, lamp, ways / lengths[:, None])
+    rays = points - lamp
+    lengths = np.linalg.norm(rays, axis=1)
+    _, distance, _ = _cast(model, data, lamp, rays / lengths[:, None])
     return np.asarray(distance < lengths - 0.005)
 
 
 def _colours(model: mujoco.MjModel) -> Floats:
-    """(ngeom, 3) linear colour of each geom: its material's, a texture taken at its mean, else its own."""
+    """Return (ngeom, 3) the linear colour of each geom, from its material, mean texture, or own colour."""
     own = model.geom_rgba[:, :3].astype(float)
     painted = model.geom_matid >= 0
     own[painted] = _paints(model)[model.geom_matid[painted]]
@@ -89,7 +89,7 @@ def _colours(model: mujoco.MjModel) -> Floats:
 
 
 def _paints(model: mujoco.MjModel) -> Floats:
-    """(nmat, 3) mean colour of each material."""
+    """Return (nmat, 3) the mean colour of each material."""
     paints = model.mat_rgba[:, :3].astype(float)
     for material, texture in enumerate(model.mat_texid[:, mujoco.mjtTextureRole.mjTEXROLE_RGB]):
         if texture >= 0 and model.tex_nchannel[texture] >= 3:

@@ -1,7 +1,7 @@
 """Camera poses and projections.
 
-The camera's own frame is the optical one: x to the right of the picture, y down, z into the scene. Pixel
-(u, v) of a point is `intrinsics @ point_camera` divided by its z, with the centre of the first pixel at 0.5.
+The camera frame is the optical one: x to the right, y down, z forward. Pixel (u, v) of a point is `intrinsics
+@ point_camera` divided by its z, with the centre of the first pixel at 0.5.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ OPTICAL = np.diag([1.0, -1.0, -1.0])  # MuJoCo's cameras look along -z with y up
 
 _UPRIGHT = 1e-6
 _FAR, _FAR_M = 4.0, 3.0
-"""Far off is what is so many times farther out than four fifths are, and these metres more."""
+"""An outlier is this many times farther out than the 80 % quantile, plus this distance [m]."""
 
 
 @dataclass(frozen=True)
@@ -33,16 +33,16 @@ class View:
 
     @property
     def fovy_rad(self) -> float:
-        """Vertical angle of view."""
+        """Return the vertical field of view."""
         return float(2.0 * np.arctan(self.height / 2.0 / self.intrinsics[1, 1]))
 
 
 def camera_view(model: mujoco.MjModel, data: mujoco.MjData, camera: str, width: int, height: int) -> View:
-    """The view of a camera of the world file. Raises BadRequest if there is none of that name."""
+    """Return the view of a camera of the world file. Raises BadRequest for an unknown camera."""
     number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, camera)
     if number < 0:
         names = ", ".join(camera_names(model)) or "none"
-        raise BadRequest(f"the world has no camera '{camera}'; there are: {names}")
+        raise BadRequest(f"unknown camera '{camera}'; the world has: {names}")
     pose = np.eye(4)
     pose[:3, :3] = data.cam_xmat[number].reshape(3, 3) @ OPTICAL
     pose[:3, 3] = data.cam_xpos[number]
@@ -50,21 +50,21 @@ def camera_view(model: mujoco.MjModel, data: mujoco.MjData, camera: str, width: 
 
 
 def optical_pose(data: mujoco.MjData, number: int) -> Pose:
-    """Where a camera is: its optical frame in the map's."""
+    """Return the pose of a camera's optical frame in the map frame."""
     quaternion = np.empty(4)
     mujoco.mju_mat2Quat(quaternion, (data.cam_xmat[number].reshape(3, 3) @ OPTICAL).ravel())
     return pose_of(np.concatenate([data.cam_xpos[number], quaternion]))
 
 
 def camera_names(model: mujoco.MjModel) -> tuple[str, ...]:
-    """The cameras of the world."""
+    """Return the names of the world's cameras."""
     return tuple(model.camera(number).name for number in range(model.ncam))
 
 
 def look_at(eye_m: Floats, target_m: Floats, width: int, height: int, fovy_rad: float) -> View:
-    """A view from `eye_m` (3,) towards `target_m` (3,), the map's z axis up in the picture.
+    """Return a view from `eye_m` (3,) towards `target_m` (3,), with the map's z axis up in the image.
 
-    Of one straight up or down the map's x axis is to the right.
+    For a vertical view, the map's x axis is to the right.
     """
     forward = (target_m - eye_m) / np.linalg.norm(target_m - eye_m)
     right = np.cross(forward, [0.0, 0.0, 1.0])
@@ -77,7 +77,7 @@ def look_at(eye_m: Floats, target_m: Floats, width: int, height: int, fovy_rad: 
 
 
 def bulk(low_m: Floats, high_m: Floats) -> tuple[Floats, Floats]:
-    """Lowest and highest corner, each (3,) [m], of the box around all boxes (N, 3) but those far off."""
+    """Return lowest and highest corner, each (3,) [m], of the box around all boxes (N, 3) but outliers."""
     if not len(low_m):
         return np.array([-1.0, -1.0, 0.0]), np.array([1.0, 1.0, 1.0])
     middle = (low_m + high_m) / 2.0
@@ -100,7 +100,7 @@ def overview(
     back: tuple[float, float, float] = FROM_ALOFT,
     fovy_rad: float = float(np.radians(36.0)),
 ) -> View:
-    """A view in which the box between two corners (3,) just fits, from the direction `back` of it.
+    """Return a view from the direction `back` in which the box between two corners (3,) just fits.
 
     The front of things is +x.
     """
@@ -117,13 +117,13 @@ def overview(
 
 
 def pinhole(width: int, height: int, fovy_rad: float) -> Floats:
-    """(3, 3) intrinsics with square pixels and the principal point in the middle."""
+    """Return intrinsics (3, 3) with square pixels and a centred principal point."""
     focal = height / 2.0 / np.tan(fovy_rad / 2.0)
     return np.array([[focal, 0.0, width / 2.0], [0.0, focal, height / 2.0], [0.0, 0.0, 1.0]])
 
 
 def pixel_rays(view: View) -> Floats:
-    """(H * W, 3): the point at depth 1 m that each pixel's middle sees, in the camera's frame."""
+    """Return (H * W, 3) the point at depth 1 m on each pixel's ray, in the camera frame."""
     u, v = np.meshgrid(np.arange(view.width) + 0.5, np.arange(view.height) + 0.5)
     k = view.intrinsics
     return np.stack([(u - k[0, 2]) / k[0, 0], (v - k[1, 2]) / k[1, 1], np.ones_like(u)], axis=-1).reshape(

@@ -14,9 +14,21 @@ from scipy.optimize import minimize
 
 from semmap.nodes.perception_node.recognition.features import SORTS
 from semmap.nodes.perception_node.recognition.perceptron import Perceptron
-from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, SHIPPED, UNKNOWN, Learnt, save
+from semmap.nodes.perception_node.recognition.recognition_model import (
+    CLUTTER,
+    SHIPPED,
+    UNKNOWN,
+    RecognitionModel,
+    save,
+)
 from semmap.nodes.perception_node.recognition.sides import SIZE_FEATURES
-from semmap.nodes.perception_node.recognition.vote import ballots, expected_sizes, pool, shown_to_voters, vote
+from semmap.nodes.perception_node.recognition.vote import (
+    expected_sizes,
+    log_votes,
+    pool_votes,
+    vote,
+    voter_inputs,
+)
 from semmap.nodes.sim_node.models.model_table import MODELS
 from semmap.nodes.training.recognition.fitting import Numbers, classifier, regressor
 from semmap.nodes.training.recognition.gathering import Gathered, gather
@@ -46,7 +58,9 @@ _FARTHEST = 1.0
 """A side that is off by more of the thing's size than this was not seen at all."""
 
 
-def learn(gathered: Gathered, *, without: Collection[str] = (), unseen: Collection[str] = ()) -> Learnt:
+def learn(
+    gathered: Gathered, *, without: Collection[str] = (), unseen: Collection[str] = ()
+) -> RecognitionModel:
     """Train on four scenes of five, calibrate on the fifth.
 
     Classes in `without`, and foreign things whose names are in `unseen`, are left out altogether.
@@ -67,7 +81,7 @@ def learn(gathered: Gathered, *, without: Collection[str] = (), unseen: Collecti
     features = [getattr(samples, name) for name in SORTS]
     voters = tuple(
         classifier(f[~held], target[~held], len(classes), recipe, seed=seed)
-        for seed, (f, recipe) in enumerate(zip(shown_to_voters(features), _RECIPES, strict=True))
+        for seed, (f, recipe) in enumerate(zip(voter_inputs(features), _RECIPES, strict=True))
     )
     weights = _calibrated(voters, [f[held] for f in features], target[held])
     told = Told(features, target, strangers(samples.kind), held, classes, ancestors)
@@ -75,7 +89,7 @@ def learn(gathered: Gathered, *, without: Collection[str] = (), unseen: Collecti
     familiar = _familiar(things[things.scene % _HELD_OUT != 0], own, class_of, classes)
     sizes = _typical_sizes(samples, target, len(classes))
     expected = expected_sizes(vote(voters, weights, features), sizes)
-    learnt = Learnt(
+    learnt = RecognitionModel(
         classes=classes,
         ancestors=ancestors,
         sizes_m=sizes,
@@ -125,11 +139,11 @@ def _calibrated(
     voters: Sequence[Perceptron], features: Sequence[Numbers], target: NDArray[np.int64]
 ) -> Numbers:
     """The weights of the votes that make the truth of held-out scenes likeliest."""
-    votes = ballots(voters, features)
+    votes = log_votes(voters, features)
     rows = np.arange(len(target))
 
     def surprise(weights: Numbers) -> float:
-        return float(-pool(votes, weights)[rows, target].mean())
+        return float(-pool_votes(votes, weights)[rows, target].mean())
 
     return np.asarray(minimize(surprise, np.full(len(voters), 0.3), method="Nelder-Mead").x)
 

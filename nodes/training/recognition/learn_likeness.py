@@ -13,7 +13,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.perception_node.recognition.likeness import SHIPPED, WIDTH, Likeness, save, signs
+from semmap.nodes.perception_node.recognition.similarity import (
+    SHIPPED,
+    WIDTH,
+    Similarity,
+    pair_features,
+    save,
+)
 from semmap.nodes.training.recognition.gathering import read_things
 from semmap.nodes.training.recognition.samples import NOTHING, Samples
 from semmap.nodes.training.scenes.simulated_scenes import foreign_class
@@ -35,18 +41,18 @@ _REACH = 4.0
 Indices = NDArray[np.int64]
 
 
-def learn_likeness(samples: Samples, kept: int, seed: int = 0) -> Likeness:
+def learn_likeness(samples: Samples, kept: int, seed: int = 0) -> Similarity:
     """From so many views that are kept, each compared with others of its thing and of other things."""
     small = np.exp(samples.geometry[:, :3]).max(axis=1) < _LARGEST_M
     own = np.array([foreign_class(kind) is None for kind in samples.kind])
     samples = samples[small & own]
     views = np.concatenate([samples.geometry, samples.shape, samples.colour], axis=1)
     if views.shape[1] != WIDTH:
-        raise ValueError("the columns of likeness.py are not those of features.py")
+        raise ValueError("the columns of similarity.py are not those of features.py")
     pairs = np.array(list(_pairs(samples, views, kept, np.random.default_rng(seed))))
-    rows = Rows(signs(views[pairs[:, 0]], views[pairs[:, 1]]), pairs[:, 2] == 1, np.ones(len(pairs)))
+    rows = Rows(pair_features(views[pairs[:, 0]], views[pairs[:, 1]]), pairs[:, 2] == 1, np.ones(len(pairs)))
     story = f"{len(pairs)} pairs of views, {rows.one.sum()} of the same thing"
-    return Likeness(fit(rows, _TREES), story)
+    return Similarity(fit(rows, _TREES), story)
 
 
 def _pairs(

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from sklearn.discriminant_analysis import LinearDiscriminantAnalysis
 from sklearn.linear_model import LogisticRegression
 
-from semmap.nodes.perception_node.recognition.novelty import Novelty, signs
-from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN
-from semmap.nodes.perception_node.recognition.vote import answer, ballots, pool, shown_to_voters
+from semmap.nodes.perception_node.recognition.open_set import OpenSetDetector, open_set_features
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN
+from semmap.nodes.perception_node.recognition.vote import choose_class, log_votes, pool_votes, voter_inputs
 from semmap.nodes.training.recognition.fitting import Numbers, classifier
 from semmap.nodes.training.recognition.gradient_descent import Recipe
 
@@ -20,7 +20,7 @@ _FOLDS = 4
 _LEFT_OUT = 0.12
 _ROUNDS = 6
 _ENOUGH = 0.25
-"""The share of the samples that the voters of a fold learn from: signs need no more."""
+"""The share of the samples that the voters of a fold learn from: open_set_features need no more."""
 
 _AXES = 30
 _SURE, _CLEAR = 0.42, 2.0 / 3.0
@@ -52,7 +52,7 @@ class Told:
         return [values[rows] for values in self.features]
 
 
-def space(features: Sequence[Numbers], target: NDArray[np.int64], classes: int) -> Novelty:
+def space(features: Sequence[Numbers], target: NDArray[np.int64], classes: int) -> OpenSetDetector:
     """The space alone, without the regression: axes that tell classes apart, scaled by how they scatter."""
     together = np.concatenate(features, axis=1)
     mean = together.mean(axis=0)
@@ -63,10 +63,10 @@ def space(features: Sequence[Numbers], target: NDArray[np.int64], classes: int) 
     centres = np.full((classes, _AXES), 1e3)
     for k in np.unique(target):
         centres[k] = (together[target == k] - mean).mean(axis=0) @ axes
-    return Novelty(mean, axes, centres, np.zeros(1))
+    return OpenSetDetector(mean, axes, centres, np.zeros(1))
 
 
-def learn_novelty(told: Told, recipes: Sequence[Recipe], weights: Numbers) -> Novelty:
+def learn_novelty(told: Told, recipes: Sequence[Recipe], weights: Numbers) -> OpenSetDetector:
     """Some classes and some foreign things are left out at a time.
 
     The regression tells where the votes, which never saw them, name them wrongly; what is far from all that
@@ -84,15 +84,15 @@ def learn_novelty(told: Told, recipes: Sequence[Recipe], weights: Numbers) -> No
         known = ~told.held & ~new_class & ~new_thing & lot
         voters = [
             classifier(f, told.target[known], len(told.classes), replace(recipe, rounds=_ROUNDS), seed=seed)
-            for seed, (f, recipe) in enumerate(zip(shown_to_voters(told.of(known)), recipes, strict=True))
+            for seed, (f, recipe) in enumerate(zip(voter_inputs(told.of(known)), recipes, strict=True))
         ]
         judged = lot & ((told.held & np.isin(told.target, things) & (told.stranger < 0)) | new_thing)
         far = far_off(told.of(known), judged.sum() // 20, rng)
         seen = [np.concatenate(both) for both in zip(told.of(judged), far, strict=True)]
-        votes = ballots(voters, seen)
-        pooled = pool(votes, weights)
+        votes = log_votes(voters, seen)
+        pooled = pool_votes(votes, weights)
         place = space(told.of(known), told.target[known], len(told.classes))
-        rows.append(signs(place, seen, votes, pooled))
+        rows.append(open_set_features(place, seen, votes, pooled))
         is_far = np.arange(len(pooled)) >= judged.sum()
         wrong.append(np.append(_misnamed(pooled[~is_far], told, judged), is_far[is_far]))
         worth.append(_worth(new_class[judged], new_thing[judged], len(far[0])))
@@ -102,7 +102,7 @@ def learn_novelty(told: Told, recipes: Sequence[Recipe], weights: Numbers) -> No
     regression.fit(seen_in_folds / scale, np.concatenate(wrong), np.concatenate(worth))
     whole = space(told.of(~told.held), told.target[~told.held], len(told.classes))
     fitted = np.append(regression.coef_[0] / scale, regression.intercept_)
-    return Novelty(whole.mean, whole.axes, whole.centres, fitted)
+    return OpenSetDetector(whole.mean, whole.axes, whole.centres, fitted)
 
 
 def far_off(features: Sequence[Numbers], count: int, rng: np.random.Generator) -> list[Numbers]:
@@ -130,7 +130,7 @@ def _misnamed(pooled: Numbers, told: Told, judged: NDArray[np.bool_]) -> NDArray
     found = []
     for chances, target in zip(np.exp(pooled), told.target[judged], strict=True):
         by_leaf = dict(zip(told.classes, chances.tolist(), strict=True))
-        said, _ = answer(by_leaf, told.ancestors, _SURE, _CLEAR)
+        said, _ = choose_class(by_leaf, told.ancestors, _SURE, _CLEAR)
         true = told.classes[target]
         found.append(said != true and said not in told.ancestors.get(true, ()))
     return np.array(found)

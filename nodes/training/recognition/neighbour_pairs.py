@@ -12,8 +12,8 @@ from scipy.sparse.csgraph import connected_components
 
 from semmap.nodes.perception_node.pipeline import Parts, parts_in
 from semmap.nodes.perception_node.recognition.features import SORTS, features_of
-from semmap.nodes.perception_node.recognition.joining import between, near
-from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.recognition.joining import describe_pair, near_pairs
+from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 from semmap.nodes.training.recognition.array_tables import Table
 from semmap.nodes.training.recognition.samples import NOTHING, shared_pixels, view_sets
 from semmap.nodes.training.scenes.simulated_scenes import Item, Shot
@@ -48,7 +48,7 @@ def pairs_of(shot: Shot, items: Sequence[Item], rng: np.random.Generator) -> lis
     """
     kind = {item.name: item.label for item in items}
     kinds = np.array([NOTHING, *(kind[body.name] for body in shot.bodies)])
-    found = [see(cloud) for cloud in shot.clouds]
+    found = [segment_cloud(cloud) for cloud in shot.clouds]
     pairs = []
     for views in view_sets(len(found)):
         parts = parts_in([found[v] for v in views])
@@ -65,7 +65,7 @@ def _partly_joined(parts: Parts, owners: NDArray[np.int64], rng: np.random.Gener
     """The numbers of those that are together when each pair of one thing is joined or not by lot."""
     count = len(parts.things)
     joined = np.zeros((count, count), bool)
-    for a, b in near(parts.things):
+    for a, b in near_pairs(parts.things):
         joined[a, b] = owners[a] == owners[b] > 0 and rng.random() < _JOINED
     groups, group = connected_components(joined, directed=False)
     return [tuple(np.flatnonzero(group == n).tolist()) for n in range(groups)]
@@ -76,19 +76,19 @@ def _described(
 ) -> list[Pairs]:
     """`owners`: (N,) the body that most pixels of a part see, 0 for none; `kinds`: (B + 1,) of each body."""
     things = [reduce(parts.join, (parts.things[n] for n in numbers)) for numbers in members]
-    pairs = near(things)
+    pairs = near_pairs(things)
     if not pairs:
         return []
     threes = [(things[a], things[b], parts.join(things[a], things[b])) for a, b in pairs]
     features = features_of([thing for three in threes for thing in three])
     shown = {sort: values.reshape(len(pairs), 3, -1) for sort, values in zip(SORTS, features, strict=True)}
     owner = owners[[numbers[0] for numbers in members]][np.array(pairs)]
-    held = [parts.held_for_one[:, members[a]][:, :, members[b]] for a, b in pairs]
+    held = [parts.same_thing_logits[:, members[a]][:, :, members[b]] for a, b in pairs]
     return [
         Pairs(
             kinds=kinds[owner],
             one=(owner[:, 0] == owner[:, 1]) & (owner[:, 0] > 0),
             **shown,
-            known=np.array([between(*three, how) for three, how in zip(threes, held, strict=True)]),
+            known=np.array([describe_pair(*three, how) for three, how in zip(threes, held, strict=True)]),
         )
     ]

@@ -16,7 +16,7 @@ from semmap.nodes.perception_node.recognition.sides import shifts, side_features
 from semmap.nodes.perception_node.segmentation.segment import LOWEST_M
 from semmap.nodes.perception_node.views.boxes import Box
 from semmap.nodes.perception_node.views.merged_thing import Thing
-from semmap.nodes.perception_node.views.segmented_view import Sight, labelled, see
+from semmap.nodes.perception_node.views.segmented_view import SegmentedView, segment_cloud, with_labels
 from semmap.nodes.perception_node.views.segments import map_points
 from semmap.nodes.perception_node.views.supports import Support
 from semmap.nodes.sim_node.models.parts import about, bounds, rotation_matrix
@@ -65,7 +65,7 @@ def samples_of(shot: Shot, items: Sequence[Item], scene: int) -> Samples | None:
     things, kinds, truths = [], [], []
     by_name = {item.name: item for item in items}
     true = [_truly(cloud, owner, shot.bodies) for cloud, owner in zip(shot.clouds, shot.owners, strict=True)]
-    found = [see(cloud) for cloud in shot.clouds]
+    found = [segment_cloud(cloud) for cloud in shot.clouds]
     for sights, views in product((found, true), view_sets(len(shot.clouds))):
         cut = parts_in([sights[v] for v in views])
         for thing, name in zip(cut.things, _owner_names(shot, shared_pixels(cut, shot, views)), strict=True):
@@ -89,7 +89,7 @@ def samples_of(shot: Shot, items: Sequence[Item], scene: int) -> Samples | None:
     )
 
 
-def _truly(cloud: Cloud, owner: NDArray[np.int32], bodies: Sequence[Body]) -> Sight:
+def _truly(cloud: Cloud, owner: NDArray[np.int32], bodies: Sequence[Body]) -> SegmentedView:
     """The cloud cut up by the truth, but for what lies so near its support that it cannot be told from it."""
     pose = np.eye(4) if cloud.map_from_camera is None else cloud.map_from_camera
     points, depth = map_points(cloud, pose), cloud.points_camera[..., 2]
@@ -103,8 +103,8 @@ def _truly(cloud: Cloud, owner: NDArray[np.int32], bodies: Sequence[Body]) -> Si
     carriers = frozenset(n for n, body in enumerate(bodies, 1) if max(body.size_m[:2]) > _CARRIER_M)
     supports = tuple(Support(height) for height in sorted({0.0, *bottoms.tolist()}))
     undisputed = np.zeros((0, 0), np.float32)
-    bare = Sight(cloud, pose, labels, carriers, labels, supports, undisputed)
-    return labelled(bare, labels, carriers)
+    bare = SegmentedView(cloud, pose, labels, carriers, labels, supports, undisputed)
+    return with_labels(bare, labels, carriers)
 
 
 def view_sets(count: int) -> Iterator[tuple[int, ...]]:

@@ -143,7 +143,7 @@ class Stage:
         self, bodies: Sequence[Body], view: View, rng: np.random.Generator, paints: Mapping[str, Paint]
     ) -> tuple[Cloud, NDArray[np.int32]]:
         model, data = self._world.model, self._world.data
-        rgb, depth = self._eye.see(model, data, view)
+        rgb, depth = self._eye.render(model, data, view)
         geoms = self._eye.segment(model, data, view)
         number = {body.name: at for at, body in enumerate(bodies, 1)}
         owners = np.array([number.get(name, 0) for name in self._world.body_names()] + [0], np.int32)[geoms]

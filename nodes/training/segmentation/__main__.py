@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from semmap.nodes.perception_node.segmentation.shipped_trees import SHIPPED, MergeModel, save
+from semmap.nodes.perception_node.segmentation.merge_model import SHIPPED, MergeModel, save
 from semmap.nodes.training.segmentation.recorded_scenes import read_scenes
 from semmap.nodes.training.segmentation.teach import learn, lessons, made_up
 

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.segmentation.merging import merge
 from semmap.nodes.perception_node.segmentation.pairs import NAMES, features
-from semmap.nodes.perception_node.segmentation.segment import taken_apart
+from semmap.nodes.perception_node.segmentation.segment import split_into_patches
 from semmap.nodes.perception_node.segmentation.statistics import Indices, Statistics
-from semmap.nodes.perception_node.segmentation.working_picture import spread
+from semmap.nodes.perception_node.segmentation.working_image import spread
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Rows(NamedTuple):
 
 def example(cloud: Cloud, truth: NDArray[np.int32]) -> Example:
     """`truth`: (H, W) the number of the object of each point, 0 for background."""
-    parts = taken_apart(cloud)
+    parts = split_into_patches(cloud)
     of_patch = spread(parts.grid, parts.of_patch)
     shape = (int(of_patch.max(initial=0)) + 1, int(truth.max(initial=0)) + 1)
     pairs = of_patch.ravel() * shape[1] + truth.ravel()

@@ -65,7 +65,7 @@ def pile(rng: np.random.Generator, eye: Eye) -> Pile:
     for thing in range(2 if screened else 0, len(models)):
         scene.place(thing, area, eye_m, rng)
     mujoco.mj_forward(scene.model, scene.data)
-    rgb, depth_m = eye.see(scene.model, scene.data, view)
+    rgb, depth_m = eye.render(scene.model, scene.data, view)
     geom = eye.segment(scene.model, scene.data, view)
     body = np.where(geom >= 0, scene.model.geom_bodyid[geom], 0)
     if rng.random() > _FAULTLESS:

@@ -259,7 +259,10 @@ def test_a_map_that_is_begun_anew_is_another_epoch(server, tmp_path):
         running(tmp_path / "d", *words, "--fresh", endpoint=endpoint) as lift1,
         lift1.client() as client,
     ):
-        until(lambda: any("started a new map" in text for text in told), "it is seen that the map is another one")
+        until(
+            lambda: any("started a new map" in text for text in told),
+            "it is seen that the map is another one",
+        )
         client.add("Bowl", "bowl1", at=(1, 1, 0.7))
         assert_same(server, client, "lift1")
     (robot,) = query.sparql("ASK {}", server.query_url, reachable=False).robots

@@ -113,9 +113,9 @@ def test_depth_in_metres_is_written_in_millimetres(tmp_path):
 @pytest.mark.parametrize(
     ("depth", "encoding", "said", "scale"),
     [
-        (MM.astype(np.float32), "32FC1", "beyond 1195 m, as if its numbers were millimetres", 0.001),
-        (MM * 10, "16UC1", "beyond 12 m, as if its numbers were tenths of a millimetre", 0.0001),
-        (MM // 1000, "16UC1", "ends at 0.001 m, as if its numbers were metres", 1),
+        (MM.astype(np.float32), "32FC1", "beyond 1195 m; the unit is probably millimetres", 0.001),
+        (MM * 10, "16UC1", "beyond 12 m; the unit is probably tenths of a millimetre", 0.0001),
+        (MM // 1000, "16UC1", "ends at 0.001 m; the unit is probably metres", 1),
     ],
 )
 def test_depth_in_another_unit_is_told_with_its_scale(tmp_path, capsys, depth, encoding, said, scale):

@@ -14,8 +14,8 @@ from semmap.nodes.extern.cli.app import execute
 from semmap.nodes.extern.ros.types import new
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.files.cloud_files import read_cloud
-from semmap.nodes.perception_node.pipeline import Look, look
-from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.pipeline import FrameResult, observe_clouds
+from semmap.nodes.perception_node.recognition.recognition_model import shipped
 from tests.data import data_folder
 from tests.extern.frame_folders.recorded import COLOUR, DEPTH, FRAME, INFO, Said, lens, seconds, write
 from tests.extern.ros.made import image, stamped
@@ -32,7 +32,7 @@ class Table(NamedTuple):
 
     rgb: np.ndarray
     mm: np.ndarray
-    seen: Look
+    seen: FrameResult
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +47,7 @@ def tables() -> list[Table]:
 def pictured(cloud: Cloud) -> Table:
     assert cloud.colors is not None
     depth_m = np.nan_to_num(cloud.points_camera[..., 2])
-    return Table(cloud.colors, np.round(depth_m * 1000).astype(np.uint16), look([cloud], shipped()))
+    return Table(cloud.colors, np.round(depth_m * 1000).astype(np.uint16), observe_clouds([cloud], shipped()))
 
 
 @pytest.mark.parametrize("kind", ["bag", "mcap", "tum"])

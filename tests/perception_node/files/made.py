@@ -1,4 +1,4 @@
-"""Clouds as files hold them."""
+"""Clouds in the formats of files."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def packed_colors() -> np.ndarray:
 
 
 def pcd(encoding: str) -> bytes:
-    """An organised cloud of 4 x 3 points with labels and colours."""
+    """Return an organised cloud of 4 x 3 points with labels and colours."""
     label = np.arange(12, dtype=np.uint32)
     columns = [label, *POINTS.T, packed_colors()]
     if encoding == "ascii":

@@ -1,4 +1,4 @@
-"""Models of the shipped file as one camera sees them: the points of the surface that face it."""
+"""Models of the shipped file as seen by one camera: the points of the surface that face it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def rotation(yaw: float) -> np.ndarray:
 
 
 def shown(surface: ModelSurface, yaw: float, at=(0.1, 0.2), *, noise_m: float = 0.001) -> np.ndarray:
-    """(N, 3) the points of a standing model that face the camera, map frame [m], with some noise."""
+    """Return the points (N, 3) of a standing model that face the camera, map frame [m], with noise."""
     points = surface.points @ rotation(yaw).T + [*at, TOP_M]
     normals = surface.normals @ rotation(yaw).T
     facing = ((EYE - points) * normals).sum(axis=1) > 0.0

@@ -1,11 +1,11 @@
-"""How well a model and what was seen bear one another out: a ball of known points before a flat camera."""
+"""Agreement of a model and observed points: a ball of known points before a flat camera."""
 
 import math
 
 import numpy as np
 import pytest
 
-from semmap.nodes.perception_node.fitting.evidence import borne_out, not_seen_through, spacing_m
+from semmap.nodes.perception_node.fitting.evidence import spacing_m, verified_share, visible_share
 from semmap.nodes.perception_node.fitting.model_surfaces import ModelSurface
 from semmap.nodes.perception_node.input.cloud import Cloud
 
@@ -13,7 +13,7 @@ WITHIN_M = 0.01
 
 
 def plate(normal=(0.0, 0.0, -1.0), side=0.4, depth=0.0):
-    """A square of points, (N, 3) in its own frame, all facing one way."""
+    """Return a square of points, (N, 3) in its own frame, with parallel normals."""
     line = np.linspace(-side / 2, side / 2, 41)
     x, y = np.meshgrid(line, line)
     points = np.stack([x.ravel(), y.ravel(), np.full(x.size, depth)], axis=1)
@@ -29,7 +29,7 @@ def at(x=0.0, y=0.0, z=1.0, turn=None):
 
 
 def seen(depth_m, *, height=120, width=160, pose=None):
-    """A camera at the origin that sees a wall at this depth; or an array of depths."""
+    """Return a camera at the origin that sees a wall at this depth, or an array of depths."""
     depth = np.broadcast_to(np.asarray(depth_m, float), (height, width))
     intrinsics = np.array([[200.0, 0, width / 2], [0, 200.0, height / 2], [0, 0, 1]])
     u, v = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
@@ -38,7 +38,7 @@ def seen(depth_m, *, height=120, width=160, pose=None):
 
 
 def through(*clouds, model=None, pose=None):
-    return not_seen_through(model or plate(), at() if pose is None else pose, clouds, WITHIN_M)
+    return visible_share(model or plate(), at() if pose is None else pose, clouds, WITHIN_M)
 
 
 def test_points_are_as_far_apart_as_the_box_s_sides_share_out():
@@ -52,23 +52,23 @@ def test_points_are_as_far_apart_as_the_box_s_sides_share_out():
 def test_what_lies_on_the_surface_bears_it_out_and_less_so_beside_it(off_m, share):
     own = plate()
     points = own.points + np.array([0.5, 0.2, 1.0 + off_m])
-    assert borne_out(points, own, at(0.5, 0.2), WITHIN_M) == pytest.approx(share, abs=1e-3)
+    assert verified_share(points, own, at(0.5, 0.2), WITHIN_M) == pytest.approx(share, abs=1e-3)
 
 
 def test_between_the_points_of_a_surface_is_on_it_and_beyond_its_edge_is_not():
     own = plate()
     between = own.points[:1] + np.array([0.005, 0.005, 1.0])
-    assert borne_out(between, own, at(), WITHIN_M) == pytest.approx(1.0)
+    assert verified_share(between, own, at(), WITHIN_M) == pytest.approx(1.0)
     beyond = np.array([[0.2 + 0.02 + spacing_m(own), 0.0, 1.0]])
-    assert borne_out(beyond, own, at(), WITHIN_M) == pytest.approx(math.exp(-4.0), abs=0.01)
+    assert verified_share(beyond, own, at(), WITHIN_M) == pytest.approx(math.exp(-4.0), abs=0.01)
 
 
 def test_the_pose_turns_the_model():
     quarter = np.array([[1.0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]])
     own = plate()
     points = own.points @ quarter.T + (0.0, 0.3, 1.0)
-    assert borne_out(points, own, at(0, 0.3, 1.0, quarter), WITHIN_M) == pytest.approx(1.0)
-    assert borne_out(points, own, at(0, 0.3, 1.0), WITHIN_M) < 0.3
+    assert verified_share(points, own, at(0, 0.3, 1.0, quarter), WITHIN_M) == pytest.approx(1.0)
+    assert verified_share(points, own, at(0, 0.3, 1.0), WITHIN_M) < 0.3
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Models fitted to what one camera sees of them."""
+"""Models fitted to the points of one camera."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from semmap.nodes.perception_node.fitting.fit import angle_between, fitted, quaternion
+from semmap.nodes.perception_node.fitting.fit import angle_between, fit_models, quaternion
 from semmap.nodes.perception_node.fitting.model_surfaces import shipped
 from semmap.nodes.sim_node.models.parts import rotation_matrix
 from tests.perception_node.fitting.seen import EYE, TOP_M, box, model, rotation, shown
@@ -20,7 +20,7 @@ def fit(class_, yaw, said_yaw, said_class=None):
     surface = model(class_)
     pose, size_m = box(surface, said_yaw)
     said = said_class or class_
-    return fitted(said, [model(said)], shown(surface, yaw), pose, size_m, [])
+    return fit_models(said, [model(said)], shown(surface, yaw), pose, size_m, [])
 
 
 def off_deg(found, yaw):
@@ -34,7 +34,7 @@ def test_a_front_is_found_whichever_way_the_box_was_taken(class_, yaw, said):
     found = fit(class_, yaw, yaw + said)
     assert off_deg(found, yaw) < 3.0
     assert found.clear
-    assert found.turned
+    assert found.has_orientation
     assert found.score > 0.6
     np.testing.assert_allclose(found.pose.position_m, [0.1, 0.2, TOP_M], atol=0.006)
 
@@ -49,34 +49,34 @@ def test_what_has_an_axis_is_turned_by_half_a_turn_at_will():
 def test_what_is_round_has_no_orientation():
     found = fit("Bottle", 1.0, 0.0)
     assert found.fold == 0
-    assert not found.turned
+    assert not found.has_orientation
     assert found.score > 0.6
 
 
 def of_all_forms(shape, yaw):
     pose, size_m = box(shape, yaw + 0.1)
     points = shown(shape, yaw)
-    return fitted("Bottle", shipped()["Bottle"], points, pose, size_m, [])
+    return fit_models("Bottle", shipped()["Bottle"], points, pose, size_m, [])
 
 
 def test_a_thing_is_fitted_with_the_form_that_fits_it():
     usual, _, spray, _ = shipped()["Bottle"]
     found = of_all_forms(spray, 0.6)
     pose, size_m = box(spray, 0.7)
-    assert found.score > 1.1 * fitted("Bottle", [usual], shown(spray, 0.6), pose, size_m, []).score
-    assert found.turned
+    assert found.score > 1.1 * fit_models("Bottle", [usual], shown(spray, 0.6), pose, size_m, []).score
+    assert found.has_orientation
     assert off_deg(found, 0.6) < 4.0
-    assert not of_all_forms(usual, 0.6).turned
+    assert not of_all_forms(usual, 0.6).has_orientation
 
 
 def test_a_thing_of_quite_another_form_does_not_bear_its_name_out():
     laptop = model("Laptop")
     pose, size_m = box(laptop, 0.0)
     wall = np.random.default_rng(0).uniform([-0.2, -0.1, 0.7], [0.4, 0.5, 1.3], (400, 3))
-    found = fitted("Laptop", [laptop], wall, pose, size_m, [])
-    assert not found.bears_out
-    assert not found.turned
-    assert fit("Laptop", 0.0, 0.0).bears_out
+    found = fit_models("Laptop", [laptop], wall, pose, size_m, [])
+    assert not found.is_verified
+    assert not found.has_orientation
+    assert fit("Laptop", 0.0, 0.0).is_verified
 
 
 def test_a_lying_bottle_lies():
@@ -86,7 +86,7 @@ def test_a_lying_bottle_lies():
     points = laid.points @ rotation(yaw).T + [0.1, 0.2, TOP_M]
     facing = ((EYE - points) * (laid.normals @ rotation(yaw).T)).sum(axis=1) > 0.0
     pose, size_m = box(laid, yaw)
-    found = fitted("Bottle", [bottle], points[facing], pose, size_m, [])
+    found = fit_models("Bottle", [bottle], points[facing], pose, size_m, [])
     assert found.lying
     axis = np.asarray(rotation_matrix(found.pose.orientation_wxyz))[:, 2]
     assert axis @ [math.cos(yaw), math.sin(yaw), 0.0] > math.cos(math.radians(5.0))
@@ -97,8 +97,8 @@ def test_a_lying_bottle_lies():
 def test_too_little_is_not_fitted():
     cup = model("Cup")
     pose, size_m = box(cup, 0.0)
-    assert fitted("Cup", [cup], shown(cup, 0.0)[:20], pose, size_m, []) is None
-    assert fitted("Cup", [cup], np.full((500, 3), np.nan), pose, size_m, []) is None
+    assert fit_models("Cup", [cup], shown(cup, 0.0)[:20], pose, size_m, []) is None
+    assert fit_models("Cup", [cup], np.full((500, 3), np.nan), pose, size_m, []) is None
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1.3, math.pi, -3.0])

@@ -63,5 +63,5 @@ def test_they_are_written_and_read(tmp_path):
 
 def test_another_file_is_refused(tmp_path):
     (tmp_path / "bad.npz").write_bytes(b"no archive")
-    with pytest.raises(BadFile, match=r"bad\.npz does not hold the surfaces"):
+    with pytest.raises(BadFile, match=r"bad\.npz has no valid surfaces"):
         load(tmp_path / "bad.npz")

@@ -1,16 +1,16 @@
-"""The thread that fits models."""
+"""The worker thread that fits models."""
 
 from __future__ import annotations
 
 import threading
 
 from semmap.nodes.perception_node.fitting.worker import FitWorker, Request
-from semmap.nodes.perception_node.pipeline import Look
+from semmap.nodes.perception_node.pipeline import FrameResult
 from semmap.schemas.perception import Observations
 from tests.conftest import until
 from tests.perception_node.things import at, seen
 
-LOOK = Look(Observations(stamp_ns=0, views=(), observations=()), ())
+LOOK = FrameResult(Observations(stamp_ns=0, views=(), observations=()), ())
 
 
 def request(name):

@@ -1,4 +1,4 @@
-"""What a cloud says of itself."""
+"""Properties of clouds."""
 
 from dataclasses import FrozenInstanceError
 

@@ -1,4 +1,4 @@
-"""Frames as they come: what belongs together is taken together, what is wrong is told in a sentence."""
+"""Synchronisation of frames, and the errors for invalid ones."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def test_a_camera_that_has_fallen_silent_is_waited_for_only_once():
 def test_a_frame_of_the_past_is_refused():
     frames = Frames()
     put(frames, "left", 3_000_000_000)
-    with pytest.raises(BadRequest, match="camera left: frame ignored: its stamp is older"):
+    with pytest.raises(BadRequest, match="camera left: frame ignored: its stamp is not newer"):
         put(frames, "left", 1_000_000_000)
     put(frames, "right", 1_000_000_000)
 
@@ -149,7 +149,7 @@ def test_a_large_frame_is_thinned_and_its_points_stay_where_they_are():
         ({"intrinsics": (60.0, 0, 900.0, 0, 60.0, 24.0, 0, 0, 1)}, r"the intrinsics .* do not fit"),
         ({"map_from_camera": (1.0,) * 16}, r"map_from_camera is not a 4 x 4 pose"),
         ({"map_from_camera": ()}, r"map_from_camera is not a 4 x 4 pose"),
-        ({"width": 0}, r"do not fit a picture of 0 x 48 pixels"),
+        ({"width": 0}, r"do not fit an image of 0 x 48 pixels"),
     ],
 )
 def test_a_frame_that_makes_no_sense_is_told_in_one_sentence(changes, reason):
@@ -201,7 +201,7 @@ def test_masks_without_their_frame_are_refused():
     frames.put_masks(masks("left", 1))
     put(frames, "left", 2)
     for stamp_ns in (1, 3):
-        with pytest.raises(BadRequest, match="camera left: masks ignored: their frame is not at hand"):
+        with pytest.raises(BadRequest, match="camera left: masks ignored: no frame with their stamp_ns"):
             frames.put_masks(masks("left", stamp_ns))
 
 
@@ -229,9 +229,9 @@ def test_masks_are_as_fine_as_the_cloud():
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ({"width": 32}, "of 32 x 48 pixels, the picture of 64 x 48"),
-        ({"masks": (MaskRun(size=(4, 4), counts=(16,)),)}, "a mask is of 4 x 4 pixels"),
-        ({"image": MaskImage(labels=b"abc")}, "no label image of 64 x 48 pixels"),
+        ({"width": 32}, "of 32 x 48 pixels, the image of 64 x 48"),
+        ({"masks": (MaskRun(size=(4, 4), counts=(16,)),)}, "a mask has 4 x 4 pixels"),
+        ({"image": MaskImage(labels=b"abc")}, "not a label image of 64 x 48 pixels"),
     ],
 )
 def test_masks_that_do_not_fit_their_picture_are_told(wrong, said):

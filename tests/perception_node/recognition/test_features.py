@@ -11,7 +11,7 @@ TRIMMED = slice(22, None)
 
 
 def block(*corners_m):
-    """A thing of points all through boxes (low, high), one for each 8 mm."""
+    """Return a thing that fills boxes (low, high) with points every 8 mm."""
     grids = [np.meshgrid(*(np.arange(a, b, 0.008) for a, b in zip(*of, strict=True))) for of in corners_m]
     points = np.concatenate([np.stack(grid, axis=-1).reshape(-1, 3) for grid in grids]).astype(np.float32)
     segment = Segment(
@@ -41,7 +41,7 @@ def named(thing, sort):
 
 
 def inside(thing):
-    """(N, 3) the cells of an upright thing that is not turned, in its box."""
+    """Return the cells (N, 3) of an upright, unrotated thing in its box."""
     return np.clip((thing.cells - thing.box.low) / thing.box.size_m, 0.0, 1.0)
 
 

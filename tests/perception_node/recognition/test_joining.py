@@ -1,10 +1,15 @@
-"""Which neighbours are tried as one, and what is known of them."""
+"""Which neighbours may be joined, and the features of pairs."""
 
 import numpy as np
 import pytest
 
-from semmap.nodes.perception_node.recognition.joining import between, near, signs, worth_trying
-from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, shipped
+from semmap.nodes.perception_node.recognition.joining import (
+    describe_pair,
+    is_worth_joining,
+    near_pairs,
+    pair_features,
+)
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, shipped
 from semmap.nodes.perception_node.views.merged_thing import thing_of
 from semmap.nodes.perception_node.views.segments import Segment
 from semmap.nodes.perception_node.views.supports import Support
@@ -34,14 +39,14 @@ def chances(**likely):
 
 def test_neighbours_are_beside_or_above_one_another():
     top = thing([-0.5, -0.5, 0.68], [0.5, 0.5, 0.7], carrier=True)
-    assert near([FOOT, SHADE, BESIDE, AWAY, top]) == [(0, 1), (0, 2), (1, 2)]
-    assert near([]) == []
+    assert near_pairs([FOOT, SHADE, BESIDE, AWAY, top]) == [(0, 1), (0, 2), (1, 2)]
+    assert near_pairs([]) == []
 
 
 def test_what_is_known_of_a_pair():
     whole = thing([0.0, 0.0, 0.7], [0.1, 0.1, 1.0])
     held = np.array([[[-1.0, 0.5]], [[2.0, 3.0]]])
-    known = between(FOOT, SHADE, whole, held)
+    known = describe_pair(FOOT, SHADE, whole, held)
     assert known[3] == pytest.approx(0.13, abs=0.005)  # the gap above
     assert tuple(known[5:7]) == (-1.0, 3.0)
     assert np.exp(known[-1]) == pytest.approx(0.3, abs=0.01)
@@ -50,13 +55,13 @@ def test_what_is_known_of_a_pair():
 def test_what_is_recognised_as_different_things_is_not_tried():
     sure, other = chances(Cup=0.97), chances(Bottle=0.97)
     pairs = np.array([[sure, other], [sure, sure], [sure, chances(Bottle=0.4)], [sure, chances(piece=0.7)]])
-    assert worth_trying(pairs, shipped()).tolist() == [False, True, True, True]
+    assert is_worth_joining(pairs, shipped()).tolist() == [False, True, True, True]
 
 
 def test_the_order_of_two_does_not_matter():
     a, b, whole = chances(Cup=0.9), chances(Bottle=0.4, piece=0.5), chances(Cup=0.7)
-    one_way = between(FOOT, BESIDE, SHADE, np.zeros((2, 1, 1)))
-    other_way = between(BESIDE, FOOT, SHADE, np.zeros((2, 1, 1)))
-    first = signs(np.array([[a, b]]), whole[None], one_way[None], shipped())
-    again = signs(np.array([[b, a]]), whole[None], other_way[None], shipped())
+    one_way = describe_pair(FOOT, BESIDE, SHADE, np.zeros((2, 1, 1)))
+    other_way = describe_pair(BESIDE, FOOT, SHADE, np.zeros((2, 1, 1)))
+    first = pair_features(np.array([[a, b]]), whole[None], one_way[None], shipped())
+    again = pair_features(np.array([[b, a]]), whole[None], other_way[None], shipped())
     assert first == pytest.approx(again)

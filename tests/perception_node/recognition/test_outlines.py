@@ -20,7 +20,7 @@ def thing(points, *, eye_m=(2.0, 0.0, 1.0)):
 
 
 def turned(profile, *, eye_m=(2.0, 0.0, 1.0), half=True):
-    """The side of a thing turned on a lathe, `profile` (radius, height) [m], as far as the eye sees it."""
+    """Return the visible side of a solid of revolution, `profile` (radius, height) [m]."""
     heights = np.arange(0.001, profile[-1][1], 0.003)
     radii = np.interp(heights, [z for _, z in profile], [r for r, _ in profile])
     facing = np.arctan2(eye_m[1], eye_m[0])

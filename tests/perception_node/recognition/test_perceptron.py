@@ -1,4 +1,4 @@
-"""Perceptrons, worked out by hand."""
+"""Perceptrons, compared with values computed by hand."""
 
 from dataclasses import FrozenInstanceError
 

@@ -11,7 +11,7 @@ SIDE = 12
 
 
 def pictures(*things):
-    """Of each thing the picture from the front, (column, row from below), and that from above."""
+    """Return for each thing the image from the front, (column, row from below), and that from above."""
     rows = features_of(things)[SORTS.index("relief")]
     return rows.reshape(len(things), 2, SIDE, SIDE)
 

@@ -1,9 +1,9 @@
 import numpy as np
 
 from semmap.nodes.perception_node.recognition.features import features_of
-from semmap.nodes.perception_node.recognition.shipped_votes import shipped
-from semmap.nodes.perception_node.recognition.trimming import looked_at_again, trim
-from semmap.nodes.perception_node.recognition.vote import leaves
+from semmap.nodes.perception_node.recognition.recognition_model import shipped
+from semmap.nodes.perception_node.recognition.trimming import reclassify_trimmed, trim
+from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
 from tests.perception_node.recognition.test_features import ALONE, WITH_A_SCRAP
 
 
@@ -19,14 +19,14 @@ def test_what_is_recognised_is_not_looked_at_again():
     learnt = shipped()
     chances = np.full((1, len(learnt.classes)), 0.0)
     chances[0, learnt.classes.index("Book")] = 1.0
-    assert looked_at_again([WITH_A_SCRAP], chances, learnt) is chances
+    assert reclassify_trimmed([WITH_A_SCRAP], chances, learnt) is chances
 
 
 def test_a_thing_without_scraps_stays_what_it_was():
     learnt = shipped()
-    chances = leaves(learnt, features_of([ALONE]))
-    assert (looked_at_again([ALONE], chances, learnt) == chances).all()
+    chances = leaf_probabilities(learnt, features_of([ALONE]))
+    assert (reclassify_trimmed([ALONE], chances, learnt) == chances).all()
 
 
 def test_nothing_is_nothing():
-    assert looked_at_again([], np.empty((0, len(shipped().classes))), shipped()).shape[0] == 0
+    assert reclassify_trimmed([], np.empty((0, len(shipped().classes))), shipped()).shape[0] == 0

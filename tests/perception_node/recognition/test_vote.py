@@ -5,15 +5,15 @@ import pytest
 
 from semmap.nodes.perception_node.recognition.features import SORTS
 from semmap.nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
-from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, VOTERS
 from semmap.nodes.perception_node.recognition.vote import (
-    answer,
-    ballots,
+    choose_class,
     expected_sizes,
-    leaves,
-    pool,
-    shown_to_voters,
+    leaf_probabilities,
+    log_votes,
+    pool_votes,
     vote,
+    voter_inputs,
 )
 
 ABOVE = {
@@ -42,19 +42,19 @@ ABOVE = {
     ],
 )
 def test_the_most_special_class_that_is_sure_enough(leaves, said, probability):
-    class_, sure = answer(leaves, ABOVE, 0.6)
+    class_, sure = choose_class(leaves, ABOVE, 0.6)
     assert (class_, sure) == (said, pytest.approx(probability))
 
 
 def test_of_two_that_are_sure_the_likelier():
-    assert answer({"Fork": 0.5, "Book": 0.5}, ABOVE, 0.5)[0] in ("Fork", "Book")
-    assert answer({"Fork": 0.45, "Book": 0.55}, ABOVE, 0.4)[0] == "Book"
+    assert choose_class({"Fork": 0.5, "Book": 0.5}, ABOVE, 0.5)[0] in ("Fork", "Book")
+    assert choose_class({"Fork": 0.45, "Book": 0.55}, ABOVE, 0.4)[0] == "Book"
 
 
 def test_a_class_must_have_most_of_what_each_above_it_has():
-    assert answer({"Fork": 0.86, "Plate": 0.14}, ABOVE, 0.6)[0] == "Fork"
-    assert answer({"Fork": 0.84, "Plate": 0.16}, ABOVE, 0.6)[0] == "Tableware"
-    assert answer({"Fork": 0.84, "Plate": 0.16}, ABOVE, 0.6, clear=0.8)[0] == "Fork"
+    assert choose_class({"Fork": 0.86, "Plate": 0.14}, ABOVE, 0.6)[0] == "Fork"
+    assert choose_class({"Fork": 0.84, "Plate": 0.16}, ABOVE, 0.6)[0] == "Tableware"
+    assert choose_class({"Fork": 0.84, "Plate": 0.16}, ABOVE, 0.6, clear=0.8)[0] == "Fork"
 
 
 WIDTHS = dict(zip(SORTS, range(1, len(SORTS) + 1), strict=True))
@@ -75,21 +75,21 @@ WEIGHTS = np.linspace(0.2, 1.0, len(VOTING))
 
 def test_each_voter_sees_the_sorts_of_features_that_it_knows():
     of_sort = dict(zip(SORTS, FEATURES, strict=True))
-    for shown, sorts in zip(shown_to_voters(FEATURES), VOTERS.values(), strict=True):
+    for shown, sorts in zip(voter_inputs(FEATURES), VOTERS.values(), strict=True):
         assert (shown == np.concatenate([of_sort[sort] for sort in sorts], axis=1)).all()
 
 
 def test_the_logarithms_of_votes_add_up_by_their_weights():
-    votes = ballots(VOTING, FEATURES)
+    votes = log_votes(VOTING, FEATURES)
     assert votes.shape == (len(VOTING), 3, 4)
     assert np.exp(votes).sum(axis=2) == pytest.approx(1.0)
     by_hand = log_softmax(sum(weight * own for weight, own in zip(WEIGHTS, votes, strict=True)))
-    assert pool(votes, WEIGHTS) == pytest.approx(by_hand)
+    assert pool_votes(votes, WEIGHTS) == pytest.approx(by_hand)
     assert vote(VOTING, WEIGHTS, FEATURES) == pytest.approx(np.exp(by_hand))
 
 
 def learnt(new=0.0, familiar=None, shown=None):
-    """Votes in which all things are new with this probability; `familiar`: the scores of models of ours."""
+    """Return a model in which all things are new with this probability; `familiar` are its form scores."""
     scores = np.array([[-50.0] * 4 + [50.0]] if familiar is None else [familiar])
     return SimpleNamespace(
         voters=VOTING,
@@ -97,35 +97,35 @@ def learnt(new=0.0, familiar=None, shown=None):
         classes=CLASSES,
         novelty=lambda features, votes, pooled: np.full(len(pooled), new),
         familiar=lambda features: np.repeat(scores, len(features), axis=0),
-        shown=shown,
+        exemplars=shown,
     )
 
 
 def test_without_models_of_ours_leaves_are_what_the_votes_say():
-    assert leaves(learnt(), FEATURES) == pytest.approx(vote(VOTING, WEIGHTS, FEATURES), abs=1e-6)
+    assert leaf_probabilities(learnt(), FEATURES) == pytest.approx(vote(VOTING, WEIGHTS, FEATURES), abs=1e-6)
 
 
 def test_what_is_new_is_unknown_and_clutter_stays_clutter():
-    plain, found = vote(VOTING, WEIGHTS, FEATURES), leaves(learnt(new=0.25), FEATURES)
+    plain, found = vote(VOTING, WEIGHTS, FEATURES), leaf_probabilities(learnt(new=0.25), FEATURES)
     assert found[:, :2] == pytest.approx(0.75 * plain[:, :2], abs=1e-6)
     assert found[:, 2] == pytest.approx(plain[:, 2] + 0.25 * plain[:, :2].sum(axis=1), abs=1e-6)
     assert found[:, 3] == pytest.approx(plain[:, 3], abs=1e-6)
 
 
 def test_what_has_the_form_of_a_model_of_ours_is_that_whatever_votes_say():
-    found = leaves(learnt(familiar=[-50.0, 50.0, -50.0, -50.0, -50.0]), FEATURES)
+    found = leaf_probabilities(learnt(familiar=[-50.0, 50.0, -50.0, -50.0, -50.0]), FEATURES)
     assert found[:, 1] == pytest.approx(1.0, abs=1e-6)
 
 
 def test_what_votes_rule_out_a_form_is_less_likely():
     plain = np.log(vote(VOTING, WEIGHTS, FEATURES))
-    found = leaves(learnt(familiar=[5.0, 5.0, -50.0, -50.0, -50.0]), FEATURES)
+    found = leaf_probabilities(learnt(familiar=[5.0, 5.0, -50.0, -50.0, -50.0]), FEATURES)
     assert np.log(found[:, 0] / found[:, 1]) == pytest.approx(0.2 * (plain[:, 0] - plain[:, 1]))
 
 
-def test_what_people_have_shown_is_mixed_in():
-    shown = SimpleNamespace(mixed=lambda features, chances: (features, chances))
-    features, chances = leaves(learnt(shown=shown), FEATURES)
+def test_exemplars_add_their_probabilities():
+    shown = SimpleNamespace(add_probabilities=lambda features, chances: (features, chances))
+    features, chances = leaf_probabilities(learnt(shown=shown), FEATURES)
     assert features is FEATURES
     assert chances == pytest.approx(vote(VOTING, WEIGHTS, FEATURES), abs=1e-6)
 

@@ -20,7 +20,7 @@ class Seen(NamedTuple):
 
 
 def camera_pose(eye=(0.0, -0.8, 0.6), target=(0.0, 0.0, 0.0)) -> np.ndarray:
-    """(4, 4) map_from_camera, looking from `eye` to `target`."""
+    """Return map_from_camera (4, 4) of a camera at `eye` that looks at `target`."""
     forward = np.subtract(target, eye) / np.linalg.norm(np.subtract(target, eye))
     right = np.cross(forward, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
@@ -31,7 +31,7 @@ def camera_pose(eye=(0.0, -0.8, 0.6), target=(0.0, 0.0, 0.0)) -> np.ndarray:
 
 
 def boxes_on_table(*boxes, pose=None, posed=False, table=((-1, -1, -0.05), (1, 1, 0))) -> Seen:
-    """`boxes` are pairs of corners (lowest, highest) in the map frame [m]; the table's top is z = 0."""
+    """Return a view of boxes (lowest, highest corner), map frame [m]; the table's top is z = 0."""
     pose = camera_pose() if pose is None else pose
     u, v = np.meshgrid(np.arange(WIDTH) - WIDTH / 2 + 0.5, np.arange(HEIGHT) - HEIGHT / 2 + 0.5)
     rays = np.stack([u / FOCAL_PX, v / FOCAL_PX, np.ones_like(u)], axis=-1)

@@ -1,15 +1,15 @@
-"""Patches of made scenes, for tests of what is done with them."""
+"""Patches of synthetic scenes."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from semmap.nodes.perception_node.segmentation.segment import Parts, taken_apart
+from semmap.nodes.perception_node.segmentation.segment import Parts, split_into_patches
 from tests.perception_node.segmentation.scenes import Seen
 
 
 def owners(parts: Parts, seen: Seen) -> np.ndarray:
-    """(P,) the box to which most of each patch belongs."""
+    """Return (P,) the box to which most of each patch belongs."""
     truth = seen.truth[:: parts.grid.step, :: parts.grid.step]
     return np.array(
         [np.bincount(truth[parts.of_patch == n]).argmax() for n in range(1, parts.of_patch.max() + 1)]
@@ -17,6 +17,6 @@ def owners(parts: Parts, seen: Seen) -> np.ndarray:
 
 
 def apart(seen: Seen) -> tuple[Parts, np.ndarray]:
-    """The patches, and whose each is."""
-    parts = taken_apart(seen.cloud)
+    """Return the patches and their boxes."""
+    parts = split_into_patches(seen.cloud)
     return parts, owners(parts, seen)

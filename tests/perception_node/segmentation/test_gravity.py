@@ -1,4 +1,4 @@
-"""Up and floor in pictures of rooms, from cameras whose pose nobody knows."""
+"""The vertical and the floor in images of rooms with unknown camera poses."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from semmap.nodes.perception_node.pipeline import look
-from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+from semmap.nodes.perception_node.pipeline import observe_clouds
+from semmap.nodes.perception_node.recognition.recognition_model import shipped
 from semmap.nodes.perception_node.segmentation.gravity import level_plane, room_pose
 from semmap.nodes.perception_node.segmentation.planes import Plane
-from semmap.nodes.perception_node.segmentation.working_picture import grid_of
-from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.segmentation.working_image import grid_of
+from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 from tests.perception_node.scenes import KINDS, shot
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.test_patches import SCENES
@@ -30,8 +30,8 @@ def test_the_floor_tells_how_a_camera_stands(view):
 @pytest.mark.parametrize("view", [0, 1])
 def test_without_a_pose_the_same_things_are_found_at_the_same_height(view):
     cloud = shot().clouds[view]
-    known = look([cloud], shipped()).observations.observations
-    found = look([replace(cloud, map_from_camera=None)], shipped()).observations.observations
+    known = observe_clouds([cloud], shipped()).observations.observations
+    found = observe_clouds([replace(cloud, map_from_camera=None)], shipped()).observations.observations
     likeliest = [
         sorted(max(o.candidates, key=o.candidates.__getitem__) for o in seen) for seen in (found, known)
     ]
@@ -48,7 +48,7 @@ def likeliest(observation):
 def test_a_table_top_alone_tells_no_height():
     seen = boxes_on_table(*SCENES["apart"])
     assert room_pose(grid_of(seen.cloud).points) is None
-    (support,) = see(seen.cloud).supports
+    (support,) = segment_cloud(seen.cloud).supports
     assert support.height_m == pytest.approx(0.0, abs=0.01)
 
 

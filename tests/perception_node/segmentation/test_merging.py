@@ -1,4 +1,4 @@
-"""Merging follows its judge."""
+"""Merging with a given judge."""
 
 from __future__ import annotations
 

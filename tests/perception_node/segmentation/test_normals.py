@@ -1,18 +1,18 @@
-"""Normals of surfaces whose normals are known."""
+"""Normals of known surfaces."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from semmap.nodes.perception_node.segmentation.normals import normals
-from semmap.nodes.perception_node.segmentation.working_picture import grid_of
+from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 
 BOX = ((-0.15, -0.1, 0.0), (0.15, 0.1, 0.2))
 
 
 def inner(mask):
-    """Without the cells near its border."""
+    """Return the image without the cells near its border."""
     for _ in range(4):
         mask = mask & np.roll(mask, 1, 0) & np.roll(mask, -1, 0) & np.roll(mask, 1, 1) & np.roll(mask, -1, 1)
     return mask

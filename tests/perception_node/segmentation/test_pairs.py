@@ -1,4 +1,4 @@
-"""What tells whether two patches are one object: two blocks of cells of known places and colours."""
+"""Features of pairs of patches: two blocks of cells with known positions and colours."""
 
 import math
 from types import SimpleNamespace
@@ -28,7 +28,7 @@ PLAIN_BORDER = {
 
 
 def block(low, high, steps, normal=(0.0, 0.0, 1.0), shade=(100.0, 0.0, 0.0), hidden=0.0):
-    """Points all through a box, facing one way, of one colour."""
+    """Return points that fill a box, with one normal and one colour."""
     axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, steps, strict=True)]
     points = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
     return SimpleNamespace(

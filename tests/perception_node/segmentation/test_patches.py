@@ -1,4 +1,4 @@
-"""Patches are of one object each, and cover the objects."""
+"""Each patch is on one object, and patches cover the objects."""
 
 from __future__ import annotations
 

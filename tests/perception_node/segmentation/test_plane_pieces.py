@@ -7,7 +7,7 @@ import pytest
 
 from semmap.nodes.perception_node.segmentation.plane_pieces import pieces_of
 from semmap.nodes.perception_node.segmentation.planes import find_planes
-from semmap.nodes.perception_node.segmentation.working_picture import grid_of
+from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 
 FLOOR = ((-3, -3, -0.1), (3, 3, 0.0))
@@ -18,7 +18,7 @@ POSE = camera_pose(eye=(0.0, -2.0, 1.5), target=(0.0, 0.0, 0.7))
 
 
 def supports(*boxes):
-    """Which of the boxes each support is seen on."""
+    """Return the boxes on which each support is visible."""
     seen = boxes_on_table(*boxes, pose=POSE, posed=True, table=FLOOR)
     planes, of_plane = find_planes(
         grid_of(seen.cloud).points, seen.cloud.map_from_camera, np.random.default_rng(0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from semmap.nodes.perception_node.segmentation.planes import find_planes
-from semmap.nodes.perception_node.segmentation.working_picture import grid_of
+from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 
 BOX = ((-0.1, -0.1, 0.0), (0.1, 0.1, 0.2))

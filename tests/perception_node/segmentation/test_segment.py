@@ -1,4 +1,4 @@
-"""Objects in clouds, with what ships."""
+"""Objects in clouds, with the shipped model."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import pytest
 
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.segmentation import segment
-from semmap.nodes.perception_node.segmentation.shipped_trees import load, save, shipped
+from semmap.nodes.perception_node.segmentation.merge_model import load, save, shipped
 from semmap.schemas.errors import BadFile
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.test_patches import SCENES
 
 
 def overlaps(labels, truth, valid):
-    """For each box the best intersection over union with a segment."""
+    """Return for each box the best intersection over union with a segment."""
     labels, truth = labels[valid], truth[valid]
     return [
         max(

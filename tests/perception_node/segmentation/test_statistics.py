@@ -116,7 +116,7 @@ def test_sums_of_points_squares_normals_and_colours():
 
 
 def by_hand(labels, points, normals, shades, shifts, told):
-    """Sums over pairs of cells that are so far apart and of two patches, in both directions."""
+    """Return sums over pairs of shifted cells of two patches, in both directions."""
     count = labels.max()
     sums = np.zeros(
         (count, count, len(told(0, 0, 0, 0, points[:, 0, 0], points[:, 0, 0], *[np.zeros(3)] * 4)))
@@ -138,7 +138,7 @@ def by_hand(labels, points, normals, shades, shifts, told):
 
 
 def scene():
-    """Two slopes, a step and a spot without a patch, of many colours."""
+    """Return two slopes, a step and an area without a patch, with many colours."""
     rng = np.random.default_rng(1)
     points = POINTS.copy()
     points[2] = 1.0 + 0.4 * np.abs(points[0] - 0.2) + rng.normal(0.0, 0.003, points[2].shape)

@@ -8,8 +8,8 @@ import pytest
 from semmap.nodes.perception_node.segmentation import segment
 from semmap.nodes.perception_node.segmentation.planes import find_planes
 from semmap.nodes.perception_node.segmentation.thin_things import thin_things
-from semmap.nodes.perception_node.segmentation.working_picture import grid_of
-from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.segmentation.working_image import grid_of
+from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 
 TABLE = ((-0.6, -0.5, 0.70), (0.6, 0.5, 0.75))
@@ -58,6 +58,6 @@ def test_a_thing_on_a_top_is_one_segment_and_no_part_of_the_top(thing):
     labels = segment(seen.cloud).labels
     own = labels[seen.truth == 2]
     assert (own == np.bincount(own[own > 0]).argmax()).mean() > 0.7
-    sight = see(seen.cloud)
+    sight = segment_cloud(seen.cloud)
     label = np.bincount(sight.labels[seen.truth == 2]).argmax()
     assert label not in sight.carriers

@@ -1,4 +1,4 @@
-"""Trees in NumPy say what scikit-learn's say."""
+"""Trees in NumPy give the results of scikit-learn."""
 
 from __future__ import annotations
 

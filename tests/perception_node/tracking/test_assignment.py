@@ -1,4 +1,4 @@
-"""Which observation is of which thing."""
+"""Assignment of observations to things."""
 
 import math
 from dataclasses import replace
@@ -19,7 +19,7 @@ COSTS = st.lists(st.lists(st.sampled_from([0.0, 1.0, 2.0, math.inf]), min_size=3
 
 def thing(class_="Cup", where=None, size_m=None, *, whole=True, **track):
     pose, size_m = where or at(1, 1), size_m or SIZES[class_]
-    known = {"looks": 5, "whole": True, "sized": 1.0}
+    known = {"frames": 5, "whole": True, "sized": 1.0}
     return Candidate(
         Track(pose, size_m, Votes().cast(class_, 0.9, 5.0), **known | track),
         Target(pose, size_m, class_, whole),
@@ -41,7 +41,7 @@ def test_pairs_are_as_many_as_may_be_and_of_the_least_cost(costs):
 
 
 def _best(costs, columns):
-    """How many pairs there may be, and what they cost at the least, by trying all."""
+    """Return the maximum number of pairs, and their minimum cost, by exhaustive search."""
     if not costs:
         return 0, 0.0
     options = [_best(costs[1:], columns)]
@@ -72,14 +72,14 @@ def test_what_vanished_from_a_place_that_is_seen_empty_is_found_elsewhere(occupa
 
 
 def test_what_must_be_missed_more_often_is_found_elsewhere_later():
-    config = replace(CONFIG, vanished_looks=2)
+    config = replace(CONFIG, vanished_frames=2)
     elsewhere = [seen("Cup", at(3, 3))]
     assert matched({"cup1": thing()}, elsewhere, config=config).known == {}
     assert matched({"cup1": thing(unseen=1)}, elsewhere, config=config).known == {"cup1": 0}
 
 
 def test_what_was_there_before_it_vanished_is_another():
-    other = thing(where=at(3, 3), looks=5)
+    other = thing(where=at(3, 3), frames=5)
     look = [seen("Cup", at(3, 3))]
     found = matched({"cup1": thing(absent=4)}, look, tentative=[other])
     assert (found.known, found.tentative) == ({}, {0: 0})
@@ -137,10 +137,10 @@ def test_a_segment_of_several_things_is_none_of_them():
 
 
 def test_what_is_nearly_odd_may_have_another_height():
-    odd = thing(odd=CONFIG.odd_looks - 1)
+    odd = thing(odd=CONFIG.odd_frames - 1)
     flat = seen("Cup", at(1, 1), (0.08, 0.08, 0.02))
     assert matched({"cup1": odd}, [flat], FILLED).known == {"cup1": 0}
-    assert matched({"cup1": thing(odd=CONFIG.odd_looks - 2)}, [flat], FILLED).known == {}
+    assert matched({"cup1": thing(odd=CONFIG.odd_frames - 2)}, [flat], FILLED).known == {}
 
 
 def test_what_is_no_entity_yet_is_seen_again():

@@ -1,4 +1,4 @@
-"""What is in a fridge that was closed stays in the map; what is gone from an open one goes."""
+"""Contents of a closed fridge stay in the map; things missing from an open one are removed."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ MILK_M = (0.08, 0.08, 0.2)
 
 
 class LooksAt(Table):
-    """A map of which a depth picture tells what is where; nothing else is seen."""
+    """A map whose occupancy comes from a depth image, without observations."""
 
     def _occupancy(self, pose, size_m):
         return self.occupancy(pose, size_m)
 
 
 def kitchen():
-    """A fridge at the origin, with its door open and milk on a board in it."""
+    """Return a fridge at the origin, with its door open and milk on a board in it."""
     world = World()
     world.spawn(
         [BodyOrder(name="fridge1", class_="Fridge", model="fridge", pose=ORIGIN, fixed=True, commit=1)]
@@ -46,7 +46,7 @@ def swing(world, to):
 
 
 def occupancy(world):
-    """What a camera before the fridge sees of places."""
+    """Return what a camera before the fridge sees of places."""
     view = look_at(np.array([1.6, 0.1, 1.2]), np.array([0.0, 0.0, 0.85]), 320, 240, 1.0)
     _, depth, _ = raycast(world.model, world.data, view)
     intrinsics = np.asarray(view.intrinsics)
@@ -72,7 +72,7 @@ def test_perception_removes_what_is_gone_only_where_it_can_look(door, removed):
     swing(world, door)
     table = LooksAt().told([entity("milk1", "Bottle", milk, MILK_M, source="perception")])
     table.occupancy = occupancy(world)
-    commands = table.looks(3 * CONFIG.gone_looks)
+    commands = table.observe(3 * CONFIG.gone_frames)
     assert [type(command) for command in commands] == ([Remove] if removed else [])
     assert ("milk1" in table.entities) is not removed
 
@@ -81,7 +81,7 @@ TOY_M = (0.08, 0.08, 0.08)
 
 
 def chest():
-    """A chest at the origin whose top drawer is pulled out, and a toy in that."""
+    """Return a chest at the origin with an open top drawer, and a toy in it."""
     world = World()
     world.spawn(
         [BodyOrder(name="chest1", class_="Drawer", model="drawer", pose=ORIGIN, fixed=True, commit=1)]
@@ -99,7 +99,7 @@ def pull(world, to):
 
 
 def seen_from_above(world):
-    """What a camera above the front of the chest sees of places."""
+    """Return what a camera above the front of the chest sees of places."""
     view = look_at(np.array([1.0, 0.1, 1.8]), np.array([0.3, 0.0, 0.75]), 320, 240, 1.0)
     _, depth, _ = raycast(world.model, world.data, view)
     return occupancy_in([cloud_of(depth, None, np.asarray(view.intrinsics), view.map_from_camera)])
@@ -127,11 +127,11 @@ def test_perception_keeps_what_is_in_a_drawer_that_is_shut(drawer):
     world.delete(["toy1"])
     table = LooksAt().told([entity("toy1", "Bottle", shut_in, TOY_M, source="perception")])
     table.occupancy = seen_from_above(world)
-    assert table.looks(3 * CONFIG.gone_looks) == []
+    assert table.observe(3 * CONFIG.gone_frames) == []
     if drawer:  # it goes once it can be seen to be gone from where the open drawer has taken it
         pull(world, drawer)
         x, y, z = shut_in.position_m
         out = Pose(position_m=(x + bodies(world)["chest1"].joints[-1].position, y, z))
         table = LooksAt().told([entity("toy1", "Bottle", out, TOY_M, source="perception")])
         table.occupancy = seen_from_above(world)
-        assert [type(command) for command in table.looks(3 * CONFIG.gone_looks)] == [Remove]
+        assert [type(command) for command in table.observe(3 * CONFIG.gone_frames)] == [Remove]

@@ -1,4 +1,4 @@
-"""How unlike an observation is a thing: by place, size and class."""
+"""The cost of an observation for a thing: by place, size and class."""
 
 import math
 
@@ -15,7 +15,7 @@ from semmap.nodes.perception_node.tracking.costs import (
     cost_anywhere,
     cost_in_place,
     cost_of_height,
-    is_rather_all_of_it,
+    is_complete_despite_cut,
     size_difference,
 )
 from tests.perception_node.things import CLASSES, SIZES, at, seen
@@ -97,7 +97,7 @@ def test_what_else_it_may_be_makes_it_less_alien():
 
 @pytest.mark.parametrize(("aside_m", "stays"), [(0.0, True), (0.24, True), (0.26, False)])
 def test_in_its_place_is_what_hardly_stands_aside(aside_m, stays):
-    """A quarter of both widths, and five centimetres."""
+    """A thing is in its place within a quarter of both widths, and five centimetres."""
     cost = cost_in_place(target(), box(where=at(1 + aside_m, 1)), CLASSES)
     assert cost == (pytest.approx(aside_m / 0.25) if stays else FORBIDDEN)
     assert cost_in_place(target(), box(where=at(1, 1 - aside_m)), CLASSES) == cost
@@ -208,6 +208,6 @@ USUAL = (0.4, 0.6, 0.8)
 )
 def test_what_was_too_large_is_rather_what_measures_as_usual(before, now, whole, was_whole, expected):
     known = target(before, whole=was_whole, usual_m=USUAL)
-    assert is_rather_all_of_it(box(now, whole=whole), known) is expected
-    assert not is_rather_all_of_it(box(now, whole=whole), known._replace(usual_m=None))
-    assert not is_rather_all_of_it(box(now, whole=whole), known._replace(size_m=None))
+    assert is_complete_despite_cut(box(now, whole=whole), known) is expected
+    assert not is_complete_despite_cut(box(now, whole=whole), known._replace(usual_m=None))
+    assert not is_complete_despite_cut(box(now, whole=whole), known._replace(size_m=None))

@@ -1,4 +1,4 @@
-"""What a fitted model told of how a thing is turned."""
+"""The yaw of a fitted model."""
 
 import math
 from dataclasses import FrozenInstanceError

@@ -1,4 +1,4 @@
-"""An oven between others: from before it nobody sees how deep it is."""
+"""An oven between others, whose depth is not visible from the front."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ def test_two_things_side_by_side_are_not_one_of_which_a_front_was_seen():
 
 
 def test_when_all_of_it_is_seen_the_map_is_put_right_and_the_front_changes_nothing_any_more():
-    table = Table([seen("Object", *FRONT)], config=CONFIG.on_the_move)
-    table.looks(5)
+    table = Table([seen("Object", *FRONT)], config=CONFIG.for_moving_camera)
+    table.observe(5)
     table.things = [seen("Object", *OVEN, whole=False)]
-    (update,) = table.looks(3)
+    (update,) = table.observe(3)
     assert isinstance(update, Update)
     assert update.at == pytest.approx((1.0, 1.0, 0.0), abs=0.01)
     assert update.size == pytest.approx(OVEN.size_m)
     table.things = [seen("Object", *FRONT)]
-    assert table.looks(20) == []
+    assert table.observe(20) == []

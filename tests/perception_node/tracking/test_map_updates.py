@@ -1,4 +1,4 @@
-"""What the map is told of a track, and when."""
+"""The updates of the map from a track."""
 
 import math
 from dataclasses import replace
@@ -33,7 +33,7 @@ def track(class_="Cup", pose=None, size_m=None, *, p=0.95, **more):
     votes = Votes()
     for _ in range(6):
         votes = votes.cast(class_, p, 1.0)
-    known = {"looks": 10, "borne_out": 10, "whole": True, "sized": 1.0}
+    known = {"frames": 10, "whole_frames": 10, "whole": True, "sized": 1.0}
     return Track(pose or at(1, 1), size_m or SIZES.get(class_, SIZES["Cup"]), votes, **known | more)
 
 
@@ -56,7 +56,7 @@ def test_a_command_is_about_an_entity_or_a_new_one_of_a_class():
 
 
 @pytest.mark.parametrize(
-    ("looks", "p", "whole", "unseen", "sure"),
+    ("frames", "p", "whole", "unseen", "sure"),
     [
         (2, 0.95, True, 0, True),
         (1, 0.95, True, 0, False),
@@ -68,9 +68,9 @@ def test_a_command_is_about_an_entity_or_a_new_one_of_a_class():
         (4, 0.95, False, 1, False),
     ],
 )
-def test_a_thing_is_sure_after_enough_looks_and_sooner_if_it_is_clear(looks, p, whole, unseen, sure):
-    config = replace(CONFIG, clear_looks=2, confirm_looks=3, part_looks=4, clear=0.8)
-    assert is_sure(track(looks=looks, p=p, whole=whole, unseen=unseen), CLASSES, config) is sure
+def test_a_thing_is_sure_after_enough_looks_and_sooner_if_it_is_clear(frames, p, whole, unseen, sure):
+    config = replace(CONFIG, clear_frames=2, confirm_frames=3, part_frames=4, clear=0.8)
+    assert is_sure(track(frames=frames, p=p, whole=whole, unseen=unseen), CLASSES, config) is sure
 
 
 def test_new_entities_have_free_names_and_say_what_was_seen():
@@ -103,18 +103,18 @@ def test_what_is_as_the_map_says_is_no_news():
     ("changes", "is_told"),
     [
         ({"left": True}, True),
-        ({"left": True, "looks": 0}, False),
-        ({"left": True, "looks": 1}, False),
-        ({"left": True, "looks": 1, "occupied": 1}, True),
+        ({"left": True, "frames": 0}, False),
+        ({"left": True, "frames": 1}, False),
+        ({"left": True, "frames": 1, "occupied": 1}, True),
         ({"left": True, "unseen": 1}, False),
         ({"left": True, "odd": 1}, False),
-        ({"borne_out": 4}, False),
-        ({"borne_out": 5}, True),
-        ({"borne_out": 5, "kept": True}, False),
-        ({"borne_out": 40, "kept": True}, True),
-        ({"borne_out": 2, "part": True}, True),
-        ({"borne_out": 2, "part": True, "whole": False}, False),
-        ({"borne_out": 2, "outsized": True}, True),
+        ({"whole_frames": 4}, False),
+        ({"whole_frames": 5}, True),
+        ({"whole_frames": 5, "kept": True}, False),
+        ({"whole_frames": 40, "kept": True}, True),
+        ({"whole_frames": 2, "part": True}, True),
+        ({"whole_frames": 2, "part": True, "whole": False}, False),
+        ({"whole_frames": 2, "outsized": True}, True),
     ],
     ids=str,
 )
@@ -149,14 +149,14 @@ def test_a_model_that_is_turned_otherwise_is_told_after_some_looks():
     fit = KnownFit("Cup", 0.9, orientation_from_yaw(1.0), 1)
     update = told(track(fit=fit))
     assert update.orientation == pytest.approx(orientation_from_yaw(1.0), abs=1e-6)
-    assert told(track(fit=fit, looks=4)) is None
+    assert told(track(fit=fit, frames=4)) is None
     assert told(track(fit=fit), cup(source="operator", confidence=None)) is None
     assert told(track(fit=replace(fit, orientation_wxyz=orientation_from_yaw(0.05)))) is None
 
 
 def test_when_only_the_front_was_known_the_rest_is_told_at_once():
     front = entity("shelf1", "Object", at(1.19, 1, 0.0), (0.02, 1.0, 1.8), source="perception")
-    whole = track("Object", at(1.0, 1, 0.0), (0.4, 1.0, 1.8), looks=2, borne_out=2)
+    whole = track("Object", at(1.0, 1, 0.0), (0.4, 1.0, 1.8), frames=2, whole_frames=2)
     update = told(whole, front)
     assert (update.at, update.size) == ((1.0, 1.0, 0.0), (0.4, 1.0, 1.8))
 
@@ -164,9 +164,9 @@ def test_when_only_the_front_was_known_the_rest_is_told_at_once():
 def test_what_is_gone_is_removed_if_it_is_perception_s_own():
     empty = told(track(unseen=4))
     assert (empty.names, empty.source, empty.agent) == (("cup1",), "perception", AGENT)
-    assert empty.reason == "cup1 is gone: its place was empty in 4 looks in a row"
+    assert empty.reason == "cup1 is gone: its place was empty in 4 consecutive frames"
     odd = told(track(odd=6))
-    assert odd.reason == "cup1 is gone: something else was in its place in 6 looks in a row"
+    assert odd.reason == "cup1 is gone: something else was in its place in 6 consecutive frames"
     assert told(track(unseen=3)) is None
 
 
@@ -190,9 +190,9 @@ def test_it_is_perception_s_own_only_if_nobody_has_named_or_measured_it():
 def test_a_more_special_class_is_told_with_what_it_is_called():
     vague = cup(class_="Tableware", size_m=SIZES["Cup"], preferred_reference="tableware")
     update = told(track(), vague)
-    assert (update.class_, update.reason) == ("Cup", "a closer look at cup1")
+    assert (update.class_, update.reason) == ("Cup", "better view of cup1")
     assert update.confidence > 0.8
-    assert told(track(looks=2, borne_out=2), vague) is None
+    assert told(track(frames=2, whole_frames=2), vague) is None
     named = told(track(), structs.replace(vague, preferred_reference="my mug"))
     assert named.class_ == "Cup"
     assert not named.ref
@@ -226,9 +226,9 @@ def test_against_an_operator_s_class_a_conflict_is_noted_until_it_is_borne_out()
     [
         ((0.08, 0.08, 0.13), {}, True),
         ((0.08, 0.08, 0.12), {}, False),
-        ((0.08, 0.08, 0.13), {"looks": 4}, False),
-        ((0.08, 0.08, 0.13), {"looks": 4, "part": True}, True),
-        ((0.08, 0.08, 0.13), {"looks": 4, "outsized": True}, True),
+        ((0.08, 0.08, 0.13), {"frames": 4}, False),
+        ((0.08, 0.08, 0.13), {"frames": 4, "part": True}, True),
+        ((0.08, 0.08, 0.13), {"frames": 4, "outsized": True}, True),
         ((0.08, 0.08, 0.13), {"whole": False}, False),
         ((0.095, 0.08, 0.1), {}, False),
         ((0.11, 0.08, 0.1), {}, True),

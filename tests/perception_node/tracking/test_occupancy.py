@@ -1,4 +1,4 @@
-"""What a depth picture says of a place: a box that stands there, is gone, or is hidden."""
+"""Occupancy by a depth image: a box that is present, gone, or hidden."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CUP = (0.08, 0.08, 0.1)
 
 
 def looking_down(angle_rad=0.7, distance_m=1.2) -> np.ndarray:
-    """A camera south of the table's middle and above it, occupancy_in at it."""
+    """Return a camera south of and above the table's centre, with its occupancy function."""
     forward = np.array([0.0, np.cos(angle_rad), -np.sin(angle_rad)])
     right = np.array([1.0, 0.0, 0.0])
     pose = np.eye(4)
@@ -29,7 +29,7 @@ def looking_down(angle_rad=0.7, distance_m=1.2) -> np.ndarray:
 
 
 def picture(boxes=(), pose=None, noise_m=0.0) -> Cloud:
-    """The depth of an endless table with upright boxes (middle of the bottom, size) that are not turned."""
+    """Return the depth of an infinite table with unrotated upright boxes (bottom centre, size)."""
     pose = looking_down() if pose is None else pose
     u, v = np.meshgrid(np.arange(WIDTH) + 0.5, np.arange(HEIGHT) + 0.5)
     rays = np.stack([(u - WIDTH / 2) / FOCAL, (v - HEIGHT / 2) / FOCAL, np.ones_like(u)], -1) @ pose[:3, :3].T
@@ -65,7 +65,7 @@ CHAIR = (0.45, 0.45, 0.9)
 
 
 def chair(x: float, y: float) -> list[tuple[tuple[float, float, float], tuple[float, float, float]]]:
-    """Its back, of two posts and two rails, is on the far side; seat and legs."""
+    """Return a chair with its back, of two posts and two rails, on the far side."""
     posts = [((x + side * 0.2, y + 0.205, TABLE_Z), (0.04, 0.03, 0.9)) for side in (-1, 1)]
     rails = [((x, y + 0.205, TABLE_Z + z), (0.36, 0.03, 0.08)) for z in (0.58, 0.8)]
     legs = [((x + side * 0.2, y - 0.2, TABLE_Z), (0.04, 0.04, 0.42)) for side in (-1, 1)]

@@ -5,7 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semmap.nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, left_behind, share
+from semmap.nodes.perception_node.tracking.overlap import (
+    OrientedBox,
+    may_be_same_thing,
+    share,
+    uncovered_slabs,
+)
 from tests.perception_node.things import at
 
 CUP = (0.08, 0.08, 0.1)
@@ -36,19 +41,19 @@ def test_turning_counts():
 
 def test_a_part_is_of_one_with_the_whole_but_a_cup_is_not_of_the_chair_it_stands_on():
     whole = OrientedBox(at(0, 0), (0.1, 0.1, 0.3))
-    assert are_of_one(whole, OrientedBox(at(0, 0, 0.9), (0.09, 0.09, 0.1)))
-    assert are_of_one(OrientedBox(at(0, 0, 0.9), (0.09, 0.09, 0.1)), whole)
+    assert may_be_same_thing(whole, OrientedBox(at(0, 0, 0.9), (0.09, 0.09, 0.1)))
+    assert may_be_same_thing(OrientedBox(at(0, 0, 0.9), (0.09, 0.09, 0.1)), whole)
     chair = OrientedBox(at(0, 0, 0.0), (0.5, 0.5, 0.9))
-    assert not are_of_one(chair, OrientedBox(at(0, 0, 0.45), CUP))
-    assert not are_of_one(whole, OrientedBox(at(0.12, 0), (0.1, 0.1, 0.3)))
+    assert not may_be_same_thing(chair, OrientedBox(at(0, 0, 0.45), CUP))
+    assert not may_be_same_thing(whole, OrientedBox(at(0.12, 0), (0.1, 0.1, 0.3)))
 
 
 def test_what_a_thing_leaves_behind_is_what_of_its_box_is_beyond_its_new_one():
     before = OrientedBox(at(1, 1, 0.0, yaw=1.5707963), (1.4, 0.6, 0.9))  # long along y
-    (slab,) = left_behind(before, OrientedBox(at(1, 1.5, 0.0, yaw=1.5707963), (1.4, 0.6, 0.9)))
+    (slab,) = uncovered_slabs(before, OrientedBox(at(1, 1.5, 0.0, yaw=1.5707963), (1.4, 0.6, 0.9)))
     assert slab.pose.position_m == pytest.approx((1.0, 0.55, 0.0), abs=1e-6)
     assert slab.size_m == pytest.approx((0.5, 0.6, 0.9))
-    (below,) = left_behind(before, OrientedBox(at(1, 1, 0.4), (0.6, 1.4, 0.5)))
+    (below,) = uncovered_slabs(before, OrientedBox(at(1, 1, 0.4), (0.6, 1.4, 0.5)))
     assert below.pose.position_m == pytest.approx((1.0, 1.0, 0.0), abs=1e-6)
     assert below.size_m == pytest.approx((1.4, 0.6, 0.4))
 
@@ -56,8 +61,8 @@ def test_what_a_thing_leaves_behind_is_what_of_its_box_is_beyond_its_new_one():
 @given(st.floats(-3, 3), st.floats(-0.09, 0.09))
 def test_nothing_is_left_behind_by_what_hardly_moves_or_grows(yaw, aside):
     before = OrientedBox(at(0, 0, yaw=yaw), (1.0, 0.5, 0.5))
-    assert left_behind(before, OrientedBox(at(aside / 2, aside / 2, yaw=yaw), (1.0, 0.5, 0.5))) == []
-    assert left_behind(before, OrientedBox(at(0, 0, yaw=yaw), (1.5, 0.6, 0.7))) == []
+    assert uncovered_slabs(before, OrientedBox(at(aside / 2, aside / 2, yaw=yaw), (1.0, 0.5, 0.5))) == []
+    assert uncovered_slabs(before, OrientedBox(at(0, 0, yaw=yaw), (1.5, 0.6, 0.7))) == []
 
 
 @pytest.mark.parametrize(
@@ -110,19 +115,19 @@ def test_boxes_are_turned_before_they_are_compared():
 def test_boxes_are_of_one_thing_unless_one_is_tiny(size_m, of_one):
     cube = OrientedBox(at(0, 0, 0.0), (1.0, 1.0, 1.0))
     other = OrientedBox(at(0, 0, 0.0), size_m)
-    assert are_of_one(cube, other) is of_one
-    assert are_of_one(other, cube) is of_one
+    assert may_be_same_thing(cube, other) is of_one
+    assert may_be_same_thing(other, cube) is of_one
 
 
 @pytest.mark.parametrize(("x", "of_one"), [(0.6, True), (0.8, False)])
 def test_boxes_that_hardly_overlap_are_not_of_one_thing(x, of_one):
     cube = OrientedBox(at(0, 0, 0.0), (1.0, 1.0, 1.0))
-    assert are_of_one(cube, OrientedBox(at(x, 0, 0.0), (1.0, 1.0, 1.0))) is of_one
+    assert may_be_same_thing(cube, OrientedBox(at(x, 0, 0.0), (1.0, 1.0, 1.0))) is of_one
 
 
 def test_what_is_left_behind_of_a_box_is_what_is_beyond_the_other_on_each_side():
     before = OrientedBox(at(0, 0, 0.0), (2.0, 2.0, 2.0))
-    slabs = left_behind(before, OrientedBox(at(0.2, -0.3, 0.5), (1.0, 1.0, 1.0)))
+    slabs = uncovered_slabs(before, OrientedBox(at(0.2, -0.3, 0.5), (1.0, 1.0, 1.0)))
     found = sorted((*(round(v, 6) for v in slab.pose.position_m), *map(float, slab.size_m)) for slab in slabs)
     expected = sorted(
         [
@@ -140,7 +145,7 @@ def test_what_is_left_behind_of_a_box_is_what_is_beyond_the_other_on_each_side()
 def test_what_is_left_behind_of_a_turned_box_lies_along_its_own_axes():
     before = OrientedBox(at(5, 5, 0.0, yaw=math.pi / 2), (2.0, 1.0, 1.0))
     now = OrientedBox(at(5, 5.5, 0.0), (1.0, 1.0, 1.0))
-    (slab,) = left_behind(before, now)
+    (slab,) = uncovered_slabs(before, now)
     assert slab.pose.position_m == pytest.approx((5.0, 4.5, 0.0))
     assert slab.size_m == pytest.approx((1.0, 1.0, 1.0))
     assert slab.pose.yaw_rad == pytest.approx(math.pi / 2)
@@ -148,7 +153,7 @@ def test_what_is_left_behind_of_a_turned_box_lies_along_its_own_axes():
 
 def test_nothing_is_left_behind_of_a_box_in_its_place_and_all_of_it_elsewhere():
     cube = OrientedBox(at(0, 0, 0.0), (1.0, 1.0, 1.0))
-    assert left_behind(cube, OrientedBox(at(0.05, 0, 0.0), (1.0, 1.0, 1.0))) == []
-    away = left_behind(cube, OrientedBox(at(5, 0, 0.0), (1.0, 1.0, 1.0)))
+    assert uncovered_slabs(cube, OrientedBox(at(0.05, 0, 0.0), (1.0, 1.0, 1.0))) == []
+    away = uncovered_slabs(cube, OrientedBox(at(5, 0, 0.0), (1.0, 1.0, 1.0)))
     assert [slab.size_m for slab in away] == [pytest.approx((1.0, 1.0, 1.0))]
     assert away[0].pose.position_m == pytest.approx((0.0, 0.0, 0.0))

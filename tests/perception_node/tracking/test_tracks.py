@@ -1,4 +1,4 @@
-"""What one more look makes of a track."""
+"""Updates of a track by one more observation."""
 
 from __future__ import annotations
 
@@ -74,9 +74,9 @@ def test_a_look_from_near_counts_more_for_place_and_size_than_one_from_afar():
 
 def test_looks_at_a_part_do_not_bear_out_where_a_thing_is():
     track = couch()
-    assert (track.looks, track.borne_out) == (5, 5)
+    assert (track.frames, track.whole_frames) == (5, 5)
     track = track.see(seen("Object", at(1.7, 1, 0.0), (0.6, 0.9, 0.85), whole=False), CONFIG)
-    assert (track.looks, track.borne_out) == (6, 5)
+    assert (track.frames, track.whole_frames) == (6, 5)
 
 
 BOX: Size = (0.4, 0.2, 0.3)
@@ -94,14 +94,20 @@ def box(**more) -> Track:
 def test_the_first_look_is_what_is_known():
     track = box()
     assert (track.pose, track.size_m) == (at(1, 1), BOX)
-    assert (track.looks, track.borne_out, track.whole, track.sized, track.placed) == (1, 1, True, 1.0, 1.0)
+    assert (track.frames, track.whole_frames, track.whole, track.sized, track.placed) == (
+        1,
+        1,
+        True,
+        1.0,
+        1.0,
+    )
     assert track.sized_as == "Object"
 
 
 def test_where_it_is_is_the_mean_of_looks_by_what_they_are_worth():
     track = box().see(box_seen(at(1.018, 1)), CONFIG)
     assert track.pose.position_m == pytest.approx((1.009, 1.0, 0.7))
-    assert (track.placed, track.looks, track.borne_out) == (2.0, 2, 2)
+    assert (track.placed, track.frames, track.whole_frames) == (2.0, 2, 2)
     track = box().see(box_seen(at(1.018, 1), points=4000), CONFIG)  # worth two
     assert track.pose.position_m == pytest.approx((1.012, 1.0, 0.7))
     track = box().see(box_seen(at(1, 1, yaw=0.1)), CONFIG)
@@ -126,11 +132,11 @@ def test_a_mean_goes_back_only_so_many_looks():
 def test_what_moves_begins_anew_and_what_is_turned_does_too():
     away = box(occupied=3, fit=FIT).see(box_seen(at(2, 1)), CONFIG)
     assert away.pose == at(2, 1)
-    assert (away.looks, away.borne_out, away.occupied, away.placed, away.fit) == (1, 1, 0, 1.0, None)
+    assert (away.frames, away.whole_frames, away.occupied, away.placed, away.fit) == (1, 1, 0, 1.0, None)
     turned = box(occupied=3).see(box_seen(at(1, 1, yaw=0.5)), CONFIG)
-    assert (turned.looks, turned.occupied) == (1, 4)
+    assert (turned.frames, turned.occupied) == (1, 4)
     stays = box(occupied=3, fit=FIT).see(box_seen(), CONFIG)
-    assert (stays.looks, stays.occupied, stays.fit) == (2, 3, FIT)
+    assert (stays.frames, stays.occupied, stays.fit) == (2, 3, FIT)
 
 
 FIT = KnownFit("Object", 0.9, at(0, 0, yaw=1.0).orientation_wxyz, 1)
@@ -140,7 +146,7 @@ def test_a_look_at_it_forgets_that_it_was_missed():
     track = box(unseen=2, odd=3, absent=4).see(box_seen(), CONFIG)
     assert (track.unseen, track.odd, track.absent) == (0, 0, 0)
     part = replace(track, unseen=2, odd=3, absent=4).see(box_seen(whole=False), CONFIG)
-    assert (part.unseen, part.odd, part.absent, part.looks) == (0, 0, 0, 3)
+    assert (part.unseen, part.odd, part.absent, part.frames) == (0, 0, 0, 3)
     assert part.placed == track.placed
 
 
@@ -171,12 +177,12 @@ def test_it_is_gone_after_enough_looks_and_nearly_odd_one_before():
 @pytest.mark.parametrize(
     ("changes", "rests"),
     [
-        ({"looks": 3}, True),
-        ({"looks": 2}, False),
-        ({"looks": 1, "occupied": 2}, True),
-        ({"looks": 0, "occupied": 9}, False),
-        ({"looks": 9, "unseen": 1}, False),
-        ({"looks": 9, "odd": 1}, False),
+        ({"frames": 3}, True),
+        ({"frames": 2}, False),
+        ({"frames": 1, "occupied": 2}, True),
+        ({"frames": 0, "occupied": 9}, False),
+        ({"frames": 9, "unseen": 1}, False),
+        ({"frames": 9, "odd": 1}, False),
     ],
     ids=str,
 )
@@ -213,35 +219,35 @@ def test_what_is_cut_is_a_part_of_what_was_seen_whole_where_much_of_either_is_in
 
 
 def test_when_all_of_a_front_is_seen_the_track_is_of_that():
-    front = Track(at(1.19, 1, 0.0), (0.02, 1.0, 1.8), told=at(9, 9), part=True, unlike="Cup")
+    front = Track(at(1.19, 1, 0.0), (0.02, 1.0, 1.8), map_pose=at(9, 9), part=True, rejected_class="Cup")
     front = front.see(seen("Object", at(1.19, 1, 0.0), (0.02, 1.0, 1.8)), CONFIG)
     shelf = seen("Object", at(1, 1, 0.0), (0.4, 1.0, 1.8))
     track = front.see(shelf, CONFIG)
-    assert (track.pose, track.size_m, track.looks, track.borne_out) == (shelf.pose, shelf.size_m, 1, 1)
-    assert (track.told, track.part, track.unlike, track.whole) == (at(9, 9), True, "Cup", True)
+    assert (track.pose, track.size_m, track.frames, track.whole_frames) == (shelf.pose, shelf.size_m, 1, 1)
+    assert (track.map_pose, track.part, track.rejected_class, track.whole) == (at(9, 9), True, "Cup", True)
     back = track.see(seen("Object", at(1.19, 1, 0.0), (0.02, 1.0, 1.8)), CONFIG)
-    assert (back.pose, back.size_m, back.looks) == (shelf.pose, shelf.size_m, 2)
+    assert (back.pose, back.size_m, back.frames) == (shelf.pose, shelf.size_m, 2)
 
 
 def test_all_of_it_that_a_picture_s_edge_cuts_is_taken_for_the_whole():
-    track = box(looks=9, sized=5.0).see_all(box_seen(size_m=(0.2, 0.2, 0.3), whole=False), CONFIG)
+    track = box(frames=9, sized=5.0).see_all(box_seen(size_m=(0.2, 0.2, 0.3), whole=False), CONFIG)
     assert track.size_m == (0.2, 0.2, 0.3)
-    assert (track.looks, track.whole, track.outsized, track.sized) == (1, True, True, 1.0)
+    assert (track.frames, track.whole, track.outsized, track.sized) == (1, True, True, 1.0)
 
 
 def test_the_map_is_told_the_yaw_of_the_model_if_there_is_one():
-    assert box().told_pose == at(1, 1)
-    assert box(fit=FIT).told_pose == at(1, 1, yaw=1.0)
-    assert box(fit=replace(FIT, orientation_wxyz=None)).told_pose == at(1, 1)
+    assert box().reported_pose == at(1, 1)
+    assert box(fit=FIT).reported_pose == at(1, 1, yaw=1.0)
+    assert box(fit=replace(FIT, orientation_wxyz=None)).reported_pose == at(1, 1)
 
 
 def test_a_model_that_does_not_fit_at_all_takes_its_class_away():
     cup = Track(at(1, 1), SIZES["Cup"])
     for _ in range(4):
         cup = cup.see(seen("Cup", at(1, 1)), CONFIG)
-    kept, doubted = cup.fitted(FIT_OF_CUP, unlike=False), cup.fitted(FIT_OF_CUP, unlike=True)
-    assert (kept.fit, kept.unlike, kept.votes) == (FIT_OF_CUP, "", cup.votes)
-    assert (doubted.fit, doubted.unlike) == (FIT_OF_CUP, "Cup")
+    kept, doubted = cup.fitted(FIT_OF_CUP, rejected=False), cup.fitted(FIT_OF_CUP, rejected=True)
+    assert (kept.fit, kept.rejected_class, kept.votes) == (FIT_OF_CUP, "", cup.votes)
+    assert (doubted.fit, doubted.rejected_class) == (FIT_OF_CUP, "Cup")
     assert doubted.votes.belief(CLASSES) == ANYTHING
     again = doubted.see(seen("Cup", at(1, 1)), CONFIG)
     assert again.votes.belief(CLASSES) == ANYTHING

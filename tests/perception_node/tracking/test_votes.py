@@ -5,7 +5,7 @@ from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING
 from semmap.nodes.perception_node.tracking.votes import Votes
 from tests.perception_node.things import CLASSES
 
-looks = st.lists(st.tuples(st.sampled_from(["Cup", "Tableware", "Bottle", "Object"]), st.floats(0.1, 1.0)))
+frames = st.lists(st.tuples(st.sampled_from(["Cup", "Tableware", "Bottle", "Object"]), st.floats(0.1, 1.0)))
 
 
 def cast(*said):
@@ -36,7 +36,7 @@ def test_new_looks_outweigh_old_ones():
     assert votes.belief(CLASSES) == "Bottle"
 
 
-@given(looks)
+@given(frames)
 def test_a_class_has_no_more_of_the_votes_than_one_above_it(said):
     votes = cast(*said)
     shares = [votes.share(name, CLASSES) for name in ("Cup", "Tableware", "Object")]

@@ -9,7 +9,7 @@ YAWS = st.floats(-3.0, 3.0)
 
 
 def shell(size, yaw, middle):
-    """Points all over the sides of a box that stands at `middle`."""
+    """Return points on the sides of a box at `middle`."""
     grid = np.stack(np.meshgrid(*[np.linspace(-0.5, 0.5, 9)] * 3), axis=-1).reshape(-1, 3)
     local = (grid[np.abs(grid).max(axis=1) > 0.49] + [0.0, 0.0, 0.5]) * size
     return in_frame(local, -yaw) + middle

@@ -1,4 +1,4 @@
-"""What belongs to a table, and what stands beside it."""
+"""Parts of a table, and things next to it."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from semmap.nodes.perception_node.views.furniture_planes import (
     _box,
     _stands_free,
     _touching,
+    join_legs,
     with_furniture,
-    with_what_hangs_below,
 )
 from semmap.nodes.perception_node.views.segments import Segment
 
@@ -26,22 +26,22 @@ TOP = segment([-0.5, -0.3, 0.74], [0.5, 0.3, 0.75], carrier=True)
 
 def test_a_leg_belongs_to_the_top_and_a_bin_below_it_does_not():
     leg, bin_ = segment([0.4, 0.2, 0.0], [0.45, 0.25, 0.73]), segment([0, 0, 0], [0.2, 0.2, 0.3])
-    assert with_what_hangs_below([[TOP], [leg], [bin_]]) == [[0, 1], [2]]
+    assert join_legs([[TOP], [leg], [bin_]]) == [[0, 1], [2]]
 
 
 def test_what_stands_beside_the_top_is_another_thing():
     beside = segment([0.55, -0.1, 0.0], [0.75, 0.1, 0.72])
-    assert with_what_hangs_below([[TOP], [beside]]) == [[0], [1]]
+    assert join_legs([[TOP], [beside]]) == [[0], [1]]
 
 
 def test_a_front_alone_hides_nothing():
     front = segment([-0.5, -0.3, 0.0], [0.5, -0.2999, 0.75], carrier=True)
     beside = segment([-0.1, -0.6, 0.0], [0.1, -0.4, 0.7])
-    assert with_what_hangs_below([[front], [beside]]) == [[0], [1]]
+    assert join_legs([[front], [beside]]) == [[0], [1]]
 
 
 def test_what_stands_on_a_top_ends_there():
-    """On the left a thing that was cut out together with the rim below it, on the right the top itself."""
+    """On the left a thing segmented with the rim below it, on the right the top itself."""
     labels = np.zeros((40, 40), np.int32)
     labels[:, :20] = 1
     across = np.linspace(-0.3, 0.3, 40, dtype=np.float32)
@@ -107,6 +107,6 @@ def test_the_box_of_points_leaves_stray_ones_out():
 
 def test_what_lies_on_a_top_is_another_thing():
     plate = segment([-0.1, -0.1, 0.755], [0.1, 0.1, 0.76])
-    assert with_what_hangs_below([[TOP], [plate]]) == [[0], [1]]
+    assert join_legs([[TOP], [plate]]) == [[0], [1]]
     rim = segment([-0.5, -0.3, 0.7], [0.5, -0.29, 0.74])
-    assert with_what_hangs_below([[TOP], [rim], [plate]]) == [[0, 1], [2]]
+    assert join_legs([[TOP], [rim], [plate]]) == [[0, 1], [2]]

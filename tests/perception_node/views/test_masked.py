@@ -1,4 +1,4 @@
-"""Somebody else's masks, made from the simulator's truth, with noise: ragged, shifted, some missing."""
+"""Masks of an external detector, made from the simulator's ground truth with noise."""
 
 from __future__ import annotations
 
@@ -6,25 +6,25 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from semmap.nodes.perception_node.input.masks import Masks, Said
-from semmap.nodes.perception_node.pipeline import look
-from semmap.nodes.perception_node.recognition.shipped_votes import shipped
-from semmap.nodes.perception_node.recognition.told_names import Labels
+from semmap.nodes.perception_node.input.masks import DetectorLabel, Masks
+from semmap.nodes.perception_node.pipeline import observe_clouds
+from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
+from semmap.nodes.perception_node.recognition.recognition_model import shipped
 from semmap.nodes.perception_node.views.masked import with_masks
-from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 from tests.perception_node.scenes import KINDS, shot
 
 CLASSES = {"cereals": "Cereals", "apple": "Apple", "bottle": "Bottle", "basket": "Basket"}
 
 
 def masks(view, *, names=CLASSES, grown=2, alone=False, score=0.8):
-    """The truth's masks, each a few pixels too large, so that their rims lie on what is behind."""
+    """Return the ground-truth masks enlarged by a few pixels, so that their rims lie on the background."""
     taken = shot()
     labels = np.zeros(taken.owners[view].shape, np.int32)
     said = []
     for body, name in names.items():
         number = next(n for n, b in enumerate(taken.bodies, 1) if b.name == body)
-        said.append(Said(name, score) if name else None)
+        said.append(DetectorLabel(name, score) if name else None)
         labels[ndimage.binary_dilation(taken.owners[view] == number, iterations=grown)] = len(said)
     return Masks(labels, tuple(said), alone)
 
@@ -35,18 +35,18 @@ def owner_of(segment_pixels, view):
 
 
 def test_segments_are_the_masks_without_what_lies_behind_them():
-    sight = with_masks(see(shot().clouds[0]), masks(0, alone=True))
+    sight = with_masks(segment_cloud(shot().clouds[0]), masks(0, alone=True))
     assert len(sight.segments) == len(KINDS)
     assert all(segment.masked for segment in sight.segments)
     for segment, (body, name) in zip(sight.segments, CLASSES.items(), strict=True):
         found, purity = owner_of(sight.labels == segment.label, 0)
-        assert (found, segment.said.label) == (body, name)
+        assert (found, segment.detector_label.label) == (body, name)
         assert purity > 0.9
 
 
 def test_beside_masks_our_own_segments_remain():
     only_apple = masks(0, names={"apple": "Apple"})
-    sight = with_masks(see(shot().clouds[0]), only_apple)
+    sight = with_masks(segment_cloud(shot().clouds[0]), only_apple)
     found = {owner_of(sight.labels == segment.label, 0)[0] for segment in sight.segments}
     assert found >= {*KINDS, "table"}
     assert [segment.masked for segment in sight.segments].count(True) == 1
@@ -54,19 +54,19 @@ def test_beside_masks_our_own_segments_remain():
 
 def test_names_of_a_detector_count_and_its_things_are_no_clutter():
     both = [masks(0, alone=True), masks(1, alone=True)]
-    seen = look(shot().clouds, shipped(), both).observations.observations
+    seen = observe_clouds(shot().clouds, shipped(), both).observations.observations
     assert sorted(o.class_ for o in seen) == sorted(CLASSES.values())
     assert all(o.probability > 0.8 for o in seen)
 
 
 def test_a_map_of_labels_and_labels_that_nobody_knows():
     learnt = shipped()
-    labels = Labels(learnt, {"Granny Smith": "Apple", "spork": "Spork"})
+    labels = LabelMap(learnt, {"Granny Smith": "Apple", "spork": "Spork"})
     assert labels.class_of("granny_smith") == "Apple"
     assert labels.class_of("WINE-bottle") == labels.class_of("winebottle")
     assert labels.class_of("gizmo") is None
     names = {"apple": "Granny Smith", "bottle": "spork", "cereals": "gizmo"}
-    seen = look(shot().clouds[:1], learnt, [masks(0, names=names, alone=True, score=0.999)], labels)
+    seen = observe_clouds(shot().clouds[:1], learnt, [masks(0, names=names, alone=True, score=0.999)], labels)
     said = {o.class_: o.probability for o in seen.observations.observations}
     assert said["Apple"] > 0.8
     assert said["Spork"] == pytest.approx(0.999)
@@ -75,11 +75,11 @@ def test_a_map_of_labels_and_labels_that_nobody_knows():
 
 def test_a_detector_that_is_unsure_does_not_overrule_what_is_plain():
     wrong = masks(0, names={"bottle": "Fork"}, alone=True, score=0.05)
-    (seen,) = look(shot().clouds[:1], shipped(), [wrong]).observations.observations
+    (seen,) = observe_clouds(shot().clouds[:1], shipped(), [wrong]).observations.observations
     assert seen.class_ != "Fork"
 
 
 def test_masks_of_another_size_are_refused():
     small = Masks(np.zeros((240, 320), np.int32), ())
-    with pytest.raises(ValueError, match="of 320 x 240 pixels, the picture of 640 x 480"):
-        with_masks(see(shot().clouds[0]), small)
+    with pytest.raises(ValueError, match="320 x 240 pixels, the image 640 x 480"):
+        with_masks(segment_cloud(shot().clouds[0]), small)

@@ -1,4 +1,4 @@
-"""Clouds with order and without."""
+"""Organised and unorganised clouds."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.views.segmented_view import see
+from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 from tests.perception_node.scenes import shot
 
 
@@ -15,7 +15,7 @@ def test_a_cloud_without_order_shows_what_its_picture_shows():
     cloud = replace(shot().clouds[0], map_from_camera=None, intrinsics=None)
     points = cloud.points_camera.reshape(1, -1, 3)
     colors = None if cloud.colors is None else cloud.colors.reshape(1, -1, 3)
-    ordered, heap = see(cloud), see(replace(cloud, points_camera=points, colors=colors))
+    ordered, heap = segment_cloud(cloud), segment_cloud(replace(cloud, points_camera=points, colors=colors))
     assert heap.labels.shape == points.shape[:2]
     assert heap.carriers
     assert len(heap.supports) == len(ordered.supports)
@@ -27,4 +27,4 @@ def test_a_cloud_without_order_shows_what_its_picture_shows():
 
 
 def test_a_cloud_of_nothing_shows_nothing():
-    assert see(Cloud(np.full((1, 50, 3), np.nan, np.float32))).segments == ()
+    assert segment_cloud(Cloud(np.full((1, 50, 3), np.nan, np.float32))).segments == ()

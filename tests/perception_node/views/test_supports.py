@@ -20,7 +20,7 @@ def test_a_thing_stands_on_what_is_below_it():
 
 
 def seats(y, x):
-    """(96, 96, 3) points 2.5 cm apart at the height of seats, and where four seats are."""
+    """Return points (96, 96, 3) 2.5 cm apart at the height of seats, and the masks of four seats."""
     points = np.dstack([*np.meshgrid(np.arange(96) / 40, np.arange(96) / 40), np.full((96, 96), 0.45)])
     where = np.zeros((96, 96), bool)
     for row in y:

@@ -8,7 +8,7 @@ from tests.recorder.messages import pose
 
 
 def views(part: rrb.Container | rrb.View) -> Iterator[rrb.View]:
-    """All views in an arrangement."""
+    """Return all views of a layout."""
     if isinstance(part, rrb.View):
         yield part
         return

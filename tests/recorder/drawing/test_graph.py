@@ -1,4 +1,4 @@
-from semmap.nodes.drawing.neighbourhood import Knot, Link, Neighbourhood
+from semmap.nodes.drawing.neighbourhood import GraphEdge, GraphNode, Neighbourhood
 from semmap.nodes.recorder.drawing.graph import MANY, graph_of, nodes_and_edges
 from tests.recorder.messages import entity
 
@@ -27,11 +27,11 @@ def test_without_a_commit_and_for_a_large_one_the_whole_is_shown_by_places():
 
 def test_of_many_edges_it_is_not_written_what_they_say():
     knots = [
-        Knot("cup1", "cup1", "centre", "Cup"),
-        *(Knot(f"b{i}", f"b{i}", "entity", "B") for i in range(20)),
+        GraphNode("cup1", "cup1", "centre", "Cup"),
+        *(GraphNode(f"b{i}", f"b{i}", "entity", "B") for i in range(20)),
     ]
     nodes, edges = nodes_and_edges(
-        Neighbourhood(tuple(knots), tuple(Link("cup1", f"b{i}", "isNear") for i in range(20)))
+        Neighbourhood(tuple(knots), tuple(GraphEdge("cup1", f"b{i}", "isNear") for i in range(20)))
     )
     assert nodes.node_ids is not None
     assert edges.edges is not None
@@ -40,9 +40,11 @@ def test_of_many_edges_it_is_not_written_what_they_say():
 
 
 def test_what_an_edge_says_is_a_small_node_on_it():
-    knots = (Knot("cup1", "cup1", "centre", "Cup"), Knot("table1", "table1", "entity", "Table"))
-    more = Knot("more:cup1:in", "3 more", "more", "")
-    graph = Neighbourhood((*knots, more), (Link("cup1", "table1", "isOn"), Link("more:cup1:in", "cup1", "")))
+    knots = (GraphNode("cup1", "cup1", "centre", "Cup"), GraphNode("table1", "table1", "entity", "Table"))
+    more = GraphNode("more:cup1:in", "3 more", "more", "")
+    graph = Neighbourhood(
+        (*knots, more), (GraphEdge("cup1", "table1", "isOn"), GraphEdge("more:cup1:in", "cup1", ""))
+    )
     nodes, edges = nodes_and_edges(graph)
     assert nodes.node_ids is not None
     assert nodes.labels is not None

@@ -37,7 +37,7 @@ FRAME = CameraFrame(
 def recorded(tmp_path, path, *archetypes):
     file = tmp_path / "a.rrd"
     with open_recording(file, None) as recording:
-        recording.at(1, START_NS, None)
+        recording.set_time(1, START_NS, None)
         recording.show(path, *archetypes)
     return lambda component: column(file, f"/{path}", component)
 
@@ -76,7 +76,7 @@ def test_points_of_things_have_the_colours_of_their_classes():
 def test_a_picture_is_recorded_small_with_its_camera(tmp_path):
     pixels = np.zeros((480, 640, 3), np.uint8)
     pixels[:, 320:] = (200, 100, 50)
-    read = recorded(tmp_path, archetypes.camera_path("left"), *archetypes.picture_of(FRAME, pixels.tobytes()))
+    read = recorded(tmp_path, archetypes.camera_path("left"), *archetypes.image_of(FRAME, pixels.tobytes()))
     assert read("Transform3D:translation") == [(3.0, 4.0, 5.0)] or read("Transform3D:translation") == [
         [3, 4, 5]
     ]
@@ -90,4 +90,4 @@ def test_a_picture_is_recorded_small_with_its_camera(tmp_path):
 
 def test_pixels_that_are_not_the_frames_are_refused():
     with pytest.raises(ValueError, match="not enough"):
-        archetypes.picture_of(FRAME, b"too few")
+        archetypes.image_of(FRAME, b"too few")

@@ -1,4 +1,4 @@
-"""What the knowledge base and perception are shipped of the library's models, to compare models with."""
+"""The data on the library's models that ship with the knowledge base and perception."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FLAT = 0.018
 
 @cache
 def surfaces() -> dict[str, ModelSurface]:
-    """The points that perception has of the surface of each model."""
+    """Return the surface points of each model in perception."""
     return {
         model: surface
         for class_, models in library_models().items()
@@ -30,13 +30,13 @@ def surfaces() -> dict[str, ModelSurface]:
 
 
 def differences(name: str) -> list[str]:
-    """In what a model is no longer what the two have been told of it: nothing while both files are true."""
+    """Return how a model differs from these data; empty while both files are current."""
     model = build(name, None)
     return [*_in_shape(model, shapes()[name]), *_in_surface(model, surfaces().get(name))]
 
 
 def _in_shape(model: Model, known: ModelShape) -> list[str]:
-    """Against the knowledge base: size, what collides, and how doors and drawers move."""
+    """Compare with the knowledge base: size, collision geometry, and motion of doors and drawers."""
     solid = [part for part in model.parts if part.role is not Role.SEEN]
     found = []
     if not np.allclose(model.size_m, known.size_m, atol=_WITHIN_M):
@@ -74,9 +74,9 @@ def _is_one(part: ConvexPart, known: ConvexPart) -> bool:
 
 
 def _in_surface(model: Model, known: ModelSurface | None) -> list[str]:
-    """Against perception: its points lie on what is seen of the model, and within none of it.
+    """Compare with perception: its points lie on the visible surface of the model, and not inside.
 
-    They were taken from flat faces, of which sixteen make a round side, so they may lie a little within it.
+    They were sampled from flat faces, sixteen for a round side, so they may lie slightly inside it.
     """
     if known is None:
         return []

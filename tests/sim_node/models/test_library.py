@@ -73,7 +73,7 @@ def test_without_a_model_there_is_a_box():
     "size", [(1000.0, 1.0, 1.0), (1.0, 1e-6, 1.0), (1.0, 1.0, float("nan")), (1.0, 1.0, -1.0)]
 )
 def test_absurd_sizes_are_refused(size):
-    with pytest.raises(ModelError, match="measures"):
+    with pytest.raises(ModelError, match="a size must be from"):
         build("chair", size)
 
 
@@ -89,7 +89,7 @@ RED = (1.0, 0.0, 0.0)
 
 
 def hinged(axis=(0.0, 1.0, 0.0), *, kind="hinge", friction=0.0, anchor=(0.0, 0.0, 1.0), seen_only=False):
-    """A box of a metre with a lid of a metre beside it, which a joint moves."""
+    """Return a box of one metre with a lid of one metre beside it, moved by a joint."""
     joint = Joint("lid", kind, anchor, axis, (0.0, 1.0), friction=friction)
     lid = moving(joint, box((1.0, 1.0, 0.1), (0.5, 0.0, 1.05), RED))
     return assemble(

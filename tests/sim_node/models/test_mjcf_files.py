@@ -1,4 +1,4 @@
-"""A user's own MJCF models bring their joints, and say what they cannot bring."""
+"""A user's MJCF models have joints, and notes on what is omitted."""
 
 import math
 
@@ -92,7 +92,7 @@ def test_a_lid_and_a_drawer_come_with_their_limits(folder):
     assert (drawer.kind, drawer.range, drawer.closed) == ("slide", pytest.approx((0.0, 0.2)), 0.0)
     assert drawer.friction >= 2.0
     assert Models(folder)("chest", None).notes == (
-        "turn stays as it is drawn, because lid_hinge moves that body already",
+        "turn does not move, because lid_hinge already moves that body",
     )
 
 
@@ -123,11 +123,11 @@ def test_joints_that_open_nothing_are_told_and_what_cannot_come_is_said(folder):
     assert joints(odd).keys() == {"spin", "along"}
     assert joints(odd)["spin"].range is None
     assert odd.notes == (
-        "socket stays as it is drawn, because it is a ball joint",
-        "across stays as it is drawn, because along moves that body already",
-        "1 tendon (string) left out",
-        "2 actuators (motor) left out",
-        "1 equality constraint left out",
+        "socket does not move, because it is a ball joint",
+        "across does not move, because along already moves that body",
+        "1 tendon (string) omitted",
+        "2 actuators (motor) omitted",
+        "1 equality constraint omitted",
     )
     world = World(models=Models(folder))
     assert world.spawn([order("odd1", "odd", pose(0.0, 0.0))]).failed == {}
@@ -155,10 +155,10 @@ def test_the_knowledge_base_is_told_of_them(folder):
 def test_notes_are_told_of_those_files_that_are_a_class_s_model(folder):
     (folder / "broken.xml").write_text("<mujoco")
     assert own_notes(folder, {"chest", "hung", "broken"}) == [
-        "chest.xml: turn stays as it is drawn, because lid_hinge moves that body already"
+        "chest.xml: turn does not move, because lid_hinge already moves that body"
     ]
     (told,) = own_notes(folder, {"odd.xml"})
     assert told.endswith(
-        "because along moves that body already; 1 tendon (string) left out;"
-        " 2 actuators (motor) left out; 1 equality constraint left out"
+        "because along already moves that body; 1 tendon (string) omitted;"
+        " 2 actuators (motor) omitted; 1 equality constraint omitted"
     )

@@ -132,13 +132,13 @@ def test_a_bad_file_is_told(folder, name, why):
 
 @pytest.mark.parametrize("name", ["broken.stl", "empty.xml", "flat.obj", "light.xml"])
 def test_no_size_makes_a_bad_file_good(folder, name):
-    with pytest.raises(ModelError, match=f"cannot use the model file .*{name}: (it|a body)"):
+    with pytest.raises(ModelError, match=f"cannot use model file .*{name}: (it|a size)"):
         Models(folder)(name, (1.0, 1.0, 1.0))
 
 
 def test_a_file_without_a_folder_says_where_it_belongs():
     with pytest.raises(
-        ModelError, match=r"vacuum.obj is looked up in the folder given by `semmap up --models DIR`"
+        ModelError, match=r"vacuum.obj is searched in the folder given by `semmap up --models DIR`"
     ):
         Models(None)("vacuum.obj", None)
 

@@ -1,4 +1,4 @@
-"""Models that open: in the simulator, by hand, with what is in them."""
+"""Models that open, in the simulator, with contents."""
 
 import math
 

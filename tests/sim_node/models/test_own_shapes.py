@@ -1,4 +1,4 @@
-"""A user's own models have shapes like the library's."""
+"""A user's models have shapes like the library's."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Primitive parts: their volumes and boxes, how they turn and move, and what they weigh."""
+"""Primitive parts: volumes, boxes, motion and mass."""
 
 from __future__ import annotations
 

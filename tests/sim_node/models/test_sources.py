@@ -1,4 +1,4 @@
-"""Which file is whose model."""
+"""The file of each model."""
 
 import os
 
@@ -6,7 +6,7 @@ import pytest
 
 from semmap.nodes.sim_node.models.library import ModelError
 from semmap.nodes.sim_node.models.library import build as built_in
-from semmap.nodes.sim_node.models.sources import Models, is_one_of, passed_over
+from semmap.nodes.sim_node.models.sources import Models, ignored_files, is_one_of
 
 MODELS = {"chair", "table", "sofa.obj", "/elsewhere/lamp.stl"}
 PLINTH = """<mujoco><worldbody><body>
@@ -25,7 +25,7 @@ def test_files_that_are_nobodys_model_are_passed_over(tmp_path):
     names = ("chair.glb", "sofa.obj", "chiar.stl", "Table.xml", "table.GLB", "zebra.obj", "chair.png")
     for name in names:
         (tmp_path / name).touch()
-    assert passed_over(tmp_path, MODELS) == [
+    assert ignored_files(tmp_path, MODELS) == [
         "Table.xml (did you mean table?)",
         "chiar.stl (did you mean chair?)",
         "table.GLB (did you mean table?)",
@@ -35,7 +35,7 @@ def test_files_that_are_nobodys_model_are_passed_over(tmp_path):
 
 def test_a_file_may_be_named_by_its_whole_path(tmp_path):
     (tmp_path / "vacuum.glb").touch()
-    assert passed_over(tmp_path, {str(tmp_path / "vacuum.glb")}) == []
+    assert ignored_files(tmp_path, {str(tmp_path / "vacuum.glb")}) == []
     assert not is_one_of(tmp_path / "chair.png", {"chair", "chair.png"})
 
 

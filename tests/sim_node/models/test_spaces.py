@@ -104,7 +104,7 @@ def pieces(turn):
 @pytest.mark.parametrize("turn", TURNS)
 @pytest.mark.parametrize("number", range(4), ids=["box", "ball", "rod", "pill"])
 def test_upright_lines_enter_and_leave_a_part_at_its_surface(number, turn):
-    """As MuJoCo's rays do from above and from below."""
+    """Compared with MuJoCo's rays from above and below."""
     part = pieces(turn)[number]
     spec = mujoco.MjSpec()
     add_part(spec.worldbody.add_body(), part)
@@ -123,7 +123,7 @@ def test_upright_lines_enter_and_leave_a_part_at_its_surface(number, turn):
 
 
 def _ray(model, data, x, y, side):
-    """How high an upright line from below (-1) or above (1) meets the geometry first."""
+    """Return the height at which a vertical line from below (-1) or above (1) first hits the geometry."""
     geom = np.array([-1], np.int32)
     start, way = np.array([x, y, 5.0 * side]), np.array([0.0, 0.0, -side])
     distance = mujoco.mj_ray(model, data, start, way, None, 1, -1, geom)

@@ -1,4 +1,4 @@
-"""Models beside the usual ones of a class."""
+"""Alternative models of classes."""
 
 import numpy as np
 import pytest

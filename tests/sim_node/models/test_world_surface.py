@@ -86,4 +86,4 @@ def test_a_body_is_told_in_its_own_frame_with_its_parts():
     assert spans(points) == pytest.approx(np.array([(-0.5, -0.1, 0.0), (0.5, 0.1, 1.0)]), abs=1e-6)
     arm = points[points[:, 2] > 0.5]
     assert spans(arm)[:, 0] == pytest.approx([0.3, 0.5], abs=1e-6)
-    assert body_surface(model, data, names, "nobody", np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])) is None
+    assert body_surface(model, data, names, "missing", np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])) is None

@@ -1,4 +1,4 @@
-"""Scenes of other people's: what they must have, what is a body in them, and what joints open."""
+"""Scenes of users: requirements, bodies, and joints that open."""
 
 import math
 
@@ -245,16 +245,16 @@ def test_a_knob_is_a_switch_and_what_it_turns_opens_nothing():
 def test_what_texts_declare_in_vain_is_named():
     ground = spec(
         '<body name="a b"><joint name="j" range="0 1"/><geom size="1"/></body>',
-        more="""<custom><text name="semmap:nobody" data="Cup"/><text name="semmap:a b" data="Cup"/>
+        more="""<custom><text name="semmap:missing" data="Cup"/><text name="semmap:a b" data="Cup"/>
         <text name="semmap-closed:x" data="lower"/><text name="semmap-closed:j" data="left"/>
         <text name="semmap-off:j" data="right"/><text name="other" data="x"/></custom>""",
     )
     assert base_scene.ignored(ground) == [
-        "nobody (no such body)",
+        "missing (no such body)",
         "a b (no entity can have this name)",
         "x (no such joint)",
-        "j (closed at 'left'; say lower or upper)",
-        "j (off at 'right'; say lower or upper)",
+        "j (closed at 'left'; use lower or upper)",
+        "j (off at 'right'; use lower or upper)",
     ]
     assert base_scene.ignored(spec()) == []
 
@@ -291,9 +291,9 @@ def test_a_scene_is_read_from_a_file_and_what_does_not_compile_is_told_only_if_t
     path = tmp_path / "world.xml"
     path.write_text("<mujoco><worldbody><geom type='plane' size='1 1 1'/></worldbody></mujoco>")
     assert len(base_scene.read_mjcf(path).geoms) == 1
-    path.write_text("<mujoco><actuator><motor joint='nobody'/></actuator></mujoco>")
-    with pytest.raises(BadFile, match=r"world\.xml is not an MJCF scene that compiles: .*nobody"):
+    path.write_text("<mujoco><actuator><motor joint='missing'/></actuator></mujoco>")
+    with pytest.raises(BadFile, match=r"cannot compile world file .*world\.xml: .*missing"):
         base_scene.read_mjcf(path)
     assert len(base_scene.read_mjcf(path, compiles=False).actuators) == 1
-    with pytest.raises(BadFile, match="is not an MJCF scene"):
+    with pytest.raises(BadFile, match="cannot compile world file"):
         base_scene.read_mjcf(tmp_path / "nothing.xml")

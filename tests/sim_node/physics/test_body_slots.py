@@ -1,22 +1,22 @@
-"""What takes a berth is, moves and is seen as if it had been compiled."""
+"""A body in a slot moves and is rendered as if it had been compiled."""
 
 import mujoco
 import numpy as np
 import pytest
 
-from semmap.nodes.sim_node.physics.body_slots import Berth
+from semmap.nodes.sim_node.physics.body_slots import BodySlot
 from semmap.nodes.sim_node.world import World
 from tests.sim_node.orders import hand, order, pose
 
 KINDS = ("chair", "cup", "vase", "apple", "table")
 
 
-def laid(*, berthed: bool) -> World:
-    """Things in mid-air, tilted and turning."""
+def laid(*, slotted: bool) -> World:
+    """Return things in mid-air, tilted and rotating."""
     world = World()
     for i, kind in enumerate(KINDS):
-        if not berthed:
-            world._engine._vacant.clear()
+        if not slotted:
+            world._engine._free_slots.clear()
         world.spawn([order(kind, kind, pose(0.5 * i, 0.0, 0.8, yaw=0.3 * i))])
     for name in KINDS:
         dof = world._engine.index.dof[world._engine.index.row[name]]
@@ -25,42 +25,42 @@ def laid(*, berthed: bool) -> World:
 
 
 def rows(world: World, name: str) -> dict[str, np.ndarray]:
-    """All that the model says of one body, wherever in the model it is."""
-    model, berth = world.model, world._engine._berths[name]
-    dof = int(model.body_dofadr[berth.body])
-    count = int(model.body_bvhnum[berth.body])
-    nodes = slice(berth.node, berth.node + count)
+    """Return all data of one body in the model."""
+    model, slot = world.model, world._engine._slots[name]
+    dof = int(model.body_dofadr[slot.body])
+    count = int(model.body_bvhnum[slot.body])
+    nodes = slice(slot.node, slot.node + count)
     seen = {}
-    for prefix, where in (("body", berth.body), ("dof", slice(dof, dof + 6))):
+    for prefix, where in (("body", slot.body), ("dof", slice(dof, dof + 6))):
         for field in ("mass", "inertia", "ipos", "iquat", "contype", "conaffinity", "invweight0", "M0"):
             if hasattr(model, f"{prefix}_{field}"):
                 seen[f"{prefix}_{field}"] = getattr(model, f"{prefix}_{field}")[where]
-    visible = [g for g in range(berth.geom, berth.geom + berth.geoms) if model.geom_group[g] != 3]
-    felt = [g for g in range(berth.geom, berth.geom + berth.geoms) if model.geom_contype[g]]
+    visible = [g for g in range(slot.geom, slot.geom + slot.geoms) if model.geom_group[g] != 3]
+    felt = [g for g in range(slot.geom, slot.geom + slot.geoms) if model.geom_contype[g]]
     for field in [f for f in dir(model) if f.startswith("geom_") and f != "geom_bodyid"]:
         values = getattr(model, field)
         if isinstance(values, np.ndarray):
             seen[f"seen {field}"], seen[f"felt {field}"] = values[visible], values[felt]
     leaves = model.bvh_nodeid[nodes]
-    seen["leaves"] = np.where(leaves < 0, leaves, leaves - berth.geom)
+    seen["leaves"] = np.where(leaves < 0, leaves, leaves - slot.geom)
     seen["boxes"], seen["children"] = model.bvh_aabb[nodes], model.bvh_child[nodes]
     return {key: np.array(value) for key, value in seen.items()}
 
 
 @pytest.mark.parametrize("name", KINDS)
 def test_the_model_says_the_same_of_it(name):
-    berthed, compiled = rows(laid(berthed=True), name), rows(laid(berthed=False), name)
-    assert berthed.keys() == compiled.keys()
-    for key, value in berthed.items():
+    slotted, compiled = rows(laid(slotted=True), name), rows(laid(slotted=False), name)
+    assert slotted.keys() == compiled.keys()
+    for key, value in slotted.items():
         assert value == pytest.approx(compiled[key]), key
 
 
 def test_it_falls_and_bounces_the_same_way():
-    berthed, compiled = laid(berthed=True), laid(berthed=False)
+    slotted, compiled = laid(slotted=True), laid(slotted=False)
     for _ in range(8):
-        berthed.step(0.1)
+        slotted.step(0.1)
         compiled.step(0.1)
-        assert berthed.poses().poses == pytest.approx(compiled.poses().poses, abs=2e-3)
+        assert slotted.poses().poses == pytest.approx(compiled.poses().poses, abs=2e-3)
 
 
 def test_one_berth_after_another_is_filled_before_anything_is_compiled():
@@ -93,7 +93,7 @@ def compiled_names(world: World) -> list[str | None]:
 
 def test_no_berth_keeps_the_name_of_who_left():
     world = World()
-    world.spawn([order(f"chair{i}", "chair", pose(i, 0)) for i in range(20)])  # more than there are berths
+    world.spawn([order(f"chair{i}", "chair", pose(i, 0)) for i in range(20)])  # more than there are slots
     assert "chair1" in compiled_names(world)
     world.delete(["chair1"])
     world.spawn([order("chair_new", "chair", pose(1, 0))])
@@ -131,9 +131,9 @@ def test_a_sleeper_is_woken_with_its_heap():
 def test_held_and_free_berths_are_told_apart():
     world = World()
     world.spawn([order("shelf1", "shelf", pose(0, 0, 1.0), fixed=True), order("can1", "can", pose(3, 0))])
-    held, free = (world._engine._berths[name] for name in ("shelf1", "can1"))
+    held, free = (world._engine._slots[name] for name in ("shelf1", "can1"))
     assert (held.static, free.static) == (True, False)
-    assert isinstance(held, Berth)
+    assert isinstance(held, BodySlot)
     world.step(0.5)
     world.move([hand("shelf1", pose(0, 2, 1.2))])
     world.spawn([order("cup1", "cup", pose(0, 2, 1.5))])
@@ -156,17 +156,17 @@ def test_whatever_comes_and_goes_everybody_has_one_berth_and_nobody_else_is_seen
             world.move([hand(str(rng.choice(names)), at)])
         world.step(0.02)
         bodies = {body.name: body for body in world.scene().bodies}
-        berths = world._engine._berths
-        assert berths.keys() == bodies.keys()
-        everyone = [berth.body for berth in (*berths.values(), *world._engine._vacant)]
+        slots = world._engine._slots
+        assert slots.keys() == bodies.keys()
+        everyone = [slot.body for slot in (*slots.values(), *world._engine._free_slots)]
         assert len(set(everyone)) == len(everyone)
         visible = world.model.geom_group != 3
         assert {name for name, seen in zip(world.body_names(), visible, strict=True) if seen and name} == set(
             bodies
         )
         for name, body in bodies.items():
-            assert berths[name].static == (body.fixed or body.ghost)
-            solid = world.model.body_contype[berths[name].body]
+            assert slots[name].static == (body.fixed or body.ghost)
+            solid = world.model.body_contype[slots[name].body]
             assert bool(solid) != body.ghost
     assert np.isfinite(world.data.qpos).all()
     world.delete(list(world.poses().names))

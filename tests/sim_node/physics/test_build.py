@@ -1,4 +1,4 @@
-"""Models become bodies of MuJoCo: where they are, what they weigh, what collides, and how they open."""
+"""Models become MuJoCo bodies: pose, mass, collision, and joints."""
 
 import math
 import threading
@@ -10,7 +10,7 @@ import pytest
 
 from semmap.nodes.sim_node.models.library import build as library_model
 from semmap.nodes.sim_node.models.parts import Role, Shape, ball, box, felt, mesh, pill, rod, seen
-from semmap.nodes.sim_node.orders import newcomers
+from semmap.nodes.sim_node.order_validation import validate_spawn
 from semmap.nodes.sim_node.physics import build
 from tests.sim_node.orders import order, pose
 
@@ -18,7 +18,7 @@ RED = (1.0, 0.0, 0.0)
 
 
 def compiled(*orders, degrees=True, **how):
-    made, failed = newcomers(orders, library_model, lambda name: False)
+    made, failed = validate_spawn(orders, library_model, lambda name: False)
     assert failed == {}
     spec = mujoco.MjSpec()
     spec.compiler.degree = degrees
@@ -147,14 +147,14 @@ def test_the_parts_of_a_door_are_where_the_model_has_them():
 
 def test_spares_are_static_or_free_with_as_many_parts_as_asked_for():
     spec = mujoco.MjSpec()
-    names = build.add_spares(spec, [(False, 2), (True, 3)])
+    names = build.add_spare_bodies(spec, [(False, 2), (True, 3)])
     model = spec.compile()
-    assert names == ["berth/0", "berth/1"]
+    assert names == ["slot/0", "slot/1"]
     bodies = [model.body(name).id for name in names]
     assert model.body_geomnum[bodies].tolist() == [2, 3]
     assert model.body_jntnum[bodies].tolist() == [1, 0]
-    assert model.body("berth/0").mass == 1.0
-    assert model.body("berth/0").inertia == pytest.approx([1.0] * 3)
+    assert model.body("slot/0").mass == 1.0
+    assert model.body("slot/0").inertia == pytest.approx([1.0] * 3)
     assert model.geom_size.max() == pytest.approx(0.001)
 
 
@@ -168,7 +168,9 @@ WORLD = """<mujoco><worldbody>
 @pytest.mark.parametrize("ghost", [False, True])
 @pytest.mark.parametrize("name", ["box", "shelf"])
 def test_a_body_of_the_world_is_held_or_set_free_solid_or_not_as_its_record_says(name, ghost):
-    made, _ = newcomers([order(name, "", pose(0.0, 0.0), size_m=(0.2, 0.2, 0.2))], library_model, lambda _: 0)
+    made, _ = validate_spawn(
+        [order(name, "", pose(0.0, 0.0), size_m=(0.2, 0.2, 0.2))], library_model, lambda _: 0
+    )
     record, _ = made[name]
     record.ghost = ghost
     record.masks = [(1, 1), (2, 0)][: 2 if name == "box" else 1]
@@ -189,7 +191,7 @@ def _geoms(model, body):
 
 @pytest.mark.parametrize("ghost", [False, True])
 def test_only_a_robot_that_can_move_may_sleep(ghost):
-    made, _ = newcomers(
+    made, _ = validate_spawn(
         [order("box", "", pose(0.0, 0.0), size_m=(0.2, 0.2, 0.2))], library_model, lambda _: 0
     )
     record, _ = made["box"]
@@ -203,7 +205,7 @@ def test_only_a_robot_that_can_move_may_sleep(ghost):
 def test_others_are_heard_while_something_is_made():
     go_on, heard = threading.Event(), []
 
-    def meanwhile():
+    def while_waiting():
         heard.append(threading.current_thread())
         if len(heard) == 3:
             go_on.set()
@@ -213,7 +215,7 @@ def test_others_are_heard_while_something_is_made():
         assert go_on.wait(60.0)
         return "made"
 
-    assert build.aside(make, meanwhile) == "made"
+    assert build.run_in_background(make, while_waiting) == "made"
     assert len(heard) >= 3
     assert set(heard) == {threading.current_thread()}
 
@@ -223,7 +225,7 @@ def test_what_fails_aside_fails_here():
         raise ValueError("it does not compile")
 
     with pytest.raises(ValueError, match="does not compile"):
-        build.aside(make, lambda: None)
+        build.run_in_background(make, lambda: None)
 
 
 def test_there_is_room_for_the_contacts_of_all_bodies():

@@ -1,4 +1,4 @@
-"""Joints on their way: at bounded speed and force, until they are there or stuck."""
+"""Moving joints: limited speed and force, until they arrive or are blocked."""
 
 import mujoco
 import numpy as np
@@ -39,7 +39,7 @@ def scene(wall="", mass=2.0, **how):
 
 
 def until_done(drives, model, data, index, most_s=10.0):
-    """Rows that arrived, the fastest speed (2,), and the time it took."""
+    """Return the rows that arrived, the maximum speed (2,), and the time."""
     arrived, fastest = [], np.zeros(2)
     while drives and data.time < most_s:
         mujoco.mj_forward(model, data)

@@ -1,4 +1,4 @@
-"""The engine: bodies find berths or are compiled, keep their state, are stepped, and rest."""
+"""The engine: bodies get slots or are compiled, keep their state, are stepped, and rest."""
 
 import threading
 
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from semmap.nodes.sim_node.models.library import build as library_model
-from semmap.nodes.sim_node.orders import newcomers
+from semmap.nodes.sim_node.order_validation import validate_spawn
 from semmap.nodes.sim_node.physics import base_scene
 from semmap.nodes.sim_node.physics.engine import Engine
 from semmap.nodes.sim_node.vision.view import look_at
@@ -33,7 +33,7 @@ def engine(*orders, mjcf=None):
 
 
 def add(engine, *orders, **records):
-    accepted, failed = newcomers(orders, library_model, engine.has)
+    accepted, failed = validate_spawn(orders, library_model, engine.has)
     assert failed == {}
     for name, changes in records.items():
         for key, value in changes.items():
@@ -53,7 +53,7 @@ def cans(count=3):
     return [order(f"can{i}", "can", pose(float(i), 0.0)) for i in range(count)]
 
 
-def test_a_small_newcomer_takes_a_berth_and_the_model_stays():
+def test_a_small_newcomer_takes_a_slot_and_the_model_stays():
     world = engine(*cans())
     model, revision = world.model, world.revision
     add(world, order("cup1", "cup", pose(0.0, 2.0)))
@@ -63,12 +63,12 @@ def test_a_small_newcomer_takes_a_berth_and_the_model_stays():
     assert not world.resting[world.index.row["cup1"]]
 
 
-def test_a_newcomer_takes_the_smallest_berth_that_will_do():
+def test_a_newcomer_takes_the_smallest_slot_that_will_do():
     world = engine()
-    before = sorted(berth.geoms for berth in world._vacant if not berth.static)
+    before = sorted(slot.geoms for slot in world._free_slots if not slot.static)
     add(world, order("can1", "can", pose(0.0, 0.0)))
-    assert world._berths["can1"].geoms == before[0]
-    assert sorted(berth.geoms for berth in world._vacant if not berth.static) == before[1:]
+    assert world._slots["can1"].geoms == before[0]
+    assert sorted(slot.geoms for slot in world._free_slots if not slot.static) == before[1:]
 
 
 def test_what_opens_is_compiled_and_others_keep_their_state():
@@ -84,13 +84,13 @@ def test_what_opens_is_compiled_and_others_keep_their_state():
     assert world.data.time == state[2]
 
 
-def test_what_leaves_gives_its_berth_back_and_the_rest_stays():
+def test_what_leaves_gives_its_slot_back_and_the_rest_stays():
     world = engine(*cans())
     world.step(2.0)
-    model, vacant = world.model, len(world._vacant)
+    model, vacant = world.model, len(world._free_slots)
     world.remove(["can1"])
     assert world.model is model
-    assert len(world._vacant) == vacant + 1
+    assert len(world._free_slots) == vacant + 1
     assert world.index.names == ("can0", "can2")
     assert world.resting.tolist() == [True, True]
     assert not world.has("can1")
@@ -184,7 +184,7 @@ def test_a_step_lets_just_its_time_pass():
 def test_one_that_is_woken_is_awake_and_the_others_sleep_on():
     world = engine(*cans())
     world.step(2.0)
-    world.wake(["can1", "nobody"])
+    world.wake(["can1", "missing"])
     assert not world.asleep
     world.step(0.002)
     assert [asleep(world, f"can{i}") for i in range(3)] == [True, False, True]
@@ -205,7 +205,7 @@ def test_what_is_taken_in_hand_does_not_rest_before_it_was_still():
 def test_newcomers_leave_those_who_rest_in_peace():
     world = engine(*cans())
     world.step(2.0)
-    add(world, order("fridge1", "fridge", pose(5.0, 5.0)))  # the model is compiled anew
+    add(world, order("fridge1", "fridge", pose(5.0, 5.0)))  # the model is recompiled
     assert world.resting.tolist() == [True, True, True, False]
     world.step(0.004)
     assert [asleep(world, f"can{i}") for i in range(3)] == [True] * 3
@@ -323,10 +323,10 @@ def test_a_camera_can_be_aimed():
     assert world.model.cam_fovy[0] == pytest.approx(np.degrees(1.0))
 
 
-def test_the_stage_has_bodies_where_they_are_now():
+def test_obstacles_have_the_current_poses_of_bodies():
     world = engine(*cans(1))
     world.put({"can0": pose(4.0, 0.0, 1.0)})
-    assert world.stage().body_low[0] == pytest.approx((4.0 - 0.033, -0.033, 1.0), abs=0.002)
+    assert world.obstacles().body_low[0] == pytest.approx((4.0 - 0.033, -0.033, 1.0), abs=0.002)
 
 
 def test_others_are_heard_while_it_compiles_and_then_it_does_not(monkeypatch):
@@ -342,14 +342,14 @@ def test_others_are_heard_while_it_compiles_and_then_it_does_not(monkeypatch):
         is_heard.set()
 
     world = engine()
-    monkeypatch.setattr(world, "_meanwhile", hear)
+    monkeypatch.setattr(world, "_while_waiting", hear)
     monkeypatch.setattr(Engine, "_compiled", compile_when_others_were_heard)
     add(world, order("fridge1", "fridge", pose(0.0, 0.0)))
     assert set(heard) == {True}
     assert world.compiling is False
 
 
-def test_many_at_once_need_more_berths_than_there_are():
+def test_many_at_once_need_more_slots_than_there_are():
     world = engine(*cans(60))
     assert len(world.index.names) == 60
     world.step(0.5)

@@ -1,10 +1,17 @@
-"""When a body or a joint counts as at rest: it has been still, long enough."""
+"""Rest detection of bodies and joints."""
 
 import numpy as np
 import pytest
 
 from semmap.nodes.sim_node.models.parts import about
-from semmap.nodes.sim_node.physics.rest import ASLEEP_S, STILL_M, STILL_RAD, STILL_S, JointWatch, RestWatch
+from semmap.nodes.sim_node.physics.rest import (
+    ASLEEP_S,
+    STILL_M,
+    STILL_RAD,
+    STILL_S,
+    JointRestDetector,
+    RestDetector,
+)
 
 
 def at(*places, turn_rad=0.0):
@@ -17,7 +24,7 @@ AWAKE, ASLEEP = np.array([False]), np.array([True])
 
 @pytest.mark.parametrize(("asleep", "after_s"), [(AWAKE, STILL_S), (ASLEEP, ASLEEP_S)])
 def test_a_body_that_stays_rests_after_a_while_and_sooner_if_it_sleeps(asleep, after_s):
-    watch = RestWatch(HERE, 10.0)
+    watch = RestDetector(HERE, 10.0)
     assert not watch.update(HERE, 10.0 + after_s - 0.01, asleep)[0]
     assert watch.update(HERE, 10.0 + after_s + 1e-9, asleep)[0]
 
@@ -35,12 +42,12 @@ def test_a_body_that_stays_rests_after_a_while_and_sooner_if_it_sleeps(asleep, a
     ids=["a hair", "a step", "down", "a hair's turn", "a turn", "the other quaternion of the same turn"],
 )
 def test_what_moves_or_turns_farther_than_the_tolerance_does_not_rest(now, rests):
-    watch = RestWatch(HERE, 0.0)
+    watch = RestDetector(HERE, 0.0)
     assert watch.update(now, 1.0, AWAKE).tolist() == [rests]
 
 
 def test_small_steps_add_up():
-    watch = RestWatch(HERE, 0.0)
+    watch = RestDetector(HERE, 0.0)
     now = HERE.copy()
     for step in range(1, 11):
         now[0, 0] += 0.6 * STILL_M
@@ -50,23 +57,23 @@ def test_small_steps_add_up():
 
 
 def test_what_is_taken_in_hand_has_to_be_still_once_more_and_only_that():
-    watch = RestWatch(at((0, 0, 0), (1, 0, 0)), 0.0)
+    watch = RestDetector(at((0, 0, 0), (1, 0, 0)), 0.0)
     watch.disturb([1], 5.0)
     both = np.array([False, False])
     assert watch.update(at((0, 0, 0), (1, 0, 0)), 5.1, both).tolist() == [True, False]
 
 
 def test_who_was_watched_before_stays_so_in_another_order_and_newcomers_begin():
-    watch = RestWatch(at((0, 0, 0), (1, 0, 0)), 0.0)
+    watch = RestDetector(at((0, 0, 0), (1, 0, 0)), 0.0)
     there = at((5, 0, 0), (1, 0, 0))
-    carried = watch.carried(there, 5.0, np.array([-1, 1]))
+    carried = watch.carried_over(there, 5.0, np.array([-1, 1]))
     assert carried.update(there, 5.1, np.array([False, False])).tolist() == [False, True]
-    moved = watch.carried(at((7, 0, 0)), 5.0, np.array([0]))  # it is compared with where it was
+    moved = watch.carried_over(at((7, 0, 0)), 5.0, np.array([0]))  # it is compared with where it was
     assert not moved.update(at((7, 0, 0)), 5.1, AWAKE)[0]
 
 
 def test_a_joint_rests_when_it_has_been_still():
-    joints = JointWatch(np.array([0.5, 1.0]), 0.0)
+    joints = JointRestDetector(np.array([0.5, 1.0]), 0.0)
     assert joints.update(np.array([0.5, 1.0]), ASLEEP_S - 0.01).tolist() == [False, False]
     now = np.array([0.5 + 0.9 * STILL_M, 1.0 - 1.1 * STILL_M])
     assert joints.update(now, ASLEEP_S + 0.01).tolist() == [True, False]
@@ -76,7 +83,7 @@ def test_a_joint_rests_when_it_has_been_still():
 
 
 def test_a_joint_that_has_arrived_rests_at_once_unless_it_moves_on():
-    joints = JointWatch(np.array([0.0, 0.0]), 0.0)
+    joints = JointRestDetector(np.array([0.0, 0.0]), 0.0)
     there = np.array([1.0, 1.0])
     joints.arrive([0, 1], there, 2.0)
     assert joints.update(np.array([1.0, 1.1]), 2.0 + 1e-9).tolist() == [True, False]

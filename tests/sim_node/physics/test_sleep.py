@@ -1,4 +1,4 @@
-"""Who sleeps, who is about to, and who is woken: two free boxes of MuJoCo, and a floor that never wakes."""
+"""Sleep of two free MuJoCo boxes and a floor that never wakes."""
 
 import mujoco
 import numpy as np
@@ -34,12 +34,12 @@ def test_bodies_that_have_stood_for_a_while_sleep_and_what_has_no_tree_always_do
     assert not sleep.all_asleep(data)
     assert sleep.awake(data) == 2
     assert sleep.sleeping(data, TREES).tolist() == [False, False, True]
-    assert sleep.drowsy(data, TREES).tolist() == [False, False, True]
+    assert sleep.asleep_or_ready(data, TREES).tolist() == [False, False, True]
     mujoco.mj_step(model, data, nstep=1000)
     assert sleep.all_asleep(data)
     assert sleep.awake(data) == 0
     assert sleep.sleeping(data, TREES).tolist() == [True, True, True]
-    assert sleep.drowsy(data, TREES).tolist() == [True, True, True]
+    assert sleep.asleep_or_ready(data, TREES).tolist() == [True, True, True]
 
 
 def test_one_that_is_woken_is_awake_with_the_next_step_and_the_other_sleeps_on(lulled):
@@ -47,7 +47,7 @@ def test_one_that_is_woken_is_awake_with_the_next_step_and_the_other_sleeps_on(l
     sleep.wake(data, 0)
     assert not sleep.all_asleep(data)
     assert sleep.awake(data) == 1
-    assert sleep.drowsy(data, TREES).tolist() == [False, True, True]
+    assert sleep.asleep_or_ready(data, TREES).tolist() == [False, True, True]
     mujoco.mj_step(model, data)
     assert sleep.sleeping(data, TREES).tolist() == [False, True, True]
 
@@ -57,9 +57,9 @@ def test_one_that_is_about_to_sleep_stays_awake_when_it_is_woken(lulled):
     for tree in (0, 1):
         sleep.wake(data, tree)
     mujoco.mj_step(model, data)
-    assert sleep.drowsy(data, TREES).tolist() == [False, False, True]
-    sleep.lull(data, TREES)
-    assert sleep.drowsy(data, TREES).tolist() == [True, True, True]
+    assert sleep.asleep_or_ready(data, TREES).tolist() == [False, False, True]
+    sleep.let_sleep(data, TREES)
+    assert sleep.asleep_or_ready(data, TREES).tolist() == [True, True, True]
     sleep.wake(data, 1)
     mujoco.mj_step(model, data)
     assert sleep.sleeping(data, TREES).tolist() == [True, False, True]

@@ -1,4 +1,4 @@
-"""The outlines of what stands in the way of who walks."""
+"""The outlines of static geometry."""
 
 import math
 

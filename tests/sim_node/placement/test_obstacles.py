@@ -1,10 +1,10 @@
-"""Who is in whose way, and what carries what: boxes of known sizes in a scene that stands still."""
+"""Overlap and support of boxes of known sizes in a static scene."""
 
 import numpy as np
 import pytest
 
 from semmap.nodes.sim_node.models.library import build
-from semmap.nodes.sim_node.orders import newcomers
+from semmap.nodes.sim_node.order_validation import validate_spawn
 from semmap.nodes.sim_node.placement.obstacles import GROUND
 from semmap.nodes.sim_node.world import World
 from tests.sim_node.orders import order, pose
@@ -12,23 +12,23 @@ from tests.sim_node.orders import order, pose
 BOX = (0.4, 0.4, 0.4)
 
 
-def stage(*orders, **records):
-    """A scene of boxes, by name: `(x, y, z)` and size; nothing of it has moved or made room."""
+def obstacles(*orders, **records):
+    """Return a scene of boxes, by name: `(x, y, z)` and size; nothing has moved."""
     engine = World()._engine
     made = [
         order(name, "", pose(*at), size_m=size_m, fixed=bool(fixed)) for name, (at, size_m, *fixed) in orders
     ]
-    accepted, failed = newcomers(made, build, lambda name: False)
+    accepted, failed = validate_spawn(made, build, lambda name: False)
     assert failed == {}
     for name, changes in records.items():
         for key, value in changes.items():
             setattr(accepted[name][0], key, value)
     engine.add(list(accepted.values()))
-    return engine.stage(), engine.index.row
+    return engine.obstacles(), engine.index.row
 
 
 def test_boxes_of_bodies_are_those_of_their_geometry():
-    here, row = stage(("a", ((1.0, 2.0, 0.5), (0.4, 0.6, 0.8))), ("b", ((5.0, 0.0, 0.0), BOX)))
+    here, row = obstacles(("a", ((1.0, 2.0, 0.5), (0.4, 0.6, 0.8))), ("b", ((5.0, 0.0, 0.0), BOX)))
     assert here.body_low[row["a"]] == pytest.approx((0.8, 1.7, 0.5))
     assert here.body_high[row["a"]] == pytest.approx((1.2, 2.3, 1.3))
     assert here.footprint[row["a"]] == pytest.approx((0.4, 0.6))
@@ -40,25 +40,25 @@ def test_boxes_of_bodies_are_those_of_their_geometry():
     ("x", "hits"), [(0.39, True), (0.398, False), (0.5, False), (-0.39, True), (-0.398, False)]
 )
 def test_bodies_hit_one_another_when_they_overlap_by_more_than_a_little(x, hits):
-    here, row = stage(("a", ((0.0, 0.0, 0.1), BOX)), ("b", ((x, 0.0, 0.1), BOX)))
+    here, row = obstacles(("a", ((0.0, 0.0, 0.1), BOX)), ("b", ((x, 0.0, 0.1), BOX)))
     assert here.hits(row["a"]) == ([row["b"]] if hits else [])
     assert here.hits(row["b"]) == ([row["a"]] if hits else [])
 
 
 def test_how_deep_they_may_overlap_can_be_asked_for():
-    here, row = stage(("a", ((0.0, 0.0, 0.1), BOX)), ("b", ((0.39, 0.0, 0.1), BOX)))
+    here, row = obstacles(("a", ((0.0, 0.0, 0.1), BOX)), ("b", ((0.39, 0.0, 0.1), BOX)))
     assert here.hits(row["a"], 0.02) == []
     assert here.hits(row["a"], 0.0005) == [row["b"]]
 
 
 @pytest.mark.parametrize(("z", "hits"), [(-0.1, True), (-0.003, False), (0.0, False)])
 def test_what_is_in_the_floor_hits_the_ground(z, hits):
-    here, row = stage(("a", ((0.0, 0.0, z), BOX)))
+    here, row = obstacles(("a", ((0.0, 0.0, z), BOX)))
     assert here.hits(row["a"]) == ([GROUND] if hits else [])
 
 
 def test_what_is_fixed_hits_neither_the_ground_nor_what_is_fixed():
-    here, row = stage(
+    here, row = obstacles(
         ("a", ((0.0, 0.0, -0.1), BOX, "fixed")),
         ("b", ((0.1, 0.0, 0.0), BOX, "fixed")),
         ("c", ((-0.1, 0.0, 0.0), BOX)),
@@ -69,7 +69,7 @@ def test_what_is_fixed_hits_neither_the_ground_nor_what_is_fixed():
 
 
 def test_ghosts_and_what_is_held_are_in_nobody_s_way():
-    here, row = stage(
+    here, row = obstacles(
         ("a", ((0.0, 0.0, 0.1), BOX)),
         ("b", ((0.1, 0.0, 0.1), BOX)),
         ("c", ((0.0, 0.1, 0.1), BOX)),
@@ -85,7 +85,7 @@ def test_ghosts_and_what_is_held_are_in_nobody_s_way():
     ("margin_m", "touched"), [(0.05, {"a"}), (0.15, {"a", "b"}), (0.35, {"a", "b", "c"})]
 )
 def test_bodies_within_a_margin_are_touched(margin_m, touched):
-    here, row = stage(
+    here, row = obstacles(
         ("a", ((0.0, 0.0, 0.0), BOX)),
         ("b", ((0.5, 0.0, 0.0), BOX)),
         ("c", ((0.0, 0.0, 0.7), BOX)),
@@ -95,7 +95,7 @@ def test_bodies_within_a_margin_are_touched(margin_m, touched):
 
 
 def test_a_body_that_is_raised_is_out_of_the_way():
-    here, row = stage(("a", ((0.0, 0.0, 0.0), BOX)), ("b", ((0.0, 0.0, 0.1), BOX)))
+    here, row = obstacles(("a", ((0.0, 0.0, 0.0), BOX)), ("b", ((0.0, 0.0, 0.1), BOX)))
     assert here.hits(row["b"]) == [row["a"]]
     here.raise_(row["b"], 0.31)
     assert here.body_low[row["b"], 2] == pytest.approx(0.41)
@@ -119,12 +119,14 @@ def test_a_body_that_is_raised_is_out_of_the_way():
     ],
 )
 def test_what_fits_and_is_small_or_squat_is_carried(size_m, carried):
-    here, row = stage(("a", ((0.0, 0.0, 0.0), BOX)), ("b", ((3.0, 0.0, 0.0), size_m)))
+    here, row = obstacles(("a", ((0.0, 0.0, 0.0), BOX)), ("b", ((3.0, 0.0, 0.0), size_m)))
     assert here.carries(row["a"], row["b"]) is carried
 
 
 def test_what_is_long_is_carried_by_what_is_long_the_other_way():
-    here, row = stage(("a", ((0.0, 0.0, 0.0), (0.4, 1.0, 0.4))), ("b", ((3.0, 0.0, 0.0), (0.9, 0.3, 0.1))))
+    here, row = obstacles(
+        ("a", ((0.0, 0.0, 0.0), (0.4, 1.0, 0.4))), ("b", ((3.0, 0.0, 0.0), (0.9, 0.3, 0.1)))
+    )
     assert here.carries(row["a"], row["b"])
     assert not here.carries(row["b"], row["a"])
 
@@ -135,7 +137,7 @@ def test_what_is_long_is_carried_by_what_is_long_the_other_way():
     ids=["the same", "nearly", "beside"],
 )
 def test_a_cup_at_the_very_spot_of_a_table_is_meant_to_be_on_it(at, shares):
-    here, row = stage(("table", ((0.0, 0.0, 0.0), (0.8, 0.8, 0.7))), ("cup", (at, (0.1, 0.1, 0.1))))
+    here, row = obstacles(("table", ((0.0, 0.0, 0.0), (0.8, 0.8, 0.7))), ("cup", (at, (0.1, 0.1, 0.1))))
     assert here.shared_spot(row["cup"]) == ([row["table"]] if shares else [])
     assert here.small_at_spot(row["table"]) == ([row["cup"]] if shares else [])
     assert here.shared_spot(row["table"]) == here.small_at_spot(row["cup"]) == []
@@ -152,12 +154,12 @@ def test_a_cup_at_the_very_spot_of_a_table_is_meant_to_be_on_it(at, shares):
     ids=["a low thing", "what is fixed", "what is not much smaller", "what is too wide"],
 )
 def test_this_does_not_belong_on_what_is_at_its_spot(table, cup):
-    here, row = stage(("table", table), ("cup", cup))
+    here, row = obstacles(("table", table), ("cup", cup))
     assert here.shared_spot(row["cup"]) == []
 
 
 def test_surfaces_under_the_middle_of_a_body_come_lowest_first():
-    here, row = stage(
+    here, row = obstacles(
         ("low", ((0.0, 0.0, 0.0), (1.0, 1.0, 0.3))),
         ("high", ((0.2, 0.0, 0.5), (1.0, 1.0, 0.4))),
         ("aside", ((2.0, 0.0, 0.0), (1.0, 1.0, 0.6))),
@@ -169,7 +171,7 @@ def test_surfaces_under_the_middle_of_a_body_come_lowest_first():
 
 
 def test_a_surface_lower_than_a_body_s_bottom_is_none_for_it_and_the_floor_is_one_for_what_is_below():
-    here, row = stage(
+    here, row = obstacles(
         ("low", ((0.0, 0.0, 0.0), (1.0, 1.0, 0.3))),
         ("above", ((0.0, 0.0, 0.5), (0.1, 0.1, 0.1))),
         ("below", ((3.0, 0.0, -0.5), (0.1, 0.1, 0.1))),
@@ -179,7 +181,7 @@ def test_a_surface_lower_than_a_body_s_bottom_is_none_for_it_and_the_floor_is_on
 
 
 def test_surfaces_of_what_does_not_stand_or_could_not_carry_it_do_not_count():
-    here, row = stage(
+    here, row = obstacles(
         ("ghost", ((0.0, 0.0, 0.0), (1.0, 1.0, 0.3))),
         ("small", ((0.0, 0.0, 0.5), (0.05, 0.05, 0.4))),
         ("thing", ((0.0, 0.0, 0.0), (0.1, 0.1, 0.1))),
@@ -189,5 +191,5 @@ def test_surfaces_of_what_does_not_stand_or_could_not_carry_it_do_not_count():
 
 
 def test_rows_are_those_of_the_index_whatever_the_order_of_geometry():
-    here, row = stage(*((f"b{i}", ((float(i), 0.0, 0.0), BOX)) for i in range(6)))
+    here, row = obstacles(*((f"b{i}", ((float(i), 0.0, 0.0), BOX)) for i in range(6)))
     assert [here.body_low[row[f"b{i}"], 0] for i in range(6)] == pytest.approx(np.arange(6) - 0.2)

@@ -1,4 +1,4 @@
-"""A robot in a whole system: it becomes an entity, is tracked, drives, and is committed where it stops."""
+"""A robot in a complete system: it becomes an entity, is tracked, drives, and is committed where it stops."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A robot is where it last stood when the simulator comes back, or the whole system does."""
+"""A robot is at its last pose after a restart of the simulator, or of the whole system."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ WORDS = (
 
 
 def where(client) -> tuple[float, float] | None:
-    """Where its body is just now."""
+    """Return the current pose of its body."""
     live = client.get("robot1").live
     return None if live is None or live.stale else live.pose.position_m[:2]
 
 
 def run_of(client) -> str:
-    """The run of the simulator; "" while there is none."""
+    """Return the run of the simulator; "" while there is none."""
     try:
         return bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene).run
     except errors.NoAnswer:
@@ -44,12 +44,12 @@ def run_of(client) -> str:
 
 
 def agree(client) -> None:
-    """Wait until the robot and its gripper rest where the map has them."""
+    """Wait until robot and gripper rest at their poses in the map."""
     until(lambda: client.status(names=ROBOT).in_agreement, "map and scene agree on the robot")
 
 
 def commits(client) -> list[tuple[int, str]]:
-    """What was committed of the robot and its gripper, in order."""
+    """Return the commits on the robot and its gripper, in order."""
     found = {commit.seq: commit.reason for name in ROBOT for commit in client.history(name)}
     return sorted(found.items())
 

@@ -1,4 +1,4 @@
-"""The robot that comes with semmap stands, drives, is stopped by walls, and is said to have fallen."""
+"""The robot that ships with semmap stands, drives, is stopped by walls, and can fall over."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_it_stands_where_it_is_put_and_sleeps(world):
 
 
 def test_what_is_part_of_it_does_not_rest_either_once_it_is_put_elsewhere(world):
-    """Who looks at once must look again: else the gripper would stay where it was, to the map."""
+    """Otherwise a client would store the old pose of the gripper."""
     world.step(3.0)
     x, y, z = AT
     world.move([Placement(name="robot1", pose=Pose(position_m=(x + 0.5, y, z)), commit=3)])
@@ -120,7 +120,7 @@ def test_who_is_knocked_over_on_its_way_is_said_to_have_fallen(world):
 
 
 def test_it_stays_where_it_is_while_others_come(world):
-    """A compilation keeps its joints, its actuators and its course."""
+    """Compilation keeps its joints, its actuators and its drive command."""
     world.drive(DriveBase(name="robot1", to=((8.5, 2.0),)))
     world.step(1.0)
     places = [Pose(position_m=(20.0 + 2.0 * i, 0.0, 0.0)) for i in range(20)]
@@ -195,10 +195,10 @@ def test_its_arm_moves_and_it_does_not_tip_over(world):
         ("<mujoco><worldbody/></mujoco>", "it has none"),
         (
             "<mujoco><worldbody><body name='a'/><body name='b'/></worldbody></mujoco>",
-            "one body on the top level; it has a, b",
+            "one top-level body; it has a, b",
         ),
-        ("<mujoco><worldbody><body><geom size='-1'/></body></worldbody></mujoco>", "compiles"),
-        ("not xml", "compiles"),
+        ("<mujoco><worldbody><body><geom size='-1'/></body></worldbody></mujoco>", "cannot compile"),
+        ("not xml", "cannot compile"),
     ],
 )
 def test_what_is_no_robot_is_refused(tmp_path, mjcf, said):

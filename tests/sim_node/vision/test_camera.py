@@ -26,7 +26,7 @@ def world():
 
 
 def above(width=80, height=60):
-    """A camera 3 m above the middle of the box, looking down with the map's y up in the picture."""
+    """Return a camera 3 m above the box's centre, looking down with the map's y up in the image."""
     return look_at(np.array([0.0, -1e-6, 3.0]), np.zeros(3), width, height, np.radians(60))
 
 
@@ -39,7 +39,7 @@ def eye(request):
 
 
 def test_depth_is_metres_along_the_optical_axis(world, eye):
-    rgb, depth = eye.see(world.model, world.data, above())
+    rgb, depth = eye.render(world.model, world.data, above())
     assert rgb.shape == (60, 80, 3)
     assert rgb.dtype == np.uint8
     assert depth.dtype == np.float32
@@ -49,7 +49,7 @@ def test_depth_is_metres_along_the_optical_axis(world, eye):
 
 def test_points_land_in_the_map_frame(world, eye):
     view = camera_view(world.model, world.data, "overview", 160, 120)
-    _, depth = eye.see(world.model, world.data, view)
+    _, depth = eye.render(world.model, world.data, view)
     v, u = np.nonzero(depth)
     rays = np.linalg.inv(view.intrinsics) @ np.stack([u + 0.5, v + 0.5, np.ones_like(u)])
     camera = np.concatenate([rays * depth[v, u], np.ones((1, len(u)))])
@@ -75,7 +75,7 @@ def test_an_eye_that_is_gone_leaves_the_others_their_sight(world):
     tableware.spawn([order("bowl1", "bowl", pose(0, 0)), order("vase1", "vase", pose(0.5, 0))])
 
     def seen(eye):
-        return [eye.see(w.model, w.data, above())[1].sum() for w in (world, tableware, world)]
+        return [eye.render(w.model, w.data, above())[1].sum() for w in (world, tableware, world)]
 
     first, second = Eye(), Eye()
     before = seen(first)
@@ -90,8 +90,8 @@ def test_both_ways_of_seeing_agree(world):
     if open_gl() is None:
         pytest.skip("no OpenGL is to be had here")
     view = above(160, 120)
-    _, with_gl = Eye().see(world.model, world.data, view)
-    _, with_rays = Eye(graphics=False).see(world.model, world.data, view)
+    _, with_gl = Eye().render(world.model, world.data, view)
+    _, with_rays = Eye(graphics=False).render(world.model, world.data, view)
     apart = np.abs(with_gl - with_rays)
     assert np.median(apart) < 0.0005
     assert np.mean(apart > 0.01) < 0.02  # silhouettes

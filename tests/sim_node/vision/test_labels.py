@@ -4,14 +4,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from semmap.nodes.sim_node.vision.labels import free_place, projected, written
+from semmap.nodes.sim_node.vision.labels import draw_labels, free_place, project_points
 from semmap.nodes.sim_node.vision.view import look_at
 
 
 def test_a_point_is_where_the_camera_sees_it():
     view = look_at(np.array([0.0, 0.0, 5.0]), np.zeros(3), 200, 100, 1.0)
     points = {"middle": np.zeros(3), "right": np.array([1.0, 0.0, 0.0]), "behind": np.array([0.0, 0.0, 9.0])}
-    found = projected(view, {**points, "outside": np.array([50.0, 0.0, 0.0])})
+    found = project_points(view, {**points, "outside": np.array([50.0, 0.0, 0.0])})
     assert set(found) == {"middle", "right"}
     assert found["middle"] == pytest.approx((100.0, 50.0))
     assert found["right"][0] > 100.0
@@ -37,8 +37,8 @@ def test_labels_lie_in_the_picture_and_over_none_of_the_others(points, size):
 
 def test_a_label_changes_the_picture_beside_its_point_only():
     plain = Image.new("RGB", (400, 300), (90, 90, 90))
-    shown = np.asarray(written(plain, {"cup1": (100.0, 100.0)}))
+    shown = np.asarray(draw_labels(plain, {"cup1": (100.0, 100.0)}))
     changed = np.argwhere((shown != 90).any(axis=2))
     assert len(changed)
     assert (np.abs(changed - [100, 100]) < [40, 60]).all()
-    assert (np.asarray(written(plain, {})) == 90).all()
+    assert (np.asarray(draw_labels(plain, {})) == 90).all()

@@ -1,4 +1,4 @@
-"""Pictures without OpenGL."""
+"""Images without OpenGL."""
 
 import mujoco
 import numpy as np
@@ -32,7 +32,7 @@ def seen(view=VIEW, more="", **how):
 
 
 def at(x, y):
-    """Row and column that see a point of the floor."""
+    """Return row and column of a point of the floor."""
     focal = VIEW.intrinsics[0, 0]
     return int(30 - focal * y / 3.0), int(40 + focal * x / 3.0)
 

@@ -1,4 +1,4 @@
-"""Cameras: where they are, what they see, and where a point is in their pictures."""
+"""Cameras: pose, view, and projection of points."""
 
 import math
 
@@ -39,7 +39,7 @@ def scene():
 
 
 def seen_at(view: View, point):
-    """Pixel (2,) and depth of a point of the map frame."""
+    """Return pixel (2,) and depth of a point of the map frame."""
     rotation, eye = view.map_from_camera[:3, :3], view.map_from_camera[:3, 3]
     x, y, z = rotation.T @ (np.asarray(point) - eye)
     u, v, w = view.intrinsics @ (x, y, z)
@@ -72,10 +72,10 @@ def test_the_frame_of_a_camera_is_the_optical_one(scene):
 def test_cameras_are_named_and_an_unknown_one_is_told_with_them(scene):
     model, data = scene
     assert camera_names(model) == ("down", "along")
-    with pytest.raises(BadRequest, match="no camera 'up'; there are: down, along"):
+    with pytest.raises(BadRequest, match="unknown camera 'up'; the world has: down, along"):
         camera_view(model, data, "up", 80, 60)
     bare = mujoco.MjModel.from_xml_string("<mujoco/>")
-    with pytest.raises(BadRequest, match="there are: none"):
+    with pytest.raises(BadRequest, match="the world has: none"):
         camera_view(bare, mujoco.MjData(bare), "up", 80, 60)
 
 

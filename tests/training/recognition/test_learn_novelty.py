@@ -1,8 +1,8 @@
 import numpy as np
 
 from semmap.nodes.perception_node.recognition.features import SORTS
-from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, VOTERS
-from semmap.nodes.perception_node.recognition.vote import ballots, pool, shown_to_voters
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, VOTERS
+from semmap.nodes.perception_node.recognition.vote import log_votes, pool_votes, voter_inputs
 from semmap.nodes.training.recognition.fitting import classifier
 from semmap.nodes.training.recognition.gradient_descent import Recipe
 from semmap.nodes.training.recognition.learn_novelty import Told, learn_novelty
@@ -36,15 +36,15 @@ def test_what_is_unlike_all_that_was_learnt_is_doubted():
     told = Told(features, target, stranger, held, CLASSES, {})
     weights = np.full(len(VOTERS), 1.0 / len(VOTERS))  # as calibration has it, nearly
     novelty = learn_novelty(told, RECIPES, weights)
-    shown = shown_to_voters(told.of(~held & (stranger < 0)))
+    shown = voter_inputs(told.of(~held & (stranger < 0)))
     voters = [
         classifier(seen, target[~held & (stranger < 0)], len(CLASSES), recipe)
         for seen, recipe in zip(shown, RECIPES, strict=True)
     ]
 
     def doubt(things):
-        votes = ballots(voters, sorts(things))
-        return novelty(sorts(things), votes, pool(votes, weights))
+        votes = log_votes(voters, sorts(things))
+        return novelty(sorts(things), votes, pool_votes(votes, weights))
 
     known = CENTRES[2:] + rng.normal(0.0, 0.5, (len(CLASSES) - 2, WIDTH))
     odder = doubt(between(100)[0])[:, None] > doubt(known)

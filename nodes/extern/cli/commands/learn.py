@@ -29,8 +29,8 @@ from semmap.schemas.wording import counted
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
-    from semmap.nodes.perception_node.lesson_book import LessonBook
-    from semmap.nodes.perception_node.showing import View
+    from semmap.nodes.perception_node.exemplar_store import ExemplarStore
+    from semmap.nodes.perception_node.exemplar_views import ExemplarView
 
 _path = click.Path(path_type=Path)
 
@@ -91,7 +91,7 @@ def learn(
         raise errors.BadRequest("--box requires --frames")
     if data is not None and frames is None:
         raise errors.BadRequest("--entity requires a running system; with --data, use --frames DIR")
-    views: list[View] = []
+    views: list[ExemplarView] = []
     notes: tuple[str, ...] = ()
     shown = ""
     if data is not None:
@@ -100,7 +100,7 @@ def learn(
         views, notes = _read_views(frames, box)
         shown = f"{counted(len(views), 'frame')} in {frames}"
     if data is not None:
-        from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+        from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
         lesson = book.add(class_, shipped().ancestors[class_], views, shown)
     else:
@@ -122,7 +122,7 @@ def learn(
 def learned(data: Path | None, format: str, **system: Any) -> None:
     """List the exemplars of perception."""
     if data is not None:
-        lessons = _book(data).lessons
+        lessons = _book(data).exemplars
     else:
         with _client(**system) as client:
             lessons = client.learned()
@@ -163,36 +163,40 @@ def _client(where: str | None, identity: str | None, namespace: str | None) -> I
         yield client
 
 
-def _learn(client: Client, class_: str, entity: str | None, views: list[View], shown: str) -> LessonTold:
+def _learn(
+    client: Client, class_: str, entity: str | None, views: list[ExemplarView], shown: str
+) -> LessonTold:
     if entity is not None:
         return client.learn(class_, entity=entity)
-    from semmap.nodes.perception_node.teaching import view_told
+    from semmap.nodes.perception_node.exemplar_commands import view_message
 
-    return client.learn(class_, views=tuple(map(view_told, views)), shown=shown[:1000])
+    return client.learn(class_, views=tuple(map(view_message, views)), shown=shown[:1000])
 
 
-def _book(data: Path) -> LessonBook:
+def _book(data: Path) -> ExemplarStore:
     """Return the exemplars of a data folder. Raises Refused if its system is running."""
     extras.require("semmap learn --data", "perception")
-    from semmap.nodes.perception_node.lesson_book import FILENAME, LessonBook
-    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+    from semmap.nodes.perception_node.exemplar_store import FILENAME, ExemplarStore
+    from semmap.nodes.perception_node.recognition.recognition_model import shipped
     from semmap.nodes.supervisor import registry
 
     if any(Path(system.data) == data.resolve() for system in registry.systems()):
         raise errors.Refused(f"a system is running on {data}; remove --data to use it")
-    return LessonBook(data / FILENAME, shipped())
+    return ExemplarStore(data / FILENAME, shipped())
 
 
 def _known(class_: str) -> str:
-    from semmap.nodes.perception_node.lesson_book import known_class
-    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+    from semmap.nodes.perception_node.exemplar_store import known_class
+    from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
     return known_class(class_, shipped().ancestors)
 
 
-def _read_views(frames: Path, box: tuple[int, int, int, int] | None) -> tuple[list[View], tuple[str, ...]]:
+def _read_views(
+    frames: Path, box: tuple[int, int, int, int] | None
+) -> tuple[list[ExemplarView], tuple[str, ...]]:
     extras.require("semmap learn --frames", "perception")
-    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
-    from semmap.nodes.perception_node.showing import shown_in_frames
+    from semmap.nodes.perception_node.exemplar_views import views_in_frames
+    from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
-    return shown_in_frames(frames, shipped(), box)
+    return views_in_frames(frames, shipped(), box)

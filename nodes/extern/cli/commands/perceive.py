@@ -23,7 +23,7 @@ from semmap.schemas.perception import FrameRow
 
 if TYPE_CHECKING:
     from semmap.nodes.perception_node.detector import Detector
-    from semmap.nodes.perception_node.recognition.shipped_votes import Learnt
+    from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel
 
 _PROGRESS_S = 5.0
 """Period of progress messages [s]."""
@@ -111,12 +111,12 @@ def perceive(
         )
     import numpy as np  # importing it takes half of the start of the command line
 
+    from semmap.nodes.perception_node.fitting.fit_observations import fit_view
     from semmap.nodes.perception_node.fitting.model_surfaces import shipped as surfaces
-    from semmap.nodes.perception_node.fitting.things import fitted_in_sight
     from semmap.nodes.perception_node.input.files.cloud_files import read_frames
-    from semmap.nodes.perception_node.pipeline import one_by_one
+    from semmap.nodes.perception_node.pipeline import recognise_segments
     from semmap.nodes.perception_node.views.masked import with_masks
-    from semmap.nodes.perception_node.views.segmented_view import see
+    from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 
     learnt = _learnt(data)
     clouds = list(read_frames(files, intrinsics))
@@ -125,15 +125,15 @@ def perceive(
             raise errors.BadRequest(f"{option} requires a single frame, not {len(clouds)}")
     records = []
     for file, cloud in clouds:
-        sight = see(cloud)
+        sight = segment_cloud(cloud)
         if detector is not None:
             masks_found = detector.masks_of(detector.file, sight.labels.shape)
             if unknown_here := detector.labels.unknown([masks_found]):
                 print_error(wording.unknown_labels(unknown_here))
             sight = with_masks(sight, masks_found)
-        told = one_by_one(sight, learnt, None if detector is None else detector.labels)
+        told = recognise_segments(sight, learnt, None if detector is None else detector.labels)
         if fit:
-            told = fitted_in_sight(sight, told, surfaces())
+            told = fit_view(sight, told, surfaces())
         frame = "plane" if cloud.map_from_camera is None else "map"
         if format == "json":
             records.append({"file": str(file), "frame": frame, "objects": as_records(sight, told)})
@@ -163,10 +163,10 @@ def _require_open3d() -> None:
         )
 
 
-def _learnt(data: Path | None) -> Learnt:
+def _learnt(data: Path | None) -> RecognitionModel:
     """Return the trained classifiers, with the exemplars of a data folder."""
-    from semmap.nodes.perception_node.lesson_book import FILENAME, LessonBook
-    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
+    from semmap.nodes.perception_node.exemplar_store import FILENAME, ExemplarStore
+    from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
     if data is None:
         return shipped()
@@ -174,7 +174,7 @@ def _learnt(data: Path | None) -> Learnt:
         raise errors.BadFile(
             f"no exemplars in {data}; to add one: semmap learn CLASS --frames DIR --data {data}"
         )
-    return LessonBook(data / FILENAME, shipped()).learnt
+    return ExemplarStore(data / FILENAME, shipped()).learnt
 
 
 def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -> Detector | None:
@@ -184,11 +184,11 @@ def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -
             raise errors.BadRequest("--label-map and --masks-only require --masks")
         return None
     from semmap.nodes.perception_node.detector import Detector
-    from semmap.nodes.perception_node.recognition.shipped_votes import shipped
-    from semmap.nodes.perception_node.recognition.told_names import Labels
+    from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
+    from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
     classes = read_label_map(label_map) if label_map is not None else {}
-    labels = Labels(shipped(), classes)
+    labels = LabelMap(shipped(), classes)
     if untrained := sorted({name for name in classes.values() if not labels.is_learnt(name)}):
         hint = errors.did_you_mean(untrained[0], shipped().ancestors)
         print_error(f"note: classes of the label map without training data: {wording.few(untrained)}{hint}")
@@ -200,7 +200,7 @@ def _dataset(
     labels: Path | None,
     out: Path | None,
     detector: Detector | None,
-    learnt: Learnt,
+    learnt: RecognitionModel,
     format: str,
     *,
     fit: bool,
@@ -209,7 +209,7 @@ def _dataset(
     import msgspec
     import numpy as np
 
-    from semmap.nodes.perception_node.datasets import perceived
+    from semmap.nodes.perception_node.datasets import perceive_folders
     from semmap.nodes.perception_node.fitting.model_surfaces import shipped as surfaces
     from semmap.nodes.perception_node.input.files.frame_folders import frames_in
 
@@ -222,7 +222,7 @@ def _dataset(
         except OSError as error:
             raise errors.BadFile(f"{labels} cannot be created: {error.strerror}") from None
     rows, unknown, printed_s, began_s = [], set[str](), 0.0, time.monotonic()
-    for told in perceived(folders, learnt, detector, surfaces() if fit else None):
+    for told in perceive_folders(folders, learnt, detector, surfaces() if fit else None):
         rows.append(told.row)
         unknown.update(told.unknown_labels)
         if labels is not None and told.labels is not None:

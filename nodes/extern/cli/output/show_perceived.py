@@ -14,19 +14,19 @@ from semmap.schemas import wording
 from semmap.schemas.perception import FrameRow, Observation, SeenInFrame
 
 if TYPE_CHECKING:
-    from semmap.nodes.perception_node.views.segmented_view import Sight
+    from semmap.nodes.perception_node.views.segmented_view import SegmentedView
 
 _COLUMNS = ("object", "class", "probability", "points", "x", "y", "z", "yaw", "size [m]")
 
 _UPRIGHT = 0.7
 
 
-def counts(sight: Sight) -> dict[int, int]:
+def counts(sight: SegmentedView) -> dict[int, int]:
     """Return the number of points of each label."""
     return {segment.label: segment.count for segment in sight.segments}
 
 
-def as_records(sight: Sight, told: Mapping[int, Observation | None]) -> list[dict[str, Any]]:
+def as_records(sight: SegmentedView, told: Mapping[int, Observation | None]) -> list[dict[str, Any]]:
     """Return the objects with label, number of points, and observation (None for clutter)."""
     of = counts(sight)
     return [
@@ -34,7 +34,7 @@ def as_records(sight: Sight, told: Mapping[int, Observation | None]) -> list[dic
     ]
 
 
-def as_table(sight: Sight, told: Mapping[int, Observation | None]) -> Table:
+def as_table(sight: SegmentedView, told: Mapping[int, Observation | None]) -> Table:
     """Return a table with one row per object: its class, pose and size."""
     rows = table(*_COLUMNS, fold=("class", "size [m]"))
     of = counts(sight)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from semmap.nodes.drawing.bending import Bends, bent
+from semmap.nodes.drawing.articulation import JointPositions, articulated
 from semmap.nodes.drawing.surfaces import Kind, SurfaceCache
 from semmap.nodes.extern.web.live import Live
 from semmap.nodes.extern.web.scene.drawables import BOX, Key
@@ -29,10 +29,10 @@ class Assets:
         self._fetched: Scene | None = None
         self.walls: Surface | None = None
 
-    def surface_of(self, model: str, size_m: Size, joint_positions: Bends = ()) -> Surface | None:
+    def surface_of(self, model: str, size_m: Size, joint_positions: JointPositions = ()) -> Surface | None:
         """Return the surface of a model at a size and with its joints moved; None if it is not known."""
         surface = None if model == BOX else self._surfaces.of_kind(model, size_m)
-        return surface if surface is None else bent(surface, joint_positions)
+        return surface if surface is None else articulated(surface, joint_positions)
 
     def glb(self, key: Key) -> bytes:
         """Return the glTF file of a model, whose surface must be known, at a size and with an appearance."""
@@ -73,7 +73,7 @@ class Assets:
         try:
             reply = await self._live.query(keys.SIM, SurfaceQuery(names=tuple(kinds)))
         except errors.SemmapError:
-            self._surfaces.give_up(kinds.values())
+            self._surfaces.reset_requests(kinds.values())
             return
         for name, surface in reply.surfaces.items():
             self._surfaces.take(kinds[name], surface)

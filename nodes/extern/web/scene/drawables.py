@@ -9,10 +9,10 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from semmap.nodes.drawing.bending import Bends
+from semmap.nodes.drawing.articulation import JointPositions
 from semmap.nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose_of
 from semmap.nodes.drawing.palette import GREY, colour_of
-from semmap.nodes.drawing.surfaces import look_of
+from semmap.nodes.drawing.surfaces import appearance_of
 from semmap.nodes.extern.web.scene.meshes import Appearance, linear, srgb, tinted
 from semmap.schemas.entities import Entity, Pose, Size
 from semmap.schemas.joints import JOINT_POSITIONS, positions_of
@@ -35,7 +35,7 @@ class Drawable(Struct, frozen=True, gc=False):
     size_m: Size
     rgb: tuple[int, int, int]
     pose: Pose
-    joint_positions: Bends = ()
+    joint_positions: JointPositions = ()
 
     @property
     def key(self) -> Key:
@@ -48,7 +48,7 @@ class Drawable(Struct, frozen=True, gc=False):
         )
 
 
-Key = tuple[Appearance, str, Size, Bends]
+Key = tuple[Appearance, str, Size, JointPositions]
 
 
 class Batch(Struct, frozen=True):
@@ -69,7 +69,7 @@ def drawable_of(
     *,
     simulated: bool,
     past: bool = False,
-    joint_positions: Bends | None = None,
+    joint_positions: JointPositions | None = None,
 ) -> Drawable | None:
     """Return how an entity, a body, or both together are drawn; None for places and without a pose.
 
@@ -78,14 +78,14 @@ def drawable_of(
     """
     figure = figure_of(entity, body, simulated=simulated and not past)
     pose = pose or pose_of(entity, body)
-    if figure is None or pose is None or figure.look == "place":
+    if figure is None or pose is None or figure.appearance == "place":
         return None
-    model = look_of(body) if body is not None else _model_of(entity)
+    model = appearance_of(body) if body is not None else _model_of(entity)
     size_m = figure.size_m
     if not model or surface_of(model, size_m) is None:
         model = BOX
     appearance: Appearance = "past" if past else _appearance_of(figure)
-    rgb = GREY if figure.look == "furniture" else colour_of(figure.class_)
+    rgb = GREY if figure.appearance == "furniture" else colour_of(figure.class_)
     if model == BOX:
         joint_positions = ()
     elif joint_positions is None:
@@ -93,7 +93,7 @@ def drawable_of(
     return Drawable(appearance, model, size_m, rgb, pose, joint_positions)
 
 
-def _asserted_joint_positions(entity: Entity | None) -> Bends:
+def _asserted_joint_positions(entity: Entity | None) -> JointPositions:
     """Return the joint positions in the map."""
     text = None if entity is None else entity.properties.get(JOINT_POSITIONS)
     if not isinstance(text, str):
@@ -102,7 +102,7 @@ def _asserted_joint_positions(entity: Entity | None) -> Bends:
 
 
 def _appearance_of(figure: Figure) -> Appearance:
-    match figure.look:
+    match figure.appearance:
         case "ghost":
             return "ghost"
         case "believed":

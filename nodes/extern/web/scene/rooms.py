@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from viser import BatchedGlbHandle, MeshHandle, SceneApi
 
 from semmap.nodes.drawing.palette import colour_of
-from semmap.nodes.drawing.sheets import triangles_of
+from semmap.nodes.drawing.triangulation import triangles_of
 from semmap.nodes.extern.web.scene.annotations import LabelText
 from semmap.nodes.extern.web.scene.meshes import cube, glb, linear, srgb
 from semmap.schemas import errors

@@ -10,7 +10,7 @@ from typing import Any, Final, Literal
 from msgspec import structs
 from viser import ClientHandle
 
-from semmap.nodes.drawing.figures import still
+from semmap.nodes.drawing.figures import is_still
 from semmap.nodes.extern.web.differences import Mark
 from semmap.nodes.extern.web.page import Page, Place
 from semmap.nodes.extern.web.scene.annotations import (
@@ -526,7 +526,7 @@ class TabScene:
         before = self.page.state.poses.get(name, thing.pose)
         body = self._bodies_by_name().get(name)
         was_ghost = body is not None and body.ghost
-        if still(before, pose):  # a click on the arrows
+        if is_still(before, pose):  # a click on the arrows
             self.cancel_interaction()
             return
         target = place_on_support(pose, thing.size_m, self._solids(without=name))

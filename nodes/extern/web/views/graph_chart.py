@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any, Final, get_args
 
-from semmap.nodes.drawing.neighbourhood import Kind, Knot, Neighbourhood
+from semmap.nodes.drawing.neighbourhood import GraphNode, Kind, Neighbourhood
 from semmap.nodes.drawing.palette import GREY, colour_of
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Entity
@@ -89,7 +89,7 @@ def chart_options(
     }
 
 
-def _node(knot: Knot, at: tuple[float, float], is_selected: bool) -> dict[str, Any]:
+def _node(knot: GraphNode, at: tuple[float, float], is_selected: bool) -> dict[str, Any]:
     red, green, blue = colour_of(knot.class_) if knot.class_ else GREY
     label = knot.label if len(knot.label) <= _LONGEST else f"{knot.label[: _LONGEST - 1]}…"
     border = {"borderColor": "#2f81f7", "borderWidth": 3} if is_selected else {}

@@ -1,1 +1,1 @@
-"""Frames in files: PCD, PLY, and pictures of colour and depth."""
+"""Frames in files: PCD, PLY, and images of colour and depth."""

@@ -1,4 +1,4 @@
-"""Frames from files, whatever their format."""
+"""Reads frames from files of any supported format."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _PICTURES = (".png", ".tif", ".tiff")
 
 
 def read_frames(files: Sequence[Path], camera: Path | None = None) -> Iterator[tuple[Path, Cloud]]:
-    """Each frame in the order of the files, with the file that gave its points.
+    """Yield each frame in the order of the files, with the file of its points.
 
-    A depth picture takes the colour picture that stands before or after it; both need `camera`, a JSON
-    file of its intrinsics. Raises BadFile and BadRequest.
+    A depth image is combined with the colour image before or after it; both need `camera`, a JSON file of
+    intrinsics. Raises BadFile and BadRequest.
     """
-    waiting: Path | None = None  # a picture whose partner has not come
+    waiting: Path | None = None  # an image without its partner
     for path in files:
         if path.suffix.lower() not in _PICTURES:
             yield path, read_cloud(path)
@@ -35,13 +35,13 @@ def read_frames(files: Sequence[Path], camera: Path | None = None) -> Iterator[t
 
 
 def read_cloud(path: Path) -> Cloud:
-    """The cloud in a file; what is neither PCD nor PLY as we know it is read by Open3D. Raises BadFile."""
+    """Return the cloud in a file. Other variants of PCD and PLY are read by Open3D. Raises BadFile."""
     suffix = path.suffix.lower()
     if suffix not in (*_DECODERS, *open3d_clouds.SUFFIXES):
         if path.is_dir():
-            raise BadFile(f"{path} is a folder; a dataset takes --frames: semmap perceive --frames {path}")
+            raise BadFile(f"{path} is a folder; for a dataset use: semmap perceive --frames {path}")
         supported = ", ".join((*_DECODERS, *open3d_clouds.SUFFIXES))
-        raise BadFile(f"{path} is not a supported cloud; supported are {supported} and images as .png")
+        raise BadFile(f"{path} is not a supported cloud; supported are {supported} and .png images")
     try:
         cloud = _decoded(path, suffix)
     except OSError as error:
@@ -61,7 +61,7 @@ def _decoded(path: Path, suffix: str) -> Cloud:
 
 
 def checked(cloud: Cloud, path: Path) -> Cloud:
-    """The cloud itself. Raises BadFile for one in which nothing could be found."""
+    """Return the cloud. Raises BadFile if it has too few points."""
     if cloud.points_camera.size == 0:
         raise BadFile(f"{path} contains no points")
     if cloud.measured < FEWEST_POINTS:
@@ -73,7 +73,7 @@ def checked(cloud: Cloud, path: Path) -> Cloud:
 
 
 def _frame(files: Sequence[Path], camera_file: Path | None) -> tuple[Path, Cloud]:
-    """The frame of one depth picture and at most one of colour."""
+    """Return the frame of one depth image and at most one colour image."""
     if camera_file is None:
         raise BadRequest(f"{files[0]} is an image; add the camera's intrinsics with --intrinsics FILE.json")
     of = camera_file
@@ -83,9 +83,9 @@ def _frame(files: Sequence[Path], camera_file: Path | None) -> tuple[Path, Cloud
         for of in files:
             depths.append(image_files.is_depth(of))
         if sum(depths) != 1:
-            said = "both are" if all(depths) else "none is" if len(files) > 1 else "it is not"
+            count = "both are" if all(depths) else "none is" if len(files) > 1 else "it is not"
             raise BadFile(
-                f"{' and '.join(map(str, files))}: {said} a 16-bit depth image; exactly one must be"
+                f"{' and '.join(map(str, files))}: {count} a 16-bit depth image; exactly one must be"
             )
         of = files[depths.index(True)]
         color = files[depths.index(False)] if len(files) > 1 else None

@@ -1,4 +1,4 @@
-"""From the columns of a file to a cloud."""
+"""Converts columns of a file to a cloud."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from semmap.nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Clou
 from semmap.nodes.perception_node.input.files import units
 
 MAX_POINTS = 50_000_000
-"""No frame has more; a header that says so is damaged."""
+"""A header with more points is damaged."""
 _BEHIND = 0.2
-"""With such a share of its points behind the camera, a cloud's axes are not those of a camera's picture."""
+"""With this share of points behind the camera, the axes of a cloud are not those of a camera."""
 
 Column = NDArray[Any]
 
 
 Field = tuple[str, np.dtype[Any], int]
-"""Name, type of an element, elements a point."""
+"""Name, element type, and number of elements per point."""
 
 
 class OtherVariant(ValueError):
-    """A file may be whole, but is not of the sort that our reader knows."""
+    """The file may be valid, but our reader does not support its variant."""
 
 
 def columns_of_text(body: bytes, fields: Sequence[Field], points: int) -> dict[str, Column]:
-    """Each field of one element a point, (points,), of numbers in words. Raises ValueError for too few."""
+    """Parse the fields with one element per point, (points,), from text. Raises ValueError if truncated."""
     per_point = sum(count for _, _, count in fields)
     words = body.split()
     if len(words) < points * per_point:
@@ -44,11 +44,11 @@ def columns_of_text(body: bytes, fields: Sequence[Field], points: int) -> dict[s
 
 
 def cloud_of(columns: Mapping[str, Column], height: int, width: int) -> Cloud:
-    """The cloud of columns of (height * width,) each: `x`, `y`, `z` [m], and colours where there are any.
+    """Return the cloud of columns (height * width,): `x`, `y`, `z` [m], and optional colours.
 
-    Colours are packed as 0xRRGGBB in `rgb` or `rgba`, an integer or the same bits called a float, or stand in
-    `red`, `green` and `blue`. Points nearer or farther than any camera measures become NaN. Axes of other
-    conventions are turned. Raises ValueError for missing columns, axes of nobody's, and other units.
+    Colours are packed as 0xRRGGBB in `rgb` or `rgba` (integer or float bits), or in `red`, `green` and
+    `blue`. Points outside the range of depth cameras become NaN. Axes of other conventions are converted.
+    Raises ValueError for missing columns, unknown axes, and other units.
     """
     if missing := [name for name in "xyz" if name not in columns]:
         raise ValueError(f"it has no field {', '.join(missing)}, only {', '.join(columns) or 'none'}")
@@ -58,8 +58,8 @@ def cloud_of(columns: Mapping[str, Column], height: int, width: int) -> Cloud:
     if len(depth) and np.median(depth) > FARTHEST_M:
         scale_m = units.likely(depth)
         raise ValueError(
-            f"half of its points are more than {np.median(depth):.0f} m away, as if they were in"
-            f" {units.name(scale_m)}; multiply them by {scale_m:g}"
+            f"the median distance of its points is {np.median(depth):.0f} m; the unit"
+            f" is probably {units.name(scale_m)}: multiply them by {scale_m:g}"
         )
     measured = (np.abs(points) < FARTHEST_M).all(axis=-1) & (points[:, 2] > NEAREST_M)  # NaN is not
     points[~measured] = np.nan
@@ -71,11 +71,11 @@ def cloud_of(columns: Mapping[str, Column], height: int, width: int) -> Cloud:
 
 
 def _optical(points: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Points (N, 3) with x to the right, y down, z forward.
+    """Return points (N, 3) with x to the right, y down, z forward.
 
-    Where all lie behind the camera, y is taken to be up and z to point backwards, as OpenGL has it. Where
-    some do, and all have a positive x, x is forward and z up, as ROS has it of robots; or y is forward, where
-    all have a positive y. Raises ValueError where none is forward: no camera at the origin saw that.
+    If all points are behind the camera, y is up and z backwards, as in OpenGL. If some are, and all have a
+    positive x, x is forward and z up, as in ROS; with a positive y, y is forward. Raises ValueError if no
+    axis is forward.
     """
     x, y, z = seen = points[np.isfinite(points).all(axis=-1) & (points != 0.0).any(axis=-1)].T
     if not seen.size or (behind := float(np.mean(z < 0.0))) < _BEHIND:
@@ -88,13 +88,13 @@ def _optical(points: NDArray[np.float32]) -> NDArray[np.float32]:
         case False, True:
             return points[:, [0, 2, 1]] * np.array([1, -1, 1], np.float32)
     raise ValueError(
-        f"{behind:.0%} of its points lie behind its camera; a cloud has its camera at the origin, x to the"
-        " right, y down, z forward"
+        f"{behind:.0%} of its points are behind the camera; use a camera at the origin with x to the right,"
+        " y down, z forward"
     )
 
 
 def _colors(columns: Mapping[str, Column]) -> NDArray[np.uint8] | None:
-    """(N, 3) rgb."""
+    """Return rgb (N, 3)."""
     if all(name in columns for name in ("red", "green", "blue")):
         values = np.stack([columns[name] for name in ("red", "green", "blue")], axis=-1)
         return np.asarray(np.nan_to_num(np.clip(values, 0, 255)), np.uint8)

@@ -1,4 +1,4 @@
-"""Folders of frames: in each a colour picture, a depth picture, and the camera that took them."""
+"""Folders of frames: each with a colour image, a depth image, and a camera file."""
 
 from __future__ import annotations
 
@@ -26,11 +26,10 @@ _MM_M = 0.001
 
 
 class FrameCamera(Struct, frozen=True, kw_only=True):
-    """What `camera.json` says: a pinhole [pixel], the corner of the picture at 0, and maybe its pose.
+    """The content of `camera.json`: a pinhole [pixel] with the image corner at 0, and an optional pose.
 
-    `width` and `height`: the pictures that it is for, where it says so. `depth_scale`: metres of 1 in the
-    depth picture, where that is not in millimetres. `map_from_camera`: (4, 4), row by row, of the optical
-    frame (x right, y down, z forward) [m].
+    `width` and `height`: the image size, if given. `depth_scale`: metres per unit of the depth image, if not
+    millimetres. `map_from_camera`: (4, 4), row by row, of the optical frame (x right, y down, z forward) [m].
     """
 
     fx: float
@@ -45,7 +44,7 @@ class FrameCamera(Struct, frozen=True, kw_only=True):
 
 @dataclass(frozen=True)
 class FileFrame:
-    """A frame as it was read: its cloud, of every `step`-th pixel, and the pictures' own rows and columns."""
+    """A frame from files: the cloud of every `step`-th pixel, and the size of the image."""
 
     cloud: Cloud
     step: int
@@ -53,9 +52,9 @@ class FileFrame:
 
 
 def frames_in(folder: Path) -> list[Path]:
-    """The folders of a dataset's frames, in the order of their names; hidden ones are none.
+    """Return the folders of a dataset's frames by name, without hidden ones.
 
-    A folder that is a frame itself is the only one of a dataset. Raises BadFile when there are none.
+    A folder that is itself a frame is the only one of a dataset. Raises BadFile if there are none.
     """
     if (folder / CAMERA).exists():
         return [folder]
@@ -63,19 +62,19 @@ def frames_in(folder: Path) -> list[Path]:
         found = sorted(p for p in folder.iterdir() if p.is_dir() and not p.name.startswith("."))
     except NotADirectoryError:
         raise BadFile(
-            f"{folder} is no folder; of a recording make one first: semmap frames {folder} DIR"
+            f"{folder} is not a folder; convert a recording with: semmap frames {folder} DIR"
         ) from None
     except OSError as error:
         raise BadFile(f"{folder} cannot be read: {error.strerror}") from None
     if {path.name for path in found} >= {"rgb", "depth"}:
-        raise BadFile(f"{folder} is a recording; first make it folders of frames: semmap frames {folder} DIR")
+        raise BadFile(f"{folder} is a recording; convert it with: semmap frames {folder} DIR")
     if not found:
-        raise BadFile(f"{folder} has no folders of frames; each holds {COLOUR}, {DEPTH} and {CAMERA}")
+        raise BadFile(f"{folder} has no folders of frames; each must contain {COLOUR}, {DEPTH} and {CAMERA}")
     return found
 
 
 def read_frame(folder: Path) -> FileFrame:
-    """The frame in a folder. Raises BadFile saying what is wrong with it."""
+    """Read the frame in a folder. Raises BadFile with the reason."""
     missing = [name for name in _FILES if not (folder / name).exists()]
     if missing:
         raise BadFile(f"{folder.name} lacks {few(missing)}")
@@ -90,21 +89,19 @@ def read_frame(folder: Path) -> FileFrame:
             numbers = np.asarray(image) if image.mode in ("I;16", "I;16B", "I;16L", "I") else None
             is_float = image.mode == "F"
         if is_float:
-            raise ValueError("its numbers are floats; it must have whole ones of 16 bits: metres times 1000")
+            raise ValueError("it has floats; it must have 16-bit integers in millimetres")
         if numbers is None:
-            raise ValueError("it must have 16 bits in a single channel: millimetres, 0 for nothing seen")
+            raise ValueError("it must have 16 bits in a single channel: millimetres, 0 for no measurement")
         if rgb.shape[:2] != numbers.shape:
             (height, width), (rows, columns) = rgb.shape[:2], numbers.shape
             raise ValueError(f"colour is {width} x {height} pixels, depth {columns} x {rows}")
         if not numbers.any():
-            raise ValueError("it has no depth anywhere: all of its numbers are 0")
-        if camera.depth_scale is None and (told := units.doubt(numbers, _MM_M)) is not None:
-            raise ValueError(
-                f'{told}; it must be in millimetres, or say "depth_scale": {told.scale_m:g} in {CAMERA}'
-            )
+            raise ValueError("it has no depth: all values are 0")
+        if camera.depth_scale is None and (doubt := units.doubt(numbers, _MM_M)) is not None:
+            raise ValueError(f'{doubt}; use millimetres, or set "depth_scale": {doubt.scale_m:g} in {CAMERA}')
         of = CAMERA
         scale_m = np.float32(camera.depth_scale or _MM_M)
-        return _put_together(rgb, (numbers * scale_m).astype(np.float32), camera)
+        return _to_frame(rgb, (numbers * scale_m).astype(np.float32), camera)
     except OSError as error:
         raise BadFile(f"{folder.name}/{of} cannot be read: {error.strerror}") from None
     except ValueError as error:
@@ -121,15 +118,13 @@ def _camera(path: Path) -> FrameCamera:
     return camera
 
 
-def _put_together(rgb: NDArray[np.uint8], depth_m: Floats, camera: FrameCamera) -> FileFrame:
+def _to_frame(rgb: NDArray[np.uint8], depth_m: Floats, camera: FrameCamera) -> FileFrame:
     height, width = depth_m.shape
     intrinsics = np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]])
-    said = (camera.width or width, camera.height or height)
-    if said != (width, height) or not fits(intrinsics, width, height):
-        of = f"{said[0]} x {said[1]}" if said != (width, height) else "another size"
-        raise ValueError(
-            f"the intrinsics are those of pictures of {of}; these have {width} x {height} pixels"
-        )
+    declared = (camera.width or width, camera.height or height)
+    if declared != (width, height) or not fits(intrinsics, width, height):
+        of = f"{declared[0]} x {declared[1]}" if declared != (width, height) else "another size"
+        raise ValueError(f"the intrinsics are for images of {of}; this one has {width} x {height} pixels")
     step = thinning(width, height)
     depth_m, colours, intrinsics = thinned(depth_m, rgb, intrinsics, step)
     cloud = cloud_of(depth_m, colours, intrinsics, pose_of(camera.map_from_camera))

@@ -1,4 +1,4 @@
-"""A frame as two pictures, one of colour and one of depth, and the camera that took them."""
+"""A frame as two images, colour and depth, and the camera file."""
 
 from __future__ import annotations
 
@@ -23,12 +23,11 @@ _MM_M = 0.001
 
 
 class PinholeCamera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A pinhole camera [pixel], the middle of the first pixel at 0.
+    """A pinhole camera [pixel], with the centre of the first pixel at 0.
 
-    `depth_scale` makes metres of a depth picture's numbers; where nobody says, whole numbers are millimetres
-    and floats metres.
-    `width` and `height`: the pictures that it is for, where it says so. `map_from_camera` is the (4, 4) pose
-    of the camera, sixteen numbers or four rows, where somebody knows it.
+    `depth_scale`: metres per unit of the depth image; by default integers are millimetres and floats metres.
+    `width` and `height`: the image size, if given. `map_from_camera`: the (4, 4) pose of the camera, as
+    sixteen numbers or four rows, if known.
     """
 
     fx: float
@@ -42,12 +41,12 @@ class PinholeCamera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     @property
     def size(self) -> tuple[int, int] | None:
-        """Width and height of the pictures that it is for, where it says so."""
+        """Return width and height of the image, if given."""
         return (self.width, self.height) if self.width and self.height else None
 
 
 def read_camera(path: Path) -> PinholeCamera:
-    """The camera in a JSON file. Raises ValueError saying what is wrong, and OSError."""
+    """Read the camera in a JSON file. Raises ValueError and OSError."""
     try:
         camera = msgspec.json.decode(path.read_bytes(), type=codec.prepared(PinholeCamera))
     except msgspec.DecodeError as error:
@@ -59,7 +58,7 @@ def read_camera(path: Path) -> PinholeCamera:
 
 
 def pose_of(numbers: tuple[Any, ...] | None) -> Transform | None:
-    """The (4, 4) pose of sixteen numbers or four rows. Raises ValueError for what is none."""
+    """Return the (4, 4) pose of sixteen numbers or four rows. Raises ValueError if it is invalid."""
     if numbers is None:
         return None
     try:
@@ -72,13 +71,13 @@ def pose_of(numbers: tuple[Any, ...] | None) -> Transform | None:
 
 
 def is_depth(path: Path) -> bool:
-    """Whether a picture is one of depth: 16 bits or more in a single channel. Raises ValueError, OSError."""
+    """Return whether an image is of depth: 16 bits or more in one channel. Raises ValueError, OSError."""
     with opened(path) as image:
         return image.mode in _DEPTH_MODES
 
 
 def read_pictures(depth: Path, color: Path | None, camera: PinholeCamera) -> Cloud:
-    """The frame of a depth picture and one of colour. Raises ValueError saying what is wrong, and OSError."""
+    """Return the cloud of a depth and a colour image. Raises ValueError and OSError."""
     depth_m = _depth_m(depth, camera)
     colors = None
     if color is not None:
@@ -91,33 +90,33 @@ def read_pictures(depth: Path, color: Path | None, camera: PinholeCamera) -> Clo
     height, width = depth_m.shape
     if (of := camera.size or (width, height)) != (width, height):
         raise ValueError(
-            f"the intrinsics are those of pictures of {of[0]} x {of[1]}; these have {width} x {height} pixels"
+            f"the intrinsics are for images of {of[0]} x {of[1]}; this one has {width} x {height} pixels"
         )
     if not fits(intrinsics, width, height):
-        said = " ".join(f"{name} {getattr(camera, name):g}" for name in ("fx", "fy", "cx", "cy"))
-        raise ValueError(f"the intrinsics {said} do not fit a picture of {width} x {height} pixels")
+        values = " ".join(f"{name} {getattr(camera, name):g}" for name in ("fx", "fy", "cx", "cy"))
+        raise ValueError(f"the intrinsics {values} do not fit an image of {width} x {height} pixels")
     return cloud_of(depth_m, colors, intrinsics, pose_of(camera.map_from_camera))
 
 
 def _depth_m(path: Path, camera: PinholeCamera) -> NDArray[np.float32]:
-    """(H, W) [m]. Raises ValueError for numbers that look like those of another unit, and OSError."""
+    """Return depth (H, W) [m]. Raises ValueError for values that seem to be in another unit, and OSError."""
     with opened(path) as image:
         numbers, is_float = np.asarray(image, dtype=np.float32), image.mode == "F"
     if camera.depth_scale is not None:
         return np.asarray(numbers * np.float32(camera.depth_scale), np.float32)
     scale_m = 1.0 if is_float else _MM_M
-    if (told := units.doubt(numbers, scale_m)) is not None:
-        raise ValueError(f'{told}; say "depth_scale": {told.scale_m:g} in the intrinsics')
+    if (doubt := units.doubt(numbers, scale_m)) is not None:
+        raise ValueError(f'{doubt}; set "depth_scale": {doubt.scale_m:g} in the intrinsics')
     return np.asarray(numbers * np.float32(scale_m), np.float32)
 
 
 def opened(path: Path) -> Image.Image:
-    """A picture, read whole. Raises ValueError where it is none or too big, and OSError."""
+    """Open and load an image. Raises ValueError if it is invalid or too big, and OSError."""
     try:
         image = Image.open(path)
         try:
             if image.width * image.height > _MOST_PIXELS:
-                raise ValueError(f"a picture of {image.width} x {image.height} pixels is too big")
+                raise ValueError(f"an image of {image.width} x {image.height} pixels is too big")
             image.load()
         except BaseException:
             image.close()

@@ -1,14 +1,14 @@
-"""LZF, the compression inside PCD files."""
+"""LZF, the compression of PCD files."""
 
 from __future__ import annotations
 
 
 def decompress(packed: bytes, size: int) -> bytes:
-    """What was packed, `size` bytes long. Raises ValueError for a damaged or truncated block.
+    """Return the decompressed data of `size` bytes. Raises ValueError for a damaged or truncated block.
 
-    A control byte below 32 announces as many literal bytes and one; any other is a reference back: its upper
-    three bits are the length less two (7: a byte follows that is added), the rest and the next byte say
-    how far back, less one. A reference may overlap what it writes, and so repeats itself.
+    A control byte below 32 announces that many literal bytes plus one. Any other is a back reference: its
+    upper three bits are the length less two (7: the next byte is added), and the rest with the next byte is
+    the distance less one. A reference may overlap its output, which repeats the data.
     """
     out = bytearray()
     here, end = 0, len(packed)
@@ -36,7 +36,7 @@ def decompress(packed: bytes, size: int) -> bytes:
             if len(out) > size:
                 raise ValueError(f"more than the {size} bytes promised")
     except IndexError:
-        raise ValueError("it ends within a reference") from None
+        raise ValueError("truncated within a reference") from None
     if len(out) != size:
         raise ValueError(f"{len(out)} of the {size} bytes promised")
     return bytes(out)

@@ -1,4 +1,4 @@
-"""Masks in files: COCO's JSON, or label images."""
+"""Masks in files: COCO JSON, or label images."""
 
 from __future__ import annotations
 
@@ -11,22 +11,20 @@ import numpy as np
 
 from semmap.nodes.perception_node.input.files.image_files import opened
 from semmap.nodes.perception_node.input.files.mask_polygons import counts_of
-from semmap.nodes.perception_node.input.masks import Masks, of_numbers, of_runs
+from semmap.nodes.perception_node.input.masks import Masks, masks_from_numbers, masks_from_runs
 from semmap.schemas.errors import BadFile
 from semmap.schemas.perception import MaskRun
 from semmap.schemas.wording import sentence
 
-_WANTED = (
-    "a list of masks as COCO writes results, a dataset with annotations and categories, or a label image"
-)
+_WANTED = "a list of masks (COCO results), a dataset with annotations and categories, or a label image"
 
 
 def read_masks(path: Path, height: int, width: int) -> Masks:
-    """The masks in a .json, .png or .npy file for a picture of this size. Raises BadFile."""
+    """Return the masks in a .json, .png or .npy file for an image of this size. Raises BadFile."""
     try:
         match path.suffix.lower():
             case ".json":
-                return of_runs(_runs(path.read_bytes(), height, width), height, width)
+                return masks_from_runs(_runs(path.read_bytes(), height, width), height, width)
             case ".png":
                 with opened(path) as image:
                     numbers = np.asarray(image)
@@ -37,10 +35,10 @@ def read_masks(path: Path, height: int, width: int) -> Masks:
         if numbers.shape != (height, width) or numbers.dtype.kind not in "iu":
             across_first = (*numbers.shape[1::-1], *numbers.shape[2:])
             raise ValueError(
-                f"a label image for this picture has {width} x {height} whole numbers; this one has"
+                f"a label image for this image must have {width} x {height} integers; this one has"
                 f" {' x '.join(map(str, across_first))} of {numbers.dtype}"
             )
-        return of_numbers(numbers)
+        return masks_from_numbers(numbers)
     except OSError as error:
         raise BadFile(f"{path} cannot be read: {error.strerror}") from None
     except ValueError as error:
@@ -48,7 +46,7 @@ def read_masks(path: Path, height: int, width: int) -> Masks:
 
 
 def _runs(data: bytes, height: int, width: int) -> list[MaskRun]:
-    """Masks, with labels where there are names of categories. Raises ValueError."""
+    """Return masks, with labels if there are category names. Raises ValueError."""
     try:
         found = msgspec.json.decode(data)
     except msgspec.DecodeError as error:
@@ -56,35 +54,33 @@ def _runs(data: bytes, height: int, width: int) -> list[MaskRun]:
     names: dict[str, str] = {}
     if isinstance(found, dict):
         listed = found.get("categories") or []
-        if not isinstance(listed, list) or not all(isinstance(told, dict) for told in listed):
+        if not isinstance(listed, list) or not all(isinstance(entry, dict) for entry in listed):
             raise ValueError('categories are a list such as [{"id": 1, "name": "cup"}]')
-        names = {str(told.get("id")): str(told.get("name", "")) for told in listed}
+        names = {str(entry.get("id")): str(entry.get("name", "")) for entry in listed}
         found = found.get("annotations")
     if not isinstance(found, list):
         raise ValueError(f"expected {_WANTED}")
-    pictures = {str(told["image_id"]) for told in found if isinstance(told, dict) and "image_id" in told}
-    if len(pictures) > 1:
-        raise ValueError(
-            f"it has masks of {len(pictures)} pictures (image_id); each picture needs its own file"
-        )
-    return [_run(told, names, height, width) for told in found]
+    images = {str(entry["image_id"]) for entry in found if isinstance(entry, dict) and "image_id" in entry}
+    if len(images) > 1:
+        raise ValueError(f"it has masks of {len(images)} images (image_id); use one file per image")
+    return [_run(entry, names, height, width) for entry in found]
 
 
-def _run(told: Any, names: dict[str, str], height: int, width: int) -> MaskRun:
-    code = told.get("segmentation") if isinstance(told, dict) else None
+def _run(entry: Any, names: dict[str, str], height: int, width: int) -> MaskRun:
+    code = entry.get("segmentation") if isinstance(entry, dict) else None
     if isinstance(code, list) and code:
         code = {"size": (height, width), "counts": counts_of(code, height, width)}
-    if not isinstance(told, dict) or not isinstance(code, dict):
+    if not isinstance(entry, dict) or not isinstance(code, dict):
         raise ValueError("each mask needs a segmentation: size and counts (RLE), or a list of polygons")
-    category = told.get("category_id")
-    label = told.get("category") or told.get("label") or names.get(str(category)) or ""
+    category = entry.get("category_id")
+    label = entry.get("category") or entry.get("label") or names.get(str(category)) or ""
     if not label and category is not None:
         label = str(category)
     mask = {
         "size": code.get("size"),
         "counts": code.get("counts"),
         "label": label,
-        "score": told.get("score", 1.0),
+        "score": entry.get("score", 1.0),
     }
     try:
         return msgspec.convert(mask, MaskRun)

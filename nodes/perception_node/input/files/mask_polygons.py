@@ -1,4 +1,4 @@
-"""Masks drawn as polygons, as COCO's datasets have them. Pure."""
+"""Masks drawn as polygons, as in COCO datasets. Pure."""
 
 from __future__ import annotations
 
@@ -13,10 +13,9 @@ _FARTHEST_PX = 1e6
 
 
 def counts_of(polygons: Sequence[Any], height: int, width: int) -> list[int]:
-    """The run lengths, column after column, of what is within polygons `[x, y, x, y, ...]` [pixel].
+    """Return the column-wise run lengths of the area of polygons `[x, y, x, y, ...]` [pixel].
 
-    The picture's corner is at 0, and a pixel is within where its middle is. Raises ValueError for what is no
-    polygon.
+    The image corner is at 0, and a pixel is inside if its centre is. Raises ValueError for invalid polygons.
     """
     mask = np.zeros((height, width), dtype=bool)
     for polygon in polygons:
@@ -27,17 +26,17 @@ def counts_of(polygons: Sequence[Any], height: int, width: int) -> list[int]:
 
 
 def _corners(polygon: Any) -> NDArray[np.float64]:
-    """(N, 2) the corners of a polygon. Raises ValueError."""
+    """Return the corners (N, 2) of a polygon. Raises ValueError."""
     numbers = polygon if isinstance(polygon, list) else []
     if len(numbers) < 6 or len(numbers) % 2 or not all(isinstance(n, int | float) for n in numbers):
         raise ValueError("a mask's polygon needs x and y of at least three corners: [x, y, x, y, x, y]")
     if max(map(abs, numbers)) > _FARTHEST_PX:
-        raise ValueError("a mask's polygon has a corner far beyond the picture")
+        raise ValueError("a mask's polygon has a corner far outside the image")
     return np.array(numbers, dtype=float).reshape(-1, 2)
 
 
 def _filled(corners: NDArray[np.float64], height: int, width: int) -> NDArray[np.bool_]:
-    """(H, W) the pixels within: between the first and the second edge that a row crosses, and so on."""
+    """Return the pixels (H, W) inside, by the even-odd rule on each row."""
     mask = np.zeros((height, width), dtype=bool)
     (x, y), (next_x, next_y) = corners.T, np.roll(corners, -1, axis=0).T
     for row in range(max(0, math.floor(y.min())), min(height, math.ceil(y.max()))):

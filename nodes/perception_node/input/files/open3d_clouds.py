@@ -1,4 +1,4 @@
-"""Cloud files that Open3D reads for us: points in words, and what our own readers do not know."""
+"""Cloud files that Open3D reads: text formats, and variants that our readers do not support."""
 
 from __future__ import annotations
 
@@ -17,30 +17,30 @@ _FIRST_LINE = 80
 
 
 def read(path: Path, why: str = "") -> Cloud:
-    """The points of a file in a single row, and their colours where Open3D reads any.
+    """Return the points of a file in a single row, with colours if Open3D reads any.
 
-    `why`: what kept our own reader from it, for the message when Open3D is not there. Raises BadFile without
-    Open3D, ValueError for what it cannot read, OSError.
+    `why`: the reason why our reader failed, for the message without Open3D. Raises BadFile without Open3D,
+    ValueError for invalid files, and OSError.
     """
     if find_spec("open3d") is None:
         raise BadFile(
-            f"{path}{f': {why}; this' if why else ''} is read with Open3D, which is not installed (semmap's"
-            " extra `perception` brings it for Python up to 3.12); or write it as a plain .pcd or .ply"
+            f"{path}{f': {why}; this' if why else ''} requires Open3D, which is not installed (extra"
+            " `perception`, Python up to 3.12); install it, or convert the file to a plain .pcd or .ply"
         )
-    with path.open("rb") as file:  # of what is no file Open3D would only say that it has no points
+    with path.open("rb") as file:  # without a file, Open3D only reports that there are no points
         if path.suffix.lower() == ".pts":
             _require_count(file)
     return _decoded(path)
 
 
 def _require_count(file: BinaryIO) -> None:
-    """Raise ValueError unless a PTS file begins with how many points it has: Open3D trusts it blindly."""
-    said = file.readline(_FIRST_LINE).strip()
-    if not said.isdigit() or int(said) > MAX_POINTS:
-        raise ValueError("its first line is not the number of its points")
+    """Raise ValueError unless a PTS file starts with its number of points, which Open3D does not check."""
+    header = file.readline(_FIRST_LINE).strip()
+    if not header.isdigit() or int(header) > MAX_POINTS:
+        raise ValueError("its first line must be its number of points")
     lines = sum(1 for line in file if line.strip())
-    if lines < int(said):
-        raise ValueError(f"truncated: {lines} of {int(said)} points")
+    if lines < int(header):
+        raise ValueError(f"truncated: {lines} of {int(header)} points")
 
 
 def _decoded(path: Path) -> Cloud:

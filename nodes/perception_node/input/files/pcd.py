@@ -24,7 +24,7 @@ _LONGEST_HEADER = 4096
 
 @dataclass(frozen=True)
 class Header:
-    """What a PCD file says of itself."""
+    """The header of a PCD file."""
 
     fields: tuple[Field, ...]
     width: int
@@ -33,41 +33,45 @@ class Header:
 
     @property
     def points(self) -> int:
-        """How many points there are, NaN or not."""
+        """Return the number of points, including NaN."""
         return self.width * self.height
 
 
 def decode(data: bytes) -> Cloud:
-    """The cloud in a PCD file's bytes. Raises ValueError saying what is wrong with them."""
+    """Return the cloud in a PCD file's bytes. Raises ValueError."""
     header, start = read_header(data)
     return cloud_of(read_columns(header, data[start:]), header.height, header.width)
 
 
 def read_header(data: bytes) -> tuple[Header, int]:
-    """The header, and where the points begin. Raises ValueError, OtherVariant for one of an old version."""
+    """Return the header and the offset of the points. Raises ValueError; OtherVariant for an old version."""
     mark = data.find(b"\nDATA ", 0, _LONGEST_HEADER)
     end = data.find(b"\n", mark + 1)
     if mark < 0 or end < 0:
         raise ValueError("no DATA line in its header")
     lines = data[:end].decode("ascii", errors="replace").splitlines()
-    said = {words[0]: words[1:] for words in map(str.split, lines) if words and not words[0].startswith("#")}
-    if "COLUMNS" in said or ("FIELDS" in said and "WIDTH" not in said):  # as it was before version .6
+    entries = {
+        words[0]: words[1:] for words in map(str.split, lines) if words and not words[0].startswith("#")
+    }
+    if "COLUMNS" in entries or (
+        "FIELDS" in entries and "WIDTH" not in entries
+    ):  # as it was before version .6
         raise OtherVariant("its header is of an old version")
     try:
-        names, sizes, kinds = said["FIELDS"], said["SIZE"], said["TYPE"]
-        counts = [int(count) for count in said.get("COUNT", ["1"] * len(names))]
-        width, height = int(said["WIDTH"][0]), int(said.get("HEIGHT", ["1"])[0])
+        names, sizes, kinds = entries["FIELDS"], entries["SIZE"], entries["TYPE"]
+        counts = [int(count) for count in entries.get("COUNT", ["1"] * len(names))]
+        width, height = int(entries["WIDTH"][0]), int(entries.get("HEIGHT", ["1"])[0])
         dtypes = [np.dtype(_KINDS[kind] + size) for kind, size in zip(kinds, sizes, strict=True)]
         fields = tuple(zip(names, dtypes, counts, strict=True))
     except (KeyError, IndexError, TypeError, ValueError) as error:
         raise ValueError(f"its header is damaged ({error})") from None
     if width < 0 or height < 0 or width * height > MAX_POINTS or any(count < 1 for count in counts):
         raise ValueError(f"its header declares {width} x {height} points")
-    return Header(fields, width, height, said["DATA"][0]), end + 1
+    return Header(fields, width, height, entries["DATA"][0]), end + 1
 
 
 def read_columns(header: Header, body: bytes) -> dict[str, Column]:
-    """Each field of one element a point, (points,). Raises ValueError for a truncated body."""
+    """Return each field with one element per point, (points,). Raises ValueError for a truncated body."""
     match header.encoding:
         case "ascii":
             return columns_of_text(body, header.fields, header.points)

@@ -24,9 +24,9 @@ _LONGEST_HEADER = 16384
 
 
 def decode(data: bytes) -> Cloud:
-    """The vertices in a PLY file's bytes, in a single row.
+    """Return the vertices in a PLY file's bytes, in a single row.
 
-    Raises ValueError saying what is wrong; OtherVariant where the vertices do not come first or have lists.
+    Raises ValueError, and OtherVariant if the vertices do not come first or have lists.
     """
     encoding, count, properties, start = _read_header(data)
     body = data[start:]
@@ -37,7 +37,7 @@ def decode(data: bytes) -> Cloud:
 
 
 def _read_header(data: bytes) -> tuple[str, int, list[tuple[str, str]], int]:
-    """Encoding, number of vertices, (name, dtype) of their properties, and where they begin."""
+    """Return encoding, number of vertices, (name, dtype) of their properties, and the offset of the data."""
     mark = data.find(b"end_header", 0, _LONGEST_HEADER)
     end = data.find(b"\n", mark)
     if mark < 0 or end < 0:
@@ -46,8 +46,8 @@ def _read_header(data: bytes) -> tuple[str, int, list[tuple[str, str]], int]:
     properties: list[tuple[str, str]] = []
     for line in data[:mark].decode("ascii", errors="replace").splitlines():
         match line.split():
-            case ["format", said, *_]:
-                encoding = said
+            case ["format", format_, *_]:
+                encoding = format_
             case ["element", name, _] if not properties and name != "vertex":
                 raise OtherVariant(f"its first element is '{name}', not vertex")
             case ["element", name, number]:

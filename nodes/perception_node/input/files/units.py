@@ -1,4 +1,4 @@
-"""In which unit numbers of depth seem to be told. Pure."""
+"""Detects the unit of depth values. Pure."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ _UNITS = {
     0.001: "millimetres",
     0.0001: "tenths of a millimetre",
 }
-"""Metres of 1."""
+"""Metres per unit."""
 _FAR_M = 6.0
-"""In a room something is nearer, and what is not is too far off to be made out."""
+"""In a room something is nearer; beyond this distance nothing is recognised."""
 _WITHIN_M = 0.1
-"""Something in a picture is farther away."""
+"""An image contains something farther than this."""
 
 
 class Doubt(NamedTuple):
-    """What speaks against a unit, and which it seems to be: its name, and metres of 1."""
+    """The evidence against a unit, the likely unit, and its scale in metres."""
 
     why: str
     unit: str
     scale_m: float
 
     def __str__(self) -> str:
-        return f"{self.why}, as if its numbers were {self.unit}"
+        return f"{self.why}; the unit is probably {self.unit}"
 
 
 def doubt(numbers: NDArray[Any], scale_m: float) -> Doubt | None:
-    """What speaks against 1 being `scale_m` metres in depth `numbers`, where those not above 0 are nothing.
+    """Return the evidence against `scale_m` metres per unit of depth `numbers`; values <= 0 are ignored.
 
-    A picture of what is all near by may be in any unit, so centimetres are noticed only below 10 cm.
+    An image of near things only may be in any unit, so centimetres are detected only below 10 cm.
     """
     seen = numbers[np.isfinite(numbers) & (numbers > 0)]
     if not len(seen):
@@ -52,11 +52,11 @@ def doubt(numbers: NDArray[Any], scale_m: float) -> Doubt | None:
 
 
 def likely(depth: NDArray[Any]) -> float:
-    """Metres of 1 in the unit in which half of these depths are nearest to a metre."""
+    """Return the metres per unit for which the median depth is closest to one metre."""
     middle = float(np.median(depth))
     return min(_UNITS, key=lambda scale_m: abs(math.log(middle * scale_m)))
 
 
 def name(scale_m: float) -> str:
-    """What a unit that is `likely` is called."""
+    """Return the name of a unit."""
     return _UNITS[scale_m]

@@ -1,1 +1,1 @@
-"""The families of models, a file each."""
+"""The families of models, one file each. Each function builds the parts of one model."""

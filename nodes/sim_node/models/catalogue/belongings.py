@@ -1,4 +1,4 @@
-"""What a person wears, carries and plays with. Depth x, width y, height z [m]."""
+"""Clothes, accessories and toys. Depth x, width y, height z [m]."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Computers and what belongs to them. Screens face +x. Depth x, width y, height z [m]."""
+"""Computers and peripherals. Screens face +x. Depth x, width y, height z [m]."""
 
 from __future__ import annotations
 

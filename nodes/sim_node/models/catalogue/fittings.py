@@ -1,4 +1,4 @@
-"""Parts of a building and what is fastened to it. Depth x, width y, height z [m]; the front is at +x."""
+"""Parts of a building and fittings. Depth x, width y, height z [m]; the front is at +x."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What hangs on walls and lies on furniture and floors. Depth x, width y, height z [m]."""
+"""Wall decoration and textiles. Depth x, width y, height z [m]."""
 
 from __future__ import annotations
 

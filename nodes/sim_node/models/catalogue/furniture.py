@@ -1,4 +1,4 @@
-"""What one sits at, sits on and lies on. Depth x, width y, height z [m]."""
+"""Chairs, tables and beds. Depth x, width y, height z [m]."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What gives light. Depth x, width y, height z [m]."""
+"""Lamps and candles. Depth x, width y, height z [m]."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Other forms of things that the catalogue has in one form: bottles, cans, cups, glasses, cartons, books.
+"""Alternative forms of things in the catalogue: bottles, cans, cups, glasses, cartons, books.
 
-Depth x, width y, height z [m]; round ones fit the smaller of x and y. Perception learns from scenes with some
-of these: a change of what is seen of them is a change of its samples.
+Depth x, width y, height z [m]; round ones fit the smaller of x and y. Perception is trained on scenes with
+some of these, so a visible change of them changes its samples.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from semmap.nodes.sim_node.models.parts import (
 
 
 def packet(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A carton as goods are sold in: printed on all sides, with two flaps.
+    """A carton of goods, printed on all sides, with two flaps.
 
-    Two, because one lid that is thrown open tips a light box over.
+    A single lid that is thrown open would tip a light box over.
     """
     wall = min(0.004, 0.1 * min(x, y, z))
     body, wide = z - wall - GAP_M, y / 2 - GAP_M
@@ -70,7 +70,7 @@ def standing_book(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def plain_ball(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """With a seam around it."""
+    """A ball with a seam."""
     return [
         ball((x, y, z), (0.0, 0.0, z / 2), colour),
         *seen(rod(0.503 * min(x, y), 0.02 * z, (0.0, 0.0, z / 2), shade(colour, 0.6), about("x", 0.6))),
@@ -78,7 +78,7 @@ def plain_ball(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def flat_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """Of shampoo, mustard or oil: a flat body with rounded sides, shoulders, a cap."""
+    """A bottle of shampoo, mustard or oil: a flat body with rounded sides, shoulders, a cap."""
     body, cap = 0.72 * z, min(x, y) * 0.28
     rounded = min(x, y) / 2
     sides = max(x, y) - 2 * rounded
@@ -124,7 +124,7 @@ def spray_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def drink_can(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """Narrower at both ends."""
+    """A can, narrower at both ends."""
     radius = min(x, y) / 2
     return [
         column(radius, 0.06 * z, 0.9 * z, colour),
@@ -188,5 +188,5 @@ def skillet(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def steady_teapot(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A teapot that stands on a foot, which is felt and not seen."""
+    """A teapot on an invisible colliding foot."""
     return [*teapot(x, y, z, colour), *felt(column(0.25 * min(x, 0.62 * y), 0.0, 0.2 * z, colour))]

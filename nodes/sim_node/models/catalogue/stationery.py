@@ -1,4 +1,4 @@
-"""Books, papers and what one writes with. Depth x, width y, height z [m]."""
+"""Books, papers and pens. Depth x, width y, height z [m]."""
 
 from __future__ import annotations
 

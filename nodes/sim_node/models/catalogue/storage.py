@@ -1,4 +1,4 @@
-"""Furniture that holds things. Depth x, width y, height z [m]."""
+"""Storage furniture. Depth x, width y, height z [m]."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def _with_doors(x: float, y: float, z: float, colour: Colour, *, foot: float, pa
 
 
 def _shelves(height: float) -> list[float]:
-    """Shares of a height where shelves lie, some 40 cm apart; a clothes rail's height is left at the top."""
+    """Return the relative heights of shelves, about 40 cm apart, with space for a clothes rail at the top."""
     count = max(1, round(height / 0.4)) - (2 if height > 1.5 else 0)
     return [index / max(2, round(height / 0.4)) for index in range(1, max(2, count))]
 

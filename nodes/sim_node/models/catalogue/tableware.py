@@ -29,7 +29,7 @@ from semmap.nodes.sim_node.models.parts import (
 
 
 def cup(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """With a handle towards +y. It looks hollow, and collides as if it were full."""
+    """A cup with a handle towards +y. It looks hollow, but collides as a solid."""
     radius = min(0.5 * x, 0.4 * y)
     shift = -(y / 2 - radius)
     wall = 0.1 * radius
@@ -53,7 +53,7 @@ def cup(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def glass(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A plain tumbler, wider at the top. It looks hollow, and collides as if it were full."""
+    """A plain tumbler, wider at the top. It looks hollow, but collides as a solid."""
     radius = min(x, y) / 2
     wall = 0.08 * radius
     return [
@@ -64,7 +64,7 @@ def glass(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def bowl(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A foot and two flaring rings; hollow to the touch too."""
+    """A foot and two flaring rings; it collides as a hollow body."""
     radius = min(x, y) / 2
     wall = min(0.006, 0.1 * radius)
     return [

@@ -1,4 +1,4 @@
-"""What lies about in a bathroom. Depth x, width y, height z [m]."""
+"""Bathroom articles. Depth x, width y, height z [m]."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ def test_what_was_shown_is_recognised_until_it_is_forgotten(here, capsys):
         (["learn", "Dog", "--entity", "dog1", "--data", "map"], "--entity requires a running system"),
         (["learn", "Dog", "--entity", "dog1", "--box", "1", "2", "3", "4"], "--box requires --frames"),
         (["learn", "Dgo", "--frames", "shown", "--data", "map"], "unknown class 'Dgo'; did you mean Dog?"),
-        (["learn", "Object", "--frames", "shown", "--data", "map"], "say which special class"),
+        (["learn", "Object", "--frames", "shown", "--data", "map"], "name a more specific class"),
         (["learn", "Dog", "--frames", "nowhere", "--data", "map"], "nowhere cannot be read"),
         (["learn", "Dog", "--frames", "empty", "--data", "map"], "empty has no folders of frames"),
         (["learn", "Dog", "--frames", "shown", "--data", "map", "--box", "9", "9", "2", "2"], "640 x 480"),
@@ -79,4 +79,4 @@ def test_what_cannot_be_shown_is_told_in_one_line(here, capsys, words, told):
 
 def test_a_lesson_that_there_is_not_is_refused(here, capsys):
     assert execute(["forget", "3", "--data", "map"]) == 1
-    assert "there is no lesson 3; nothing was shown" in capsys.readouterr().err
+    assert "no exemplar with number 3; none is stored" in capsys.readouterr().err

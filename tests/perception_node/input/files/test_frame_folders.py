@@ -1,4 +1,4 @@
-"""Folders of frames: what is read, and what is said of one that cannot be."""
+"""Reading of folders of frames, and the errors for invalid ones."""
 
 from __future__ import annotations
 
@@ -58,14 +58,14 @@ def test_a_large_picture_is_thinned(tmp_path):
     [
         ({"depth": np.full((24, 32), 900, np.uint16)}, "colour is 64 x 48 pixels, depth 32 x 24"),
         ({"depth": np.full((48, 64), 2, np.uint16)}, "millimetres"),
-        ({"depth": np.full((48, 64), 15_000, np.uint16)}, 'or say "depth_scale": 0.0001 in camera.json'),
+        ({"depth": np.full((48, 64), 15_000, np.uint16)}, 'or set "depth_scale": 0.0001 in camera.json'),
         ({"depth_scale": 0}, "depth_scale must be positive"),
         ({"depth": np.full((48, 64), 200, np.uint8)}, "16 bits"),
         ({"depth": np.zeros((48, 64), np.uint16)}, "no depth"),
-        ({"width": 640, "height": 480}, "pictures of 640 x 480; these have 64 x 48 pixels"),
-        ({"cx": 320.0, "cy": 240.0, "fx": 600.0, "fy": 600.0}, "pictures of another size"),
+        ({"width": 640, "height": 480}, "images of 640 x 480; this one has 64 x 48 pixels"),
+        ({"cx": 320.0, "cy": 240.0, "fx": 600.0, "fy": 600.0}, "images of another size"),
         ({"map_from_camera": [[1, 2], [3]]}, "4 x 4 pose matrix"),
-        ({"cx": 16.0, "cy": 12.0, "fx": 30.0, "fy": 30.0}, "pictures of another size"),
+        ({"cx": 16.0, "cy": 12.0, "fx": 30.0, "fy": 30.0}, "images of another size"),
         ({"fx": "wide"}, "fx"),
     ],
 )
@@ -117,7 +117,7 @@ def test_a_folder_without_frames_is_refused(tmp_path):
 def test_depth_in_floats_is_told_with_the_factor(tmp_path):
     folder = write_frame(tmp_path / "table7")
     Image.fromarray(np.full((48, 64), 1.5, np.float32)).save(folder / "depth.png", "TIFF")
-    with pytest.raises(BadFile, match=r"its numbers are floats; .* metres times 1000"):
+    with pytest.raises(BadFile, match=r"it has floats; it must have 16-bit integers"):
         read_frame(folder)
 
 

@@ -1,4 +1,4 @@
-"""Pictures of depth and colour, and the camera that took them."""
+"""Images of depth and colour, and the camera file."""
 
 import json
 
@@ -64,7 +64,7 @@ def test_floats_are_metres_and_another_unit_may_be_said(tmp_path):
 
 
 def test_numbers_that_look_like_another_unit_are_told_with_what_to_say(tmp_path):
-    with pytest.raises(ValueError, match=r'say "depth_scale": 0\.001 in the intrinsics'):
+    with pytest.raises(ValueError, match=r'set "depth_scale": 0\.001 in the intrinsics'):
         read_pictures(depth(tmp_path, 1500.0, np.float32, "depth.tiff"), None, CAMERA)
 
 
@@ -72,10 +72,10 @@ def test_pictures_that_do_not_go_together_are_told(tmp_path):
     with pytest.raises(ValueError, match="colour is 20 x 10 pixels, depth 40 x 30"):
         read_pictures(depth(tmp_path), color(tmp_path, (20, 10)), CAMERA)
     other = PinholeCamera(fx=50.0, fy=40.0, cx=19.5, cy=14.5, width=80, height=60)
-    with pytest.raises(ValueError, match="those of pictures of 80 x 60; these have 40 x 30 pixels"):
+    with pytest.raises(ValueError, match="for images of 80 x 60; this one has 40 x 30 pixels"):
         read_pictures(depth(tmp_path), None, other)
     wrong = PinholeCamera(fx=50.0, fy=40.0, cx=1900.5, cy=14.5)
-    with pytest.raises(ValueError, match=r"fx 50 fy 40 cx 1900\.5 cy 14\.5 do not fit a picture of 40 x 30"):
+    with pytest.raises(ValueError, match=r"fx 50 fy 40 cx 1900\.5 cy 14\.5 do not fit an image of 40 x 30"):
         read_pictures(depth(tmp_path), None, wrong)
 
 
@@ -129,5 +129,5 @@ def test_what_is_no_picture_or_a_truncated_or_huge_one_is_told(tmp_path, monkeyp
     monkeypatch.setattr(
         "semmap.nodes.perception_node.input.files.image_files._MOST_PIXELS", WIDTH * HEIGHT - 1
     )
-    with pytest.raises(ValueError, match="a picture of 40 x 30 pixels is too big"):
+    with pytest.raises(ValueError, match="an image of 40 x 30 pixels is too big"):
         opened(whole)

@@ -1,4 +1,4 @@
-"""LZF as PCD files use it."""
+"""LZF, as in PCD files."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from semmap.nodes.perception_node.input.files.mask_files import read_masks
-from semmap.nodes.perception_node.input.masks import Said
+from semmap.nodes.perception_node.input.masks import DetectorLabel
 from semmap.schemas.errors import BadFile
 
 LABELS = np.array([[0, 1, 1], [0, 2, 2]])
@@ -17,11 +17,11 @@ FIRST = {"segmentation": {"size": [2, 3], "counts": [2, 1, 1, 1, 1]}, "score": 0
 def test_results_and_datasets_of_coco(tmp_path):
     (tmp_path / "a.json").write_text(json.dumps([{**FIRST, "category": "cup"}, {**FIRST, "category_id": 7}]))
     results = read_masks(tmp_path / "a.json", 2, 3)
-    assert results.said == (Said("cup", 0.7), Said("7", 0.7))
+    assert results.detector_labels == (DetectorLabel("cup", 0.7), DetectorLabel("7", 0.7))
     dataset = {"categories": [{"id": 7, "name": "coffee mug"}], "annotations": [{**FIRST, "category_id": 7}]}
     (tmp_path / "b.json").write_text(json.dumps(dataset))
     found = read_masks(tmp_path / "b.json", 2, 3)
-    assert found.said == (Said("coffee mug", 0.7),)
+    assert found.detector_labels == (DetectorLabel("coffee mug", 0.7),)
     assert found.labels.tolist() == [[0, 1, 1], [0, 0, 0]]
 
 
@@ -40,7 +40,7 @@ def test_polygons_hold_the_pixels_whose_middle_is_within(tmp_path, polygons, pix
     (tmp_path / "a.json").write_text(json.dumps([{"segmentation": polygons, "category": "cup"}]))
     found = read_masks(tmp_path / "a.json", 3, 4)
     assert found.labels.tolist() == pixels
-    assert found.said == (Said("cup", 1.0),)
+    assert found.detector_labels == (DetectorLabel("cup", 1.0),)
 
 
 def test_label_images(tmp_path):
@@ -49,7 +49,7 @@ def test_label_images(tmp_path):
     for name in ("a.npy", "a.png"):
         found = read_masks(tmp_path / name, 2, 3)
         assert found.labels.tolist() == LABELS.tolist()
-        assert found.said == (None, None)
+        assert found.detector_labels == (None, None)
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_label_images(tmp_path):
         ("a.json", b"{}", "expected a list of masks"),
         ("a.json", b"[3]", "needs a segmentation"),
         ("a.json", b'[{"segmentation": [[1, 2, 3]]}]', "polygon needs x and y of at least three corners"),
-        ("a.json", b'[{"segmentation": [[0, 0, 9e9, 0, 9, 9]]}]', "far beyond the picture"),
+        ("a.json", b'[{"segmentation": [[0, 0, 9e9, 0, 9, 9]]}]', "far outside the image"),
         ("a.json", b'[{"segmentation": []}]', "or a list of polygons"),
         ("a.json", b'[{"segmentation": {"size": [2, 2], "counts": [4]}}]', "2 x 2 pixels"),
         ("a.json", b'[{"segmentation": {"size": "x", "counts": [4]}}]', r"a\.json: a mask's size must be"),
@@ -69,7 +69,7 @@ def test_label_images(tmp_path):
             r"a mask's score must be a number from 0 to 1",
         ),
         ("a.json", b'{"categories": [3], "annotations": []}', "categories are a list such as"),
-        ("a.json", b'[{"image_id": 1}, {"image_id": 2}]', "masks of 2 pictures"),
+        ("a.json", b'[{"image_id": 1}, {"image_id": 2}]', "masks of 2 images"),
         ("a.json", b'[{"segmentation": {"size": [2, 3], "counts": [%d, 3]}}]' % 10**30, "add up to"),
         ("a.json", b'[{"segmentation": {"size": [2, 3], "counts": "%s0"}}]' % (b"o" * 40), "add up to"),
         ("a.npy", b"nothing", "a.npy"),
@@ -85,10 +85,10 @@ def test_what_is_wrong_is_said_with_the_file(tmp_path, name, content, said):
 
 def test_images_of_another_size_or_of_no_numbers(tmp_path):
     np.save(tmp_path / "a.npy", LABELS)
-    with pytest.raises(BadFile, match="3 x 3 whole numbers; this one has 3 x 2 of"):
+    with pytest.raises(BadFile, match="3 x 3 integers; this one has 3 x 2 of"):
         read_masks(tmp_path / "a.npy", 3, 3)
     np.save(tmp_path / "c.npy", LABELS * 10**9)
-    with pytest.raises(BadFile, match="thing number 2000000000; there may be 65535"):
+    with pytest.raises(BadFile, match="has 2000000000 things; the maximum is 65535"):
         read_masks(tmp_path / "c.npy", 2, 3)
     np.save(tmp_path / "b.npy", LABELS / 2)
     with pytest.raises(BadFile, match="float64"):

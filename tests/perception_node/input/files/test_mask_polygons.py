@@ -1,4 +1,4 @@
-"""Polygons become runs of pixels, column after column."""
+"""Conversion of polygons to column-wise runs."""
 
 import numpy as np
 import pytest
@@ -64,6 +64,6 @@ def test_what_is_no_polygon_is_told(polygon):
 
 @pytest.mark.parametrize("x", [1.1e6, -1.1e6])
 def test_a_corner_far_beyond_the_picture_is_told(x):
-    with pytest.raises(ValueError, match="far beyond the picture"):
+    with pytest.raises(ValueError, match="far outside the image"):
         counts_of([[0, 0, x, 0, 1, 1]], 4, 4)
     assert counts_of([[0, 0, 0.9e6, 0, 0, 4]], 4, 4)

@@ -72,9 +72,9 @@ def test_what_we_do_not_read_ourselves_is_read(tmp_path, name):
     [
         ("empty.xyz", "", "no points in it"),
         ("words.xyz", "hello\n" * 20, "no points in it"),
-        ("headless.pts", "\n".join(ROWS), "the number of its points"),
+        ("headless.pts", "\n".join(ROWS), "must be its number of points"),
         ("short.pts", "\n".join(["20", *ROWS]), "truncated: 12 of 20 points"),
-        ("huge.pts", "3000000000\n", "the number of its points"),
+        ("huge.pts", "3000000000\n", "must be its number of points"),
         ("millimetres.xyz", "300 200 1000\n" * 12, r"multiply them by 0\.001"),
         ("few.xyz", "0 0 1\n", "1 point "),
         ("missing.xyz", None, "No such file"),
@@ -94,7 +94,7 @@ def test_what_is_wrong_is_said_in_one_line(tmp_path, capfd, name, content, said)
 def test_without_open3d_it_is_said_what_would_read_it(tmp_path, monkeypatch, name):
     monkeypatch.setattr(open3d_clouds, "find_spec", lambda module: None)
     (tmp_path / name).write_text(FILES[name])
-    with pytest.raises(BadFile, match="read with Open3D, which is not installed") as caught:
+    with pytest.raises(BadFile, match="requires Open3D, which is not installed") as caught:
         read_cloud(tmp_path / name)
     assert "perception" in caught.value.text
     assert "\n" not in caught.value.text

@@ -30,7 +30,7 @@ def header(without=(), **changes):
 
 
 def packed(raw):
-    """LZF of literal runs alone."""
+    """Compress with literal runs only."""
     runs = [raw[n : n + 32] for n in range(0, len(raw), 32)]
     body = b"".join(bytes([len(run) - 1]) + run for run in runs)
     return struct.pack("<II", len(body), len(raw)) + body

@@ -1,4 +1,4 @@
-"""In which unit depth seems to be told."""
+"""Detection of the unit of depth."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The models are those that the knowledge base and perception know: `make shapes` makes both files."""
+"""The models match the files of the knowledge base and perception, which `make shapes` writes."""
 
 from __future__ import annotations
 

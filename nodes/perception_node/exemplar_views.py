@@ -1,0 +1,125 @@
+"""Finds the thing to be learned in a frame, and computes its view."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.files.frame_folders import frames_in, read_frame
+from semmap.nodes.perception_node.pipeline import parts_in
+from semmap.nodes.perception_node.recognition.features import features_of
+from semmap.nodes.perception_node.recognition.free_standing import is_compact
+from semmap.nodes.perception_node.recognition.part_joining import join_parts
+from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel
+from semmap.nodes.perception_node.recognition.sides import completed, side_features
+from semmap.nodes.perception_node.recognition.similarity import views_of
+from semmap.nodes.perception_node.recognition.vote import expected_sizes, leaf_probabilities
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.nodes.perception_node.views.merged_thing import Thing, thing_of
+from semmap.nodes.perception_node.views.segmented_view import segment_cloud
+from semmap.schemas import errors
+from semmap.schemas.entities import Size
+from semmap.schemas.wording import counted
+
+BoxPx = tuple[int, int, int, int]
+"""First column and row, and the column and row after the last [pixel]."""
+
+_INSIDE = 0.7
+"""A thing is selected by a box if this share of its pixels lies in it."""
+
+
+@dataclass(frozen=True)
+class ExemplarView:
+    """The appearance of a thing in one frame.
+
+    `features`: (WIDTH,). `size_m`: its size as estimated from this frame [m].
+    """
+
+    features: Numbers
+    size_m: Size
+
+
+def exemplar_view_of(thing: Thing, learnt: RecognitionModel) -> ExemplarView:
+    """Return the view of a thing as recognition stores it."""
+    features = features_of([thing])
+    expected = expected_sizes(leaf_probabilities(learnt, features), learnt.sizes_m)[0]
+    x, y, z = completed(thing, side_features(thing, expected), learnt.sides).size_m.tolist()
+    return ExemplarView(views_of(features)[0], (max(x, y), min(x, y), z))
+
+
+def views_in_frames(
+    folder: Path, learnt: RecognitionModel, box_px: BoxPx | None
+) -> tuple[list[ExemplarView], tuple[str, ...]]:
+    """Return a view of the thing from each frame of a dataset, and a note on frames without one.
+
+    Raises BadFile if no frame shows a thing, with the reason for the first frame, and BadRequest for an
+    invalid box.
+    """
+    views, wrong = list[ExemplarView](), list[errors.BadFile]()
+    for frame_folder in frames_in(folder):
+        try:
+            frame = read_frame(frame_folder)
+            box = None if box_px is None else _thinned(box_px, frame.shape, frame.step)
+            thing = find_shown_thing(frame.cloud, learnt, box)
+            if thing is None:
+                what = "no compact free-standing thing" if box is None else "nothing in that box"
+                raise errors.BadFile(f"{frame_folder.name}: {what}; {_HINT[box is None]}")
+        except errors.BadFile as error:
+            wrong.append(error)
+            continue
+        views.append(exemplar_view_of(thing, learnt))
+    if not views:
+        raise wrong[0]
+    if not wrong:
+        return views, ()
+    return views, (f"{counted(len(wrong), 'frame')} skipped; the first: {wrong[0].text}",)
+
+
+_HINT = {
+    True: "place it alone on a table, or select it with --box X0 Y0 X1 Y1",
+    False: "--box X0 Y0 X1 Y1 must enclose the whole thing in the colour image [pixel]",
+}
+
+
+def find_shown_thing(cloud: Cloud, learnt: RecognitionModel, box_px: BoxPx | None = None) -> Thing | None:
+    """Return the largest compact thing in a cloud, or all that lies in a box; None if there is none."""
+    parts = parts_in([segment_cloud(cloud)])
+    if box_px is not None:
+        inside = [
+            n
+            for n, share in enumerate(_shares(parts.labels[0], box_px))
+            if share >= _INSIDE and not parts.things[n].carrier
+        ]
+        segments = [segment for n in inside for segment in parts.things[n].segments]
+        return thing_of(segments, parts.supports) if segments else None
+    things, _, _ = join_parts(parts.things, parts.same_thing_logits, learnt, parts.join)
+    return max((thing for thing in things if is_compact(thing)), key=lambda thing: thing.count, default=None)
+
+
+def _shares(labels: NDArray[np.int32], box_px: BoxPx) -> Sequence[float]:
+    """Return for each part, from the first, the share of it in a box; `labels` (H, W) count from 1."""
+    left, top, right, bottom = box_px
+    count = int(labels.max(initial=0)) + 1
+    total = np.bincount(labels.ravel(), minlength=count)
+    within = np.bincount(labels[top:bottom, left:right].ravel(), minlength=count)
+    return (within / np.maximum(total, 1))[1:].tolist()  # type: ignore[no-any-return]
+
+
+def _thinned(box_px: BoxPx, shape: tuple[int, int], step: int) -> BoxPx:
+    """Return a box for an image of which every `step`-th row and column is used.
+
+    Raises BadRequest if invalid.
+    """
+    left, top, right, bottom = box_px
+    height, width = shape
+    if not (0 <= left < right <= width and 0 <= top < bottom <= height):
+        raise errors.BadRequest(
+            f"--box {left} {top} {right} {bottom} is invalid for an image of {width} x {height} pixels;"
+            f" usage: --box X0 Y0 X1 Y1 with 0 <= X0 < X1 <= {width} and 0 <= Y0 < Y1 <= {height}"
+        )
+    return left // step, top // step, -(-right // step), -(-bottom // step)

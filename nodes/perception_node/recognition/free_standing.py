@@ -1,0 +1,65 @@
+"""Detects free-standing things, which are not pieces of others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from semmap.nodes.perception_node.recognition.joining import near_pairs
+from semmap.nodes.perception_node.views.boxes import Box, in_frame
+from semmap.nodes.perception_node.views.merged_thing import Thing
+
+_SMALLEST_M, _LARGEST_M = 0.025, 0.5
+"""Limits of its largest extent: less is a piece, more is furniture or a wall."""
+_SLENDER, _LEG_M = 5.0, 0.25
+"""A thing this high, and this many times higher than wide, may be a leg of a hidden table."""
+
+_EDGE_M = 0.1
+"""A table has its legs within this distance of its edges; a thing below may be a piece of one."""
+
+_LIFTED_M = 0.03
+_BESIDE_M = 0.015
+"""A thing with this much clearance is not a piece of its neighbour."""
+_FEWEST = 100
+_WORTH = 0.1
+"""A neighbour with a smaller share of its points is itself a piece."""
+
+
+def are_free_standing(things: Sequence[Thing]) -> NDArray[np.bool_]:
+    """Return (N,) whether each thing is compact, whole, on a support, and apart from others.
+
+    A thing below an edge of a table is excluded.
+    """
+    tables = [thing.box for thing in things if thing.carrier]
+    alone = np.array(
+        [is_compact(one) and not any(_is_below_edge(one, box) for box in tables) for one in things],
+        dtype=bool,
+    )
+    for a, b in near_pairs(things, _BESIDE_M):
+        for one, other in ((a, b), (b, a)):
+            if things[other].count > _WORTH * things[one].count:
+                alone[one] = False
+    return alone
+
+
+def _is_below_edge(thing: Thing, table: Box) -> bool:
+    """Return whether a thing is below a table, near one of its edges."""
+    cells = in_frame(thing.cells, table.yaw_rad)
+    middle = cells.mean(axis=0)[:2]
+    to_sides = np.minimum(middle - table.low[:2], table.high[:2] - middle)
+    return bool(0.0 < to_sides.min() < _EDGE_M and cells[:, 2].max() < table.high[2] - _EDGE_M)
+
+
+def is_compact(thing: Thing) -> bool:
+    """Return whether a thing has the size of tabletop things, is fully visible and on a support."""
+    x, y, z = thing.box.size_m.tolist()
+    return (
+        not thing.carrier
+        and thing.whole
+        and thing.count >= _FEWEST
+        and thing.lifted_m < _LIFTED_M
+        and _SMALLEST_M <= max(x, y, z) <= _LARGEST_M
+        and z < max(_LEG_M, _SLENDER * max(x, y))
+    )

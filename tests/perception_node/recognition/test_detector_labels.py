@@ -1,0 +1,132 @@
+"""Labels of a detector combined with our votes."""
+
+from types import SimpleNamespace
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from semmap.nodes.perception_node.recognition.detector_labels import (
+    LabelMap,
+    detector_class,
+    with_detector_labels,
+)
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN
+
+LEARNT = SimpleNamespace(
+    classes=("Fork", "Spoon", "Book", UNKNOWN, CLUTTER),
+    ancestors={"Fork": ("Cutlery",), "Spoon": ("Cutlery",), "Cutlery": ("Object",)},
+)
+LABELS = LabelMap(LEARNT, {"dining-fork": "Fork", "teapot": "Tea_Pot", "reading matter": "Book"})
+CHANCES = np.array([[0.2, 0.1, 0.3, 0.1, 0.3]])
+
+
+class Said(NamedTuple):
+    """The label of a detector for a mask."""
+
+    label: str
+    score: float
+
+
+def said(label, score=0.9):
+    return Said(label, score)
+
+
+def thing(*told, masked=True):
+    return SimpleNamespace(masked=masked, segments=[SimpleNamespace(detector_label=one) for one in told])
+
+
+def named(*told, masked=True):
+    return with_detector_labels(CHANCES, [thing(*told, masked=masked)], LEARNT, LABELS)[0]
+
+
+@pytest.mark.parametrize(
+    ("label", "class_"),
+    [
+        ("Fork", "Fork"),
+        ("FORK", "Fork"),
+        ("dining_fork", "Fork"),
+        ("Dining Fork", "Fork"),
+        ("cutlery", "Cutlery"),
+        ("Tea-Pot", "Tea_Pot"),
+        ("readingmatter", "Book"),
+        ("saucer", None),
+        ("", None),
+    ],
+)
+def test_a_label_is_a_class_whatever_its_case_and_spaces(label, class_):
+    assert LABELS.class_of(label) == class_
+
+
+def test_a_label_of_one_s_own_comes_before_a_class_of_that_name():
+    assert LabelMap(LEARNT, {"fork": "Garden_Fork"}).class_of("Fork") == "Garden_Fork"
+    assert LabelMap(LEARNT).class_of("Fork") == "Fork"
+
+
+def test_learnt_is_what_our_votes_know_by_exactly_this_name():
+    assert LABELS.is_learnt("Fork")
+    assert LABELS.is_learnt("Cutlery")
+    assert not LABELS.is_learnt("fork")
+    assert not LABELS.is_learnt("Tea_Pot")
+
+
+def test_labels_that_nobody_knows_are_named_once():
+    masks = [SimpleNamespace(detector_labels=[said("saucer"), said("fork"), None]), None]
+    masks.append(SimpleNamespace(detector_labels=[said("saucer"), said("ladle")]))
+    assert LABELS.unknown(masks) == ("ladle", "saucer")
+
+
+def test_what_no_detector_masked_stays_as_it_is():
+    assert named(said("Fork"), masked=False) == pytest.approx(CHANCES[0])
+
+
+def test_what_a_detector_masked_is_no_clutter():
+    assert named() == pytest.approx([0.2, 0.1, 0.3, 0.4, 0.0])
+    assert named(None, said("saucer")) == pytest.approx([0.2, 0.1, 0.3, 0.4, 0.0])
+    assert CHANCES.tolist() == [[0.2, 0.1, 0.3, 0.1, 0.3]]  # which is not written to
+
+
+def test_a_label_is_evidence_for_its_leaves_by_its_score():
+    votes = np.sqrt([0.2, 0.1, 0.3, 0.4, 1e-4])
+    weights = np.array([0.9, *[0.1 / 4] * 4])
+    expected = votes * weights
+    expected[4] = 0.0
+    assert named(said("Fork")) == pytest.approx(expected / expected.sum())
+
+
+def test_a_label_of_a_class_above_is_evidence_for_all_its_leaves():
+    votes = np.sqrt([0.2, 0.1, 0.3, 0.4, 1e-4])
+    expected = votes * [0.45, 0.45, *[0.1 / 3] * 3]
+    expected[4] = 0.0
+    assert named(said("Cutlery")) == pytest.approx(expected / expected.sum())
+
+
+def test_no_score_is_beyond_all_doubt_and_no_vote_rules_a_class_out():
+    sure = named(said("Fork", 1.0))
+    assert sure == pytest.approx(named(said("Fork", 0.98)))
+    assert 0.0 < sure[2] < 0.1
+    none = with_detector_labels(
+        np.array([[0.0, 0.0, 1.0, 0.0, 0.0]]), [thing(said("Fork", 0.98))], LEARNT, LABELS
+    )[0]
+    by_hand = np.array([0.01 * 0.98, 0.01 * 0.005, 1.0 * 0.005, 0.01 * 0.005, 0.0])
+    assert none == pytest.approx(by_hand / by_hand.sum())
+
+
+def test_what_is_said_of_two_views_counts_twice_only_where_it_differs():
+    once = named(said("Fork", 0.7))
+    one = said("Fork", 0.7)
+    twice = with_detector_labels(
+        CHANCES, [SimpleNamespace(masked=True, segments=_segments(one, one))], LEARNT, LABELS
+    )
+    assert twice[0] == pytest.approx(once)
+
+
+def _segments(*told):
+    return [SimpleNamespace(detector_label=one) for one in told]
+
+
+def test_a_class_that_was_never_learnt_is_told_by_the_surest_detector():
+    told = thing(said("teapot", 0.4), said("fork", 0.9), None, said("TeaPot", 0.6), said("saucer", 0.99))
+    assert detector_class(told, LEARNT, LABELS) == ("Tea_Pot", 0.6)
+    assert detector_class(thing(said("fork")), LEARNT, LABELS) is None
+    assert detector_class(thing(), LEARNT, LABELS) is None

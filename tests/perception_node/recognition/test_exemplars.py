@@ -1,0 +1,95 @@
+"""Exemplars combined with the votes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from semmap.nodes.perception_node.pipeline import parts_in, shipped
+from semmap.nodes.perception_node.recognition.exemplars import Exemplar, with_exemplars
+from semmap.nodes.perception_node.recognition.features import features_of
+from semmap.nodes.perception_node.recognition.recognise import recognise
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN
+from semmap.nodes.perception_node.recognition.similarity import WIDTH
+from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
+from semmap.nodes.perception_node.views.segmented_view import segment_cloud
+from tests.perception_node.scenes import shot
+
+MUG = Exemplar(3, "Mug_of_mine", ("Tableware", "Object"), np.zeros((2, WIDTH)), (0.1, 0.08, 0.09), "", 0)
+
+
+def likely(*chances):
+    """A similarity that says this of each thing, by the last of the kept views."""
+
+    def like(kept, seen):
+        return np.concatenate([np.zeros((len(kept) - 1, len(seen))), [chances]])
+
+    return like
+
+
+@pytest.fixture(scope="module")
+def things():
+    found = parts_in([segment_cloud(shot().clouds[0])]).things
+    return [thing for thing in found if not thing.carrier][:3]
+
+
+def test_without_lessons_nothing_is_otherwise():
+    assert with_exemplars(shipped(), [], likely()) is shipped()
+
+
+def test_what_is_alike_is_called_so_and_the_others_are_as_before(things):
+    features = features_of(things)
+    before = leaf_probabilities(shipped(), features)
+    knowing = with_exemplars(shipped(), [MUG], likely(0.0, 0.9, 0.0))
+    chances = leaf_probabilities(knowing, features)
+    assert chances.sum(axis=1) == pytest.approx(1.0)
+    assert (chances[[0, 2], :-1] == before[[0, 2]]).all()
+    assert chances[:, -1].tolist() == pytest.approx([0.0, 0.9, 0.0])
+    assert chances[1, :-1] == pytest.approx(0.1 * before[1])
+    said = recognise(things, chances, knowing)[1]
+    assert (said.class_, said.probability) == (MUG.class_, pytest.approx(0.9, abs=0.01))
+    assert said.candidates[MUG.class_] == pytest.approx(said.probability)
+    assert [o.shown for o in recognise(things, chances, knowing)] == [False, True, False]
+    assert [o.class_ for o in recognise(things, chances, knowing)][::2] == [
+        o.class_ for o in recognise(things, before, shipped())
+    ][::2]
+
+
+@pytest.mark.parametrize("leaf", [UNKNOWN, CLUTTER])
+def test_what_would_be_nothing_known_or_no_thing_is_called_as_it_was_shown(things, leaf):
+    knowing = with_exemplars(shipped(), [MUG], likely(0.9))
+    votes = np.zeros((1, len(shipped().classes)))
+    votes[0, shipped().classes.index(leaf)] = 1.0
+    chances = knowing.exemplars.add_probabilities(features_of(things[:1]), votes)
+    assert recognise(things[:1], chances, knowing)[0].class_ == MUG.class_
+
+
+def test_lessons_of_a_class_that_is_known_count_for_it(things):
+    exemplars = [replace(MUG, number=n, class_="Cup", ancestors=shipped().ancestors["Cup"]) for n in (1, 2)]
+    knowing = with_exemplars(shipped(), exemplars, likely(0.6))
+    chances = leaf_probabilities(knowing, features_of(things[:1]))
+    (said,) = recognise(things[:1], chances, knowing)
+    assert said.class_ == "Cup"
+    assert said.probability == pytest.approx(0.75, abs=0.05)
+    assert said.candidates["Cup"] == pytest.approx(said.probability)
+    assert said.shown
+
+
+def test_what_the_votes_say_louder_than_a_lesson_is_not_known_as_shown(things):
+    exemplar = replace(MUG, class_="Cup", ancestors=shipped().ancestors["Cup"])
+    knowing = with_exemplars(shipped(), [exemplar], likely(0.3))
+    votes = np.zeros((1, len(shipped().classes)))
+    votes[0, shipped().classes.index("Cup")] = 1.0
+    (said,) = recognise(
+        things[:1], knowing.exemplars.add_probabilities(features_of(things[:1]), votes), knowing
+    )
+    assert (said.class_, said.shown) == ("Cup", False)
+
+
+def test_the_size_of_what_was_shown_is_known():
+    knowing = with_exemplars(shipped(), [MUG, replace(MUG, number=4, class_="Cup")], likely())
+    assert knowing.usual_m[MUG.class_] == MUG.size_m
+    assert knowing.usual_m["Cup"] == shipped().usual_m["Cup"]
+    assert not any("#" in name for name in knowing.usual_m)

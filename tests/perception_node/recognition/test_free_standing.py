@@ -1,0 +1,70 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from semmap.nodes.perception_node.recognition.free_standing import are_free_standing
+from semmap.nodes.perception_node.recognition.recognise import recognise
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, shipped
+from tests.perception_node.recognition.test_features import block
+
+THING = block(((0.0, 0.0, 0.0), (0.2, 0.1, 0.1)))
+FAR = block(((0.5, 0.0, 0.0), (0.6, 0.1, 0.1)))
+BESIDE = block(((0.202, 0.0, 0.0), (0.302, 0.1, 0.1)))
+WITH_ROOM = block(((0.23, 0.0, 0.0), (0.33, 0.1, 0.1)))
+TORCH = block(((0.5, 0.0, 0.0), (0.527, 0.026, 0.15)))
+SCRAP = block(((0.202, 0.0, 0.0), (0.222, 0.02, 0.05)))
+
+
+def test_things_apart_stand_alone_and_neighbours_do_not():
+    assert are_free_standing([THING, FAR]).tolist() == [True, True]
+    assert are_free_standing([THING, BESIDE, FAR]).tolist() == [False, False, True]
+
+
+def test_things_with_some_room_between_them_stand_alone():
+    assert are_free_standing([THING, WITH_ROOM]).tolist() == [True, True]
+
+
+def test_a_slender_thing_that_is_low_is_no_leg():
+    assert are_free_standing([TORCH])[0]
+
+
+def test_a_scrap_beside_a_thing_does_not_count():
+    assert are_free_standing([THING, SCRAP])[0]
+
+
+@pytest.mark.parametrize(
+    "thing",
+    [
+        replace(THING, lifted_m=0.1),
+        replace(THING, segments=(replace(THING.segments[0], cut=True),)),
+        replace(THING, segments=(replace(THING.segments[0], count=20),)),
+        replace(THING, segments=(replace(THING.segments[0], carrier=True),)),
+        block(((0.0, 0.0, 0.0), (0.9, 0.02, 0.2))),
+        block(((0.0, 0.0, 0.0), (0.06, 0.08, 0.46))),
+    ],
+    ids=["in mid-air", "cut by the picture's edge", "of few points", "a table top", "large", "a leg"],
+)
+def test_what_may_be_a_piece_does_not_stand_alone(thing):
+    assert not are_free_standing([thing])[0]
+
+
+def test_what_is_below_a_tables_edge_may_be_its_leg():
+    top = block(((0.0, 0.0, 0.0), (1.0, 1.6, 0.75)))
+    table = replace(top, segments=(replace(top.segments[0], carrier=True),))
+    leg = block(((0.02, 0.02, 0.0), (0.1, 0.1, 0.3)))
+    bin_ = block(((0.3, 0.3, 0.0), (0.5, 0.5, 0.3)))
+    assert are_free_standing([leg, bin_]).tolist() == [True, True]
+    assert are_free_standing([table, leg, bin_]).tolist() == [False, False, True]
+
+
+def test_what_stands_alone_is_an_object_however_much_it_looks_like_clutter():
+    learnt = shipped()
+    chances = np.zeros((2, len(learnt.classes)))
+    chances[:, learnt.classes.index(CLUTTER)] = 0.95
+    chances[:, learnt.classes.index("Book")] = 0.05
+    kept, dropped = recognise([THING, replace(FAR, lifted_m=0.2)], chances, learnt)
+    assert kept is not None
+    assert kept.class_ == UNKNOWN
+    assert kept.probability >= 0.95
+    assert dropped is None
