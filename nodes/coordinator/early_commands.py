@@ -29,7 +29,7 @@ class EarlyCommands:
         self._waiting.append((time.monotonic() + bus.RESTART_S, execute, future))
         return future
 
-    def go_on(self, *, has_map: bool) -> None:
+    def retry(self, *, has_map: bool) -> None:
         """Execute what waits if there is a map now; refuse what has waited for nobody."""
         waiting, self._waiting = self._waiting, []
         for deadline_s, execute, future in waiting:

@@ -23,7 +23,7 @@ class FreeNames:
         self._first[stem] = number
         return f"{stem}{number}"
 
-    def freed(self, name: str) -> None:
+    def release(self, name: str) -> None:
         """It may be given again."""
         for stem, number in _readings(name):
             if number < self._first.get(stem, 0):

@@ -112,7 +112,7 @@ class FreePlaces:
             for cell in _cells(footprint.x, footprint.y, footprint.radius) or ():
                 self._cells[cell].pop(name)
         for search in self._searches.values():
-            search.freed(footprint)
+            search.release(footprint)
 
     def _is_free(self, x: float, y: float, reach_m: float) -> bool:
         if any(large.distance(x, y) <= reach_m for large in self._large.values()):
@@ -147,14 +147,14 @@ class _Search:
             self._next = (ring, point + 1) if point + 1 < _points(ring) else (ring + 1, 0)
 
     def position(self, spot: Spot) -> tuple[float, float]:
-        """Where a spot is [m]."""
+        """PoseLookup a spot is [m]."""
         ring, point = spot
         angle = 2.0 * math.pi * point / _points(ring)
         x, y, _ = DEFAULT_POSITION
         radius = ring * self._step_m
         return x + radius * math.cos(angle), y + radius * math.sin(angle)
 
-    def freed(self, footprint: Footprint) -> None:
+    def release(self, footprint: Footprint) -> None:
         """Something no longer stands there: the spots that it kept from being free are tried again."""
         dx, dy = footprint.x - DEFAULT_POSITION[0], footprint.y - DEFAULT_POSITION[1]
         away, around = math.hypot(dx, dy), footprint.radius + self._reach_m

@@ -39,7 +39,7 @@ class HealthView:
         now_s = time.monotonic()
         return any(name == node and now_s - at < SILENT_AFTER_S for (name, *_), (_, at) in self._last.items())
 
-    def may_be_there(self, node: str) -> bool:
+    def may_be_alive(self, node: str) -> bool:
         """Is the node alive, or is it too early to tell? A heart beats once a second."""
         return self.alive(node) or time.monotonic() < self._told_from
 

@@ -22,7 +22,7 @@ _OVER_A_START_S = 900.0
 """A large map takes its time to start."""
 
 
-class Bridge:
+class KbClient:
     """Owned by the coordinator's thread."""
 
     def __init__(self, node: Node) -> None:

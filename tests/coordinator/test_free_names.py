@@ -18,7 +18,7 @@ def test_the_first_free_name_is_found_whatever_came_and_went(seed):
         if taken and rng.random() < 0.3:
             gone = rng.choice(sorted(taken))
             taken.remove(gone)
-            names.freed(gone)
+            names.release(gone)
 
 
 class Counted(set):

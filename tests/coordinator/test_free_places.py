@@ -7,7 +7,7 @@ import pytest
 
 from semmap.nodes.coordinator.free_places import DEFAULT_POSITION, FreePlaces
 from semmap.schemas.entities import Pose, orientation_from_yaw
-from tests.coordinator.scene.test_reconcile import entity
+from tests.coordinator.reconciler.test_reconcile import entity
 from tests.depth import tries
 
 

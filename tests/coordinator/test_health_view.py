@@ -36,12 +36,12 @@ def test_a_silent_node_is_not_alive(monkeypatch):
 
 
 def test_just_after_a_start_a_node_that_was_not_heard_of_may_be_there(monkeypatch):
-    assert HealthView().may_be_there("sim_node")
+    assert HealthView().may_be_alive("sim_node")
     monkeypatch.setattr(health_view, "_HEARD_WITHIN_S", 0.0)
     view = HealthView()
-    assert not view.may_be_there("kb_node")
+    assert not view.may_be_alive("kb_node")
     view.take(beat("starting"))
-    assert view.may_be_there("kb_node")
+    assert view.may_be_alive("kb_node")
 
 
 @pytest.mark.parametrize("client", ["web", "ros"])

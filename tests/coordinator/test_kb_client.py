@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from semmap.nodes import bus
-from semmap.nodes.coordinator.kb_client import Bridge
+from semmap.nodes.coordinator.kb_client import KbClient
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import errors, keys
 from semmap.schemas.bridge import TakeBack
@@ -24,7 +24,7 @@ def network():
     with bus.open_session(peer) as session, bus.open_session(bus.Network(connect=(endpoint,))) as kb:
         node = Node("coordinator", session)
         with handling(node):
-            yield Bridge(node), kb
+            yield KbClient(node), kb
 
 
 def serve(kb):

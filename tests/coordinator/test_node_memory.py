@@ -7,17 +7,17 @@ from semmap.nodes.coordinator import node
 
 
 def test_cycles_with_large_files_are_parted_with():
-    class Dialogue:
+    class RequestCoroutine:
         """Refers to itself, as one that goes on by callbacks does."""
 
-    dialogue = Dialogue()
-    dialogue.itself = dialogue
-    seen = weakref.ref(dialogue)
+    coroutine = RequestCoroutine()
+    coroutine.itself = coroutine
+    seen = weakref.ref(coroutine)
     gc.disable()
     try:
-        del dialogue
+        del coroutine
         assert seen() is not None
-        node._tidy()
+        node._release_memory()
         assert seen() is None
     finally:
         gc.enable()

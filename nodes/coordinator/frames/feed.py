@@ -11,18 +11,23 @@ from typing import Any, TypeVar
 from msgspec import structs
 
 from semmap.nodes import bus
-from semmap.nodes.coordinator.dialogues import hold_later
-from semmap.nodes.coordinator.door.committing import done_before
-from semmap.nodes.coordinator.door.known_map import KnownMap
+from semmap.nodes.coordinator.commands.commit import find_earlier_result
+from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.nodes.coordinator.frames.conversion import (
+    Framed,
+    convert_to_frame,
+    convert_to_map,
+    require_position,
+)
 from semmap.nodes.coordinator.frames.links import PART_OF, EntityLinks, camera_links
-from semmap.nodes.coordinator.frames.placing import Framed, into_map, require_placing, told_in
-from semmap.nodes.coordinator.frames.published import Published
+from semmap.nodes.coordinator.frames.published_frames import PublishedFrames
 from semmap.nodes.coordinator.frames.tree import Link, Tree
-from semmap.nodes.coordinator.kb_client import Bridge
+from semmap.nodes.coordinator.kb_client import KbClient
+from semmap.nodes.coordinator.kb_coroutines import run_async
 from semmap.nodes.coordinator.live.feed import LiveFeed
-from semmap.nodes.coordinator.scene.reconciler import AskSim
+from semmap.nodes.coordinator.reconciler.reconciler import AskSim
 from semmap.nodes.coordinator.scene.scene_view import SceneView
-from semmap.nodes.coordinator.turns import Turns
+from semmap.nodes.coordinator.scheduler import Scheduler
 from semmap.nodes.runtime.futures import OwnFuture, settle
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import commands as c
@@ -45,17 +50,17 @@ class Frames:
         self,
         node: Node,
         stale_s: float,
-        known_map: KnownMap,
+        map_view: MapView,
         live: LiveFeed,
         scene: SceneView,
         ask_sim: AskSim,
-        bridge: Bridge,
-        turns: Turns,
+        kb: KbClient,
+        scheduler: Scheduler,
     ) -> None:
         """`ask_sim(call)` asks the simulator without waiting; a frame counts for `stale_s` of silence."""
-        self._map, self._live, self._scene = known_map, live, scene
-        self._ask_sim, self._bridge, self._turns = ask_sim, bridge, turns
-        self._published = Published(stale_s)
+        self._map, self._live, self._scene = map_view, live, scene
+        self._ask_sim, self._kb, self._scheduler = ask_sim, kb, scheduler
+        self._published = PublishedFrames(stale_s)
         self._stream = bus.Newest(node.session, keys.FRAME, _MOST, deletions=True)
         node.every(_PERIOD_S, self._read)
 
@@ -67,14 +72,14 @@ class Frames:
         """The tree, or a part of it. Raises UnknownName."""
         return self._with_cameras(lambda tree: tuple(tree.frames(command.name)))
 
-    def placed(self, handle: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    def in_map_frame(self, handle: Callable[[Any], Any]) -> Callable[[Any], Any]:
         """The same as `handle`, for commands whose positions may be in a frame: it gets them in the map's."""
 
         def in_turn(command: Framed) -> Any:
             if command.frame is None:
                 return handle(command)
-            require_placing(command)
-            return self._turns.after(lambda: self._in_frame(command, handle))
+            require_position(command)
+            return self._scheduler.run_after(lambda: self._in_frame(command, handle))
 
         return in_turn
 
@@ -86,9 +91,9 @@ class Frames:
 
         def answer(tree: Tree) -> Any:
             try:
-                name = tree.known(word)
+                name = tree.resolve(word)
                 frame = tree.map_pose(name)
-                wanted = into_map(command, frame)
+                wanted = convert_to_map(command, frame)
             except (errors.Refused, errors.BadRequest) as error:
                 return self._unless_done(command, error)
             if not isinstance(command, c.Get | c.List):
@@ -98,14 +103,14 @@ class Frames:
             return _then(made, lambda found: self._told(tree, name, frame, found))
 
         tree = self._tree()
-        if self._scene.known and tree.missing(word):
+        if self._scene.known and tree.is_missing(word):
             return self._with_cameras(answer)
         return answer(tree)
 
     def _told(self, tree: Tree, name: str, frame: Pose, found: Any) -> Any:
         if isinstance(found, Described):
-            return structs.replace(told_in(frame, self._as_it_stands(tree, found)), frame=name)
-        return tuple(told_in(frame, self._as_it_stands(tree, entity)) for entity in found)
+            return structs.replace(convert_to_frame(frame, self._as_it_stands(tree, found)), frame=name)
+        return tuple(convert_to_frame(frame, self._as_it_stands(tree, entity)) for entity in found)
 
     def _as_it_stands(self, tree: Tree, entity: Any) -> Any:
         """A part that nobody tracks is where its whole has taken it."""
@@ -126,7 +131,7 @@ class Frames:
                 raise error
             return done
 
-        return _then(hold_later(done_before(command), self._bridge.ask_later), told)
+        return _then(run_async(find_earlier_result(command), self._kb.ask_later), told)
 
     def _with_cameras(self, use: Callable[[Tree], R]) -> R | Future[R]:
         """What `use` makes of the tree, with the cameras of the simulator if one runs."""
@@ -140,7 +145,7 @@ class Frames:
     def _tree(self, cameras: Cameras = ()) -> Tree:
         self._read()
         now_s, entities, published = time.monotonic(), self._map.entities, self._published
-        of_entities = EntityLinks(entities, self._live.of, self._scene.bodies, self._live.scene_age_s)
+        of_entities = EntityLinks(entities, self._live.live_pose, self._scene.bodies, self._live.scene_age_s)
         of_cameras: dict[str, Link] = {}
 
         def find(name: str) -> Link | None:

@@ -13,7 +13,7 @@ ORIGIN = Pose(position_m=(0.0, 0.0, 0.0))
 
 
 class Link(NamedTuple):
-    """How a frame is tied to its parent. Where `problem` says why it cannot be used, there may be no pose."""
+    """How a frame is tied to its parent. PoseLookup `problem` says why it cannot be used, there may be no pose."""
 
     parent: str
     pose: Pose | None
@@ -31,7 +31,7 @@ class Tree:
         self._find = find
         self._names = names
 
-    def known(self, word: str) -> str:
+    def resolve(self, word: str) -> str:
         """The frame that is meant: of that name, or `robot1_gripper` where somebody writes `robot1/gripper`.
 
         Raises UnknownName with those that are near.
@@ -47,7 +47,7 @@ class Tree:
         )
 
     def map_pose(self, name: str) -> Pose:
-        """Where a frame that is there is in the map's.
+        """PoseLookup a frame that is there is in the map's.
 
         Raises Refused where it, or one above it, is stale, nowhere, or in itself.
         """
@@ -58,10 +58,10 @@ class Tree:
             pose = compose(link.pose, pose)
         return pose
 
-    def missing(self, word: str) -> bool:
+    def is_missing(self, word: str) -> bool:
         """Does the frame that is meant, or one that it is in, not exist?"""
         try:
-            for _, link in self._above(self.known(word)):
+            for _, link in self._above(self.resolve(word)):
                 if link is None:
                     return True
         except errors.UnknownName:
@@ -76,7 +76,7 @@ class Tree:
         Raises UnknownName. A frame whose parents are missing, or in one another, comes last.
         """
         links = {name: link for name in self._names() if name != MAP and (link := self._find(name))}
-        chosen = None if word is None else self._family(self.known(word), links)
+        chosen = None if word is None else self._family(self.resolve(word), links)
         children: dict[str, list[str]] = {}
         for name in sorted(links):
             if chosen is None or name in chosen:
@@ -154,7 +154,7 @@ class Tree:
         while name != MAP:
             if name in passed:
                 circle = [*passed][[*passed].index(name) :]
-                raise errors.Refused(f"{in_one_another([*circle, name])}, so none of them is anywhere")
+                raise errors.Refused(f"{describe_cycle([*circle, name])}, so none of them is anywhere")
             passed[name] = None
             link = self._find(name)
             yield name, link
@@ -163,11 +163,11 @@ class Tree:
             name = link.parent
 
 
-def in_one_another(circle: list[str]) -> str:
+def describe_cycle(circle: list[str]) -> str:
     """A cycle in words; the last of it is the first."""
     return f"frames are in one another in a cycle: {' in '.join(circle)}"
 
 
-def seen_from(frame: Pose, pose: Pose) -> Pose:
+def pose_in_frame(frame: Pose, pose: Pose) -> Pose:
     """A pose of the map in a frame that is at `frame` in it."""
     return rounded(relative(pose, frame))

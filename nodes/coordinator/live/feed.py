@@ -10,12 +10,12 @@ from functools import partial
 from msgspec import structs
 
 from semmap.nodes import bus
-from semmap.nodes.coordinator import holding
+from semmap.nodes.coordinator.commands import attachment_rules
+from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.nodes.coordinator.config import CoordinatorConfig
-from semmap.nodes.coordinator.door.known_map import KnownMap
 from semmap.nodes.coordinator.live.live_poses import Due, LivePoses
+from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
 from semmap.nodes.coordinator.scene.scene_view import SceneView
-from semmap.nodes.coordinator.scene.settled import Settled
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import codec, errors, keys
 from semmap.schemas import live as messages
@@ -35,15 +35,15 @@ class LiveFeed:
         self,
         node: Node,
         config: CoordinatorConfig,
-        known_map: KnownMap,
+        map_view: MapView,
         scene: SceneView,
-        change: Callable[[Settled], Future[Changed]],
+        change: Callable[[ObservedState], Future[Changed]],
     ) -> None:
-        """`change(settled)` changes the map in its turn."""
+        """`change(observed)` changes the map in its turn."""
         self._node = node
-        self._map = known_map
+        self._map = map_view
         self._scene = scene
-        self._scene_heard_s = 0.0
+        self._scene_received_s = 0.0
         self._change = change
         self._poses = LivePoses(config.live, config.thresholds)
         self._under_way: set[str] = set()
@@ -58,41 +58,44 @@ class LiveFeed:
 
     def on_scene(self) -> None:
         """The simulator has just told where bodies are."""
-        self._scene_heard_s = time.monotonic()
+        self._scene_received_s = time.monotonic()
 
     def scene_age_s(self) -> float:
         """How long ago the simulator told where bodies are [s]."""
-        return time.monotonic() - self._scene_heard_s
+        return time.monotonic() - self._scene_received_s
 
-    def of(self, entity: Entity) -> Live | None:
-        """Where a tracked entity is just now, if that was ever heard."""
+    def live_pose(self, entity: Entity) -> Live | None:
+        """PoseLookup a tracked entity is just now, if that was ever heard."""
         if not entity.tracked:
-            return self._carried(entity)
+            return self._attached(entity)
         self._read()
         return self._poses.live(entity.name, time.monotonic())
 
-    def where(self, name: str) -> Pose | None:
-        """Where an entity is just now, by what is known best: live, its body, what holds it, or the map."""
-        return self._where(name, ())
+    def pose_of(self, name: str) -> Pose | None:
+        """PoseLookup an entity is just now, by what is known best: live, its body, what holds it, or the map."""
+        return self._find_pose(name, ())
 
-    def _where(self, name: str, above: tuple[str, ...]) -> Pose | None:
+    def _find_pose(self, name: str, above: tuple[str, ...]) -> Pose | None:
         entity = self._map.entities.get(name)
         if entity is None or name in above:
             return None
-        live = self.of(entity) if entity.tracked else None
+        live = self.live_pose(entity) if entity.tracked else None
         if live is not None and not live.stale:
             return live.pose
         body = self._scene.bodies.get(name) if self._has_bodies and self._scene.known else None
         if body is not None and entity.tracked != "stream":
             return body.pose
-        return holding.carried_pose(entity, lambda by: self._where(by, (*above, name))) or entity.pose
+        return (
+            attachment_rules.attached_pose(entity, lambda by: self._find_pose(by, (*above, name)))
+            or entity.pose
+        )
 
-    def _carried(self, entity: Entity) -> Live | None:
-        """Where a thing is that something holds: as new as is known of that."""
-        if not (by := holder_of(entity)) or (pose := self.where(entity.name)) is None:
+    def _attached(self, entity: Entity) -> Live | None:
+        """PoseLookup a thing is that something holds: as new as is known of that."""
+        if not (by := holder_of(entity)) or (pose := self.pose_of(entity.name)) is None:
             return None
         holder = self._map.entities.get(by)
-        known = self.of(holder) if holder is not None else None
+        known = self.live_pose(holder) if holder is not None else None
         if known is not None:
             return structs.replace(known, pose=rounded(pose))
         source: Tracking = "sim" if entity.name in self._scene.bodies and self._has_bodies else "stream"
@@ -107,10 +110,10 @@ class LiveFeed:
         tracked = {n: e for n, e in self._map.tracked.items() if not names or n in names}
         return tuple(self._poses.displaced(tracked, time.monotonic()))
 
-    def settle(self, name: str) -> Future[Changed] | None:
+    def commit_pose(self, name: str) -> Future[Changed] | None:
         """Commit where an entity is just now; None where that is not known, or is what the map says."""
         entity = self._map.tracked.get(name)
-        live = None if entity is None else self.of(entity)
+        live = None if entity is None else self.live_pose(entity)
         if entity is None or live is None or live.stale or live.pose == entity.pose:
             return None
         return self._commit(Due(name, live.pose, f"{name} is no longer tracked"))
@@ -123,7 +126,7 @@ class LiveFeed:
             for name, entity in tracked.items():
                 body = self._scene.bodies.get(name) if entity.tracked == "sim" else None
                 if body is not None:
-                    poses.take(name, body.pose, self._scene.stamp_ns, self._scene_heard_s, "sim")
+                    poses.take(name, body.pose, self._scene.stamp_ns, self._scene_received_s, "sim")
 
     def _tick(self) -> None:
         if self._map.seq < 0:
@@ -143,12 +146,12 @@ class LiveFeed:
         def on_done(done: Future[Changed]) -> None:
             self._under_way.discard(due.name)
             error = done.exception()
-            self._poses.journalled(due.name, time.monotonic(), refused=error is not None)
+            self._poses.note_commit(due.name, time.monotonic(), refused=error is not None)
             if error is not None and not isinstance(error, errors.NoAnswer):
                 self._node.report(f"{due.name}: the map cannot take over its live pose: {error}")
 
         made = self._change(
-            Settled.of(self._map.entities, {due.name: due.pose}, source=source, reason=due.reason)
+            ObservedState.of(self._map.entities, {due.name: due.pose}, source=source, reason=due.reason)
         )
         made.add_done_callback(on_done)
         return made
@@ -156,7 +159,7 @@ class LiveFeed:
     def _publish(self, now_s: float) -> None:
         current = self._poses.current(now_s)
         for name, entity in self._map.held.items():
-            if name not in current and (live := self._carried(entity)) is not None and not live.stale:
+            if name not in current and (live := self._attached(entity)) is not None and not live.stale:
                 current[name] = live
         told = {
             name: (live.pose, live.stamp_ns if name not in self._map.held else 0)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from semmap.nodes.coordinator.config import LiveRules, Thresholds
 from semmap.nodes.coordinator.live.rest import Rest
-from semmap.nodes.coordinator.scene.agreement import describe_distance
+from semmap.nodes.coordinator.reconciler.agreement import describe_distance
 from semmap.schemas import errors, keys, wording
 from semmap.schemas.entities import Entity, Live, Pose, Tracking, angle_rad, distance_m, rounded
 
@@ -36,13 +36,13 @@ class Due(NamedTuple):
     reason: str
 
 
-class _Heard:
+class _Received:
     """What was heard of one entity."""
 
-    __slots__ = ("heard_s", "journalled_s", "jump", "pose", "rest", "source", "stamp_ns", "tried_s")
+    __slots__ = ("journalled_s", "jump", "pose", "received_s", "rest", "source", "stamp_ns", "tried_s")
 
     def __init__(self, pose: Pose, stamp_ns: int, now_s: float, source: Tracking) -> None:
-        self.pose, self.stamp_ns, self.heard_s, self.source = pose, stamp_ns, now_s, source
+        self.pose, self.stamp_ns, self.received_s, self.source = pose, stamp_ns, now_s, source
         self.rest = Rest(pose, now_s)
         self.jump: tuple[str, float] | None = None
         """In words, and when."""
@@ -63,7 +63,7 @@ class LivePoses:
     def __init__(self, rules: LiveRules, thresholds: Thresholds) -> None:
         """Nothing was heard yet."""
         self._rules, self._thresholds = rules, thresholds
-        self._heard: dict[str, _Heard] = {}
+        self._received: dict[str, _Received] = {}
         self._ignored: dict[str, _Ignored] = {}
 
     # what is heard
@@ -91,25 +91,25 @@ class LivePoses:
 
     def take(self, name: str, pose: Pose, stamp_ns: int, now_s: float, source: Tracking) -> None:
         """A tracked entity was seen at `pose` at `stamp_ns`, which is heard now; the newest counts."""
-        known = self._heard.get(name)
+        known = self._received.get(name)
         if known is None or known.source != source:
-            self._heard[name] = _Heard(pose, stamp_ns, now_s, source)
+            self._received[name] = _Received(pose, stamp_ns, now_s, source)
             return
         if 0 <= known.stamp_ns - stamp_ns < _LATE_NS and stamp_ns != known.stamp_ns:
             return
         moved_m = distance_m(known.pose, pose)
         if source == "stream" and moved_m > _JUMP_M and not self._is_stale(known, now_s):
-            passed_s = max(now_s - known.heard_s, _LEAST_S)
+            passed_s = max(now_s - known.received_s, _LEAST_S)
             if moved_m > _JUMP_M_S * passed_s:
                 known.jump = (f"its live pose jumped {moved_m:.2f} m within {passed_s:.1f} s", now_s)
-        known.pose, known.stamp_ns, known.heard_s = pose, stamp_ns, now_s
+        known.pose, known.stamp_ns, known.received_s = pose, stamp_ns, now_s
         known.rest.take(pose, now_s)
 
     def forget(self, tracked: Mapping[str, Entity]) -> None:
         """Only these are tracked now, each from where the map says."""
-        for name, known in list(self._heard.items()):
+        for name, known in list(self._received.items()):
             if name not in tracked or tracked[name].tracked != known.source:
-                del self._heard[name]
+                del self._received[name]
 
     def _ignore(self, name: str, reason: str, now_s: float) -> None:
         count = self._ignored.pop(name, _Ignored("", 0, 0.0)).times + 1
@@ -120,35 +120,35 @@ class LivePoses:
     # what is told
 
     def live(self, name: str, now_s: float) -> Live | None:
-        """Where an entity is just now; None if nothing was heard of it."""
-        known = self._heard.get(name)
+        """PoseLookup an entity is just now; None if nothing was heard of it."""
+        known = self._received.get(name)
         if known is None:
             return None
         return Live(
             pose=rounded(known.pose),
             stamp_ns=known.stamp_ns,
-            age_s=round(max(0.0, now_s - known.heard_s), 3),
+            age_s=round(max(0.0, now_s - known.received_s), 3),
             source=known.source,
             stale=self._is_stale(known, now_s),
         )
 
     def current(self, now_s: float) -> dict[str, Live]:
-        """Where all are that were heard of lately: what is stale is where it was committed last."""
-        found = ((name, self.live(name, now_s)) for name in self._heard)
+        """PoseLookup all are that were heard of lately: what is stale is where it was committed last."""
+        found = ((name, self.live(name, now_s)) for name in self._received)
         return {name: live for name, live in found if live is not None and not live.stale}
 
-    def _is_stale(self, known: _Heard, now_s: float) -> bool:
-        return now_s - known.heard_s > self._rules.stale_s
+    def _is_stale(self, known: _Received, now_s: float) -> bool:
+        return now_s - known.received_s > self._rules.stale_s
 
     def problems(self, tracked: Mapping[str, Entity], now_s: float) -> Iterator[str]:
         """What is amiss, one sentence each."""
         for name, entity in sorted(tracked.items()):
-            known = self._heard.get(name)
+            known = self._received.get(name)
             if known is None:
                 yield f"{name}: tracked, but {_nothing_yet(name, entity)}"
                 continue
             if self._is_stale(known, now_s):
-                age = wording.duration(now_s - known.heard_s)
+                age = wording.duration(now_s - known.received_s)
                 yield f"{name}: its live pose is stale: nothing has come for {age}"
             if known.jump is not None and now_s - known.jump[1] < _TOLD_S:
                 yield f"{name}: {known.jump[0]}, {now_s - known.jump[1]:.0f} s ago"
@@ -163,7 +163,7 @@ class LivePoses:
         Of those that are tracked from the simulator, the bodies are compared with the map.
         """
         for name, entity in sorted(tracked.items()):
-            known = self._heard.get(name)
+            known = self._received.get(name)
             if known is None or entity.tracked != "stream" or self._is_stale(known, now_s):
                 continue
             if entity.pose is not None and self._is_elsewhere(entity, known.pose):
@@ -175,7 +175,7 @@ class LivePoses:
     def due(self, tracked: Mapping[str, Entity], now_s: float) -> Iterator[Due]:
         """What is to be committed now: where a thing stopped, fell silent, or, if so wanted, passes by."""
         for name, entity in tracked.items():
-            known = self._heard.get(name)
+            known = self._received.get(name)
             if known is None or not self._is_elsewhere(entity, known.pose):
                 continue
             if known.tried_s is not None and now_s - known.tried_s < _AGAIN_S:
@@ -189,9 +189,9 @@ class LivePoses:
             elif is_due and not is_stale:
                 yield Due(name, rounded(known.pose), f"{name} is on its way")
 
-    def journalled(self, name: str, now_s: float, *, refused: bool) -> None:
+    def note_commit(self, name: str, now_s: float, *, refused: bool) -> None:
         """A pose of it was committed, or was refused."""
-        known = self._heard.get(name)
+        known = self._received.get(name)
         if known is not None:
             known.journalled_s, known.tried_s = now_s, now_s if refused else None
 

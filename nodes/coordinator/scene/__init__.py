@@ -1,1 +1,1 @@
-"""Keeping map and scene in agreement, and commands to the scene."""
+"""Reconciler map and scene in agreement, and commands to the scene."""

@@ -1,4 +1,4 @@
-"""Where entities and cameras stand just now, how that is known, and in which frame they are."""
+"""PoseLookup entities and cameras stand just now, how that is known, and in which frame they are."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from semmap.nodes.coordinator.frames.links import EntityLinks, camera_links
 from semmap.nodes.coordinator.frames.tree import Link
 from semmap.schemas.entities import Live, Pose, orientation_from_yaw
 from semmap.schemas.scenes import CameraPose
-from tests.coordinator.scene.test_reconcile import at, body, entity
+from tests.coordinator.reconciler.test_reconcile import at, body, entity
 
 
 def one(name, pose, *, part_of="", tracked="", place=False):

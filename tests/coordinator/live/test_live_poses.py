@@ -9,7 +9,7 @@ from semmap.nodes.coordinator.config import LiveRules, Thresholds
 from semmap.nodes.coordinator.live.live_poses import LivePoses
 from semmap.schemas import errors
 from semmap.schemas.entities import Entity, Pose
-from tests.coordinator.scene.test_reconcile import at, entity
+from tests.coordinator.reconciler.test_reconcile import at, entity
 
 SECOND = 1_000_000_000
 
@@ -83,7 +83,7 @@ def test_it_is_committed_on_its_way_if_that_is_wanted():
         for due in poses.due(entities, now_s):
             reasons.append(due.reason)
             entities = tracked(pose=due.pose)
-            poses.journalled("robot1", now_s, refused=False)
+            poses.note_commit("robot1", now_s, refused=False)
     assert reasons == ["robot1 is on its way"] * 4
 
 
@@ -102,7 +102,7 @@ def test_a_stream_that_ends_leaves_it_where_it_was_and_is_said(poses):
 def test_a_refused_commit_is_tried_again_after_a_while_only(poses):
     poses.take("robot1", at(3.0), SECOND, 0.0, "stream")
     assert len(list(poses.due(tracked(), 1.5))) == 1
-    poses.journalled("robot1", 1.5, refused=True)
+    poses.note_commit("robot1", 1.5, refused=True)
     assert not list(poses.due(tracked(), 1.6))
     assert len(list(poses.due(tracked(), 7.0))) == 1
 

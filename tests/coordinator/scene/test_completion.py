@@ -8,10 +8,10 @@ from types import SimpleNamespace
 import pytest
 from msgspec import structs
 
+from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
 from semmap.nodes.coordinator.scene import completion as module
 from semmap.nodes.coordinator.scene.completion import PAUSED, WAIT_S, Completion
-from semmap.nodes.coordinator.scene.hands import Hands
-from semmap.nodes.coordinator.scene.settled import Settled
+from semmap.nodes.coordinator.scene.manual_moves import ManualMoves
 from semmap.schemas import errors
 from semmap.schemas.commands import Drive, Move, Undo
 from semmap.schemas.entities import Entity, Pose, Provenance
@@ -47,15 +47,17 @@ class World:
         self.followed, self.following, self.returned = False, False, []
         self.scene = SimpleNamespace(known=True, run="a", stamp_ns=0, bodies={"cup1": body(resting=True)})
         self.entities = {"cup1": entity()}
-        self.hands = Hands()
-        keeping = SimpleNamespace(
+        self.manual_moves = ManualMoves()
+        reconciler = SimpleNamespace(
             scene=self.scene,
             is_followed=lambda name: self.followed,
             is_following=lambda names: self.following,
             return_bodies=self._return,
         )
-        door = SimpleNamespace(hands=self.hands, map=SimpleNamespace(entities=self.entities))
-        self.completion = Completion(truth, door, keeping)
+        dispatcher = SimpleNamespace(
+            manual_moves=self.manual_moves, map=SimpleNamespace(entities=self.entities)
+        )
+        self.completion = Completion(truth, dispatcher, reconciler)
         self.asked = Future()
 
     def monotonic(self):
@@ -80,7 +82,7 @@ class World:
     def follow(self):
         """The map begins to follow the cup; the future is of what becomes of that."""
         made = Future()
-        self.completion.watching(lambda _: made)(Settled.of(self.entities, {"cup1": THERE}))
+        self.completion.watch(lambda _: made)(ObservedState.of(self.entities, {"cup1": THERE}))
         return made
 
 

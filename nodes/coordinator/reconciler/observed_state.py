@@ -1,0 +1,136 @@
+"""PoseLookup things have come to be, as a change of the map that takes its turn among the others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+from semmap.nodes.coordinator.commands.transactions import grip_statements
+from semmap.schemas.commits import Edit, Statement
+from semmap.schemas.entities import Entity, Pose, Source
+from semmap.schemas.joints import (
+    IS_OPEN,
+    IS_SWITCHED_ON,
+    JOINT_POSITIONS,
+    OPEN_FROM,
+    OPENNESS,
+    SWITCH_POSITIONS,
+    Joint,
+    is_on,
+    openness,
+    positions_text,
+    wanted,
+)
+
+_DIGITS = 3
+_STAYED = 0.005
+"""A joint that is so near to where it was has not moved [rad, m]."""
+
+
+class ObservedState(NamedTuple):
+    """The map is to take over where bodies rest (several, if a hand carried them), and how joints stand."""
+
+    poses: Mapping[str, Pose]
+    """By name; map frame, metres."""
+    after: Mapping[str, tuple[int, int, int]]
+    """By name, the commits that pose, joints and grip of the entity were from when looked at; -1 for none.
+
+    An entity of which they are from others by now stays as it is."""
+    joints: Mapping[str, tuple[Joint, ...]] = MappingProxyType({})
+    """By name, the joints of a body as they stand."""
+
+    source: Source = "scene"
+    grips: Mapping[str, tuple[str, Pose | None]] = MappingProxyType({})
+    """By name, what holds a body, and where in the frame of that; "" for nothing."""
+    reason: str = ""
+    """Why the map takes them over; without one they came to rest, or a hand put them there."""
+
+    @classmethod
+    def of(
+        cls,
+        entities: Mapping[str, Entity],
+        poses: Mapping[str, Pose],
+        joints: Mapping[str, tuple[Joint, ...]] = MappingProxyType({}),
+        source: Source = "scene",
+        reason: str = "",
+        grips: Mapping[str, tuple[str, Pose | None]] = MappingProxyType({}),
+    ) -> ObservedState:
+        """These entities are at `poses`, `joints` stand as they do, and `grips` hold what they hold."""
+        after = {name: commits_of(entities[name]) for name in {**poses, **joints, **grips}}
+        return cls(poses, after, joints, source, grips, reason)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The entities that it is about, those first whose joints took others along."""
+        return tuple({**self.joints, **self.poses, **self.grips})
+
+    def edits(self, entities: Mapping[str, Entity]) -> list[Edit]:
+        """What is to change of the entities that nobody has moved, opened or removed meanwhile."""
+        return [
+            self._edit(name)
+            for name in self.names
+            if name in entities and commits_of(entities[name]) == self.after[name]
+        ]
+
+    def _edit(self, name: str) -> Edit:
+        pose, joints = self.poses.get(name), self.joints.get(name, ())
+        holder, grip = self.grips.get(name, (None, None))
+        return Edit(
+            name=name,
+            at=None if pose is None else pose.position_m,
+            orientation=None if pose is None else pose.orientation_wxyz,
+            unset=grip_statements("", None) if holder == "" else (),
+            set=(*joint_statements(joints), *(grip_statements(holder, grip) if holder else ())),
+        )
+
+
+def joint_statements(joints: tuple[Joint, ...]) -> tuple[Statement, ...]:
+    """What a map states of how joints stand."""
+    switches = tuple(joint for joint in joints if joint.switches)
+    others = tuple(joint for joint in joints if not joint.switches)
+    found = []
+    if (share := openness(others)) is not None:
+        found.append(Statement(property=IS_OPEN, values=(str(share > OPEN_FROM).lower(),)))
+        found.append(Statement(property=OPENNESS, values=(f"{round(share, _DIGITS):g}",)))
+    if others:
+        found.append(Statement(property=JOINT_POSITIONS, values=(positions_text(others),)))
+    if switches:
+        found.append(Statement(property=IS_SWITCHED_ON, values=(str(is_on(switches)).lower(),)))
+        found.append(Statement(property=SWITCH_POSITIONS, values=(positions_text(switches),)))
+    return tuple(found)
+
+
+def commits_of(entity: Entity) -> tuple[int, int, int]:
+    """The commits that an entity's pose, its joints and its grip are from; -1 for what it has not."""
+    joints, grip = entity.joints_said, entity.grip_provenance
+    return (
+        -1 if entity.pose is None else entity.pose_provenance.commit,
+        -1 if joints is None else joints.commit,
+        -1 if grip is None else grip.commit,
+    )
+
+
+def describe_joint_change(
+    joints: tuple[Joint, ...], before: Mapping[str, object] = MappingProxyType({})
+) -> str:
+    """What has become of a thing whose joints came to stand so: `was closed`, `was switched on`.
+
+    `before` is what the map stated of it until now: only of what is new something is told.
+    """
+    was = wanted(joints, before)
+    moved = [j for j in joints if abs(j.position - was.get(j.name, j.initial)) > _STAYED]
+    told = moved or joints
+    switched = [joint for joint in told if joint.switches]
+    others = tuple(joint for joint in told if not joint.switches)
+    share = openness(joints)
+    words = []
+    if others and share is None:
+        words.append(f"stands at {positions_text(others)}")
+    elif others and share is not None:
+        words.append(f"was opened to {share:.0%}" if share > OPEN_FROM else "was closed")
+    if switched:
+        on = is_on(joints)
+        turned = on == before.get(IS_SWITCHED_ON, False) and moved
+        words.append(f"has {positions_text(switched)}" if turned else f"was switched {'on' if on else 'off'}")
+    return " and ".join(words)

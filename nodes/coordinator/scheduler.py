@@ -1,0 +1,166 @@
+"""Whose turn it is: commands keep their order where it matters, and the others go together.
+
+Changes of different entities do not depend on one another: those that wait are asked of the knowledge base as
+one group, and the next group is sent while one is under way, so that neither waits for the other. Everything
+else, an entity without a name or a place among it (they have to suit the others), waits until what came
+before is done, and what comes after a change waits for that.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from itertools import islice
+from typing import Any, NamedTuple
+
+from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
+from semmap.nodes.runtime.futures import OwnFuture, settle
+from semmap.schemas.commands import (
+    Add,
+    Attach,
+    Batch,
+    Clear,
+    Detach,
+    Load,
+    Remove,
+    Set,
+    Track,
+    Undo,
+    Unset,
+    Update,
+)
+from semmap.schemas.replies import Changed
+
+GROUP = 16
+"""How many changes go together at most: two groups are as many as a busy client has in flight."""
+AT_ONCE = 2
+"""How many groups may be under way: one that the knowledge base works on, and one that waits there."""
+
+Change = (
+    Add
+    | Update
+    | Set
+    | Unset
+    | Batch
+    | Track
+    | Attach
+    | Detach
+    | Remove
+    | Clear
+    | Load
+    | Undo
+    | ObservedState
+)
+Results = list[Changed | Exception]
+
+
+class _Waiting(NamedTuple):
+    """A change, or something else that has to wait for its turn."""
+
+    change: Change | None
+    execute: Callable[[], Any]
+    future: Future[Any]
+
+
+Group = frozenset[str | None]
+"""The entities that a group of changes is about; None for one that goes alone."""
+
+
+class Scheduler:
+    """Owned by the coordinator's thread, which calls `run_ready` when it has nothing else to do."""
+
+    def __init__(self, together: Callable[[Sequence[Change]], Future[Results]]) -> None:
+        """`together(changes)` makes changes of different entities, or one that goes alone."""
+        self._together = together
+        self._waiting: deque[_Waiting] = deque()
+        self._under_way: list[Group] = []
+
+    def __len__(self) -> int:
+        """How many commands wait."""
+        return len(self._waiting)
+
+    def change(self, change: Change) -> Future[Changed]:
+        """The result of a change, in its turn."""
+        future: Future[Changed] = OwnFuture()
+        self._waiting.append(_Waiting(change, lambda: None, future))
+        if len(self._waiting) >= GROUP:
+            self.run_ready()
+        return future
+
+    def run_after(self, execute: Callable[[], Any]) -> Any:
+        """What `execute()` gives, or, when something came before it, a future of that."""
+        if not self._waiting and not self._under_way:
+            return execute()
+        future: Future[Any] = OwnFuture()
+        self._waiting.append(_Waiting(None, execute, future))
+        return future
+
+    def run_ready(self) -> None:
+        """Begin what can begin."""
+        while self._waiting:
+            if self._waiting[0].change is not None:
+                members = self._next_group()
+                if not members:
+                    return
+                self._begin([self._waiting.popleft() for _ in members])
+            elif self._under_way:
+                return
+            else:
+                _, execute, future = self._waiting.popleft()
+                settle(future, execute)
+
+    def _next_group(self) -> list[Change]:
+        """The changes at the front that depend neither on one another nor on what is under way.
+
+        None of them begin beside a larger group: more will have come when that is done.
+        """
+        if not self._under_way and len(self._waiting) == 1:  # as most come
+            return [change for change, _, _ in self._waiting if change is not None]
+        if len(self._under_way) == AT_ONCE or any(None in group for group in self._under_way):
+            return []
+        names = {name for group in self._under_way for name in group}
+        members: list[Change] = []
+        for change, _, _ in islice(self._waiting, GROUP):
+            name = None if change is None else _entity(change)
+            if change is not None and name is None and not members and not self._under_way:
+                return [change]
+            if change is None or name is None or name in names:
+                break
+            names.add(name)
+            members.append(change)
+        return members if all(len(members) >= len(group) for group in self._under_way) else []
+
+    def _begin(self, members: Sequence[_Waiting]) -> None:
+        changes = [change for change, _, _ in members if change is not None]
+        group = frozenset(map(_entity, changes))
+        self._under_way.append(group)
+
+        def on_done(done: Future[Results]) -> None:
+            self._under_way.remove(group)
+            for i, (_, _, future) in enumerate(members):
+                settle(future, lambda i=i: _result(done.result()[i]))  # type: ignore[misc]
+
+        try:
+            results = self._together(changes)
+        except Exception as error:  # whatever it is, those who wait are told of it
+            results = OwnFuture()
+            results.set_exception(error)
+        results.add_done_callback(on_done)
+
+
+def _entity(change: Change) -> str | None:
+    """The one that it is about; None when it depends on others, or is to go alone."""
+    if isinstance(change, ObservedState):
+        return change.names[0] if len(change.names) == 1 else None
+    if change.dry_run:
+        return None
+    if isinstance(change, Add):
+        return change.name if change.at is not None else None
+    return change.name if isinstance(change, (Update, Set, Unset, Track)) else None
+
+
+def _result(result: Changed | Exception) -> Changed:
+    if isinstance(result, Exception):
+        raise result
+    return result
