@@ -53,13 +53,13 @@ def raw(system, folder):
 
     def opened(name):
         identity = Identity.read(folder / name)
-        return bus.open_session(bus.Network(connect=(bus.over_tls(system.endpoint),), identity=identity))
+        return bus.open_session(bus.Network(connect=(bus.to_tls(system.endpoint),), identity=identity))
 
     return opened
 
 
 def test_a_stranger_sees_nothing(system):
-    assert "--identity DIR/NAME" in system.cli("status", "--connect", bus.over_tls(system.endpoint), status=3)
+    assert "--identity DIR/NAME" in system.cli("status", "--connect", bus.to_tls(system.endpoint), status=3)
     system.cli("status", status=3)  # without TLS
 
 

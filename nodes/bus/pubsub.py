@@ -9,7 +9,7 @@ from typing import Any, Literal
 import zenoh
 from zenoh import ext
 
-from semmap.nodes.bus import pieces
+from semmap.nodes.bus import fragmentation
 from semmap.schemas import codec, errors, keys
 from semmap.schemas.scenes import CameraFrame
 
@@ -29,7 +29,7 @@ def publisher(session: zenoh.Session, topic: keys.Topic, key: str | None = None)
     )
 
 
-def watched(session: zenoh.Session, topic: keys.Topic) -> Callable[[], bool]:
+def subscriber_check(session: zenoh.Session, topic: keys.Topic) -> Callable[[], bool]:
     """A function that tells whether anybody follows any key of `topic` just now."""
     publisher = session.declare_publisher(topic.key)
     return lambda: publisher.matching_status.matching  # type: ignore[attr-defined]
@@ -51,7 +51,7 @@ def follow(
         if sample.kind == zenoh.SampleKind.DELETE:
             receive(str(sample.key_expr), None)
             return
-        if len(sample.payload) > pieces.MESSAGE:
+        if len(sample.payload) > fragmentation.MESSAGE_BYTES:
             ignored()
             return
         try:
@@ -72,7 +72,7 @@ def follow(
     )
 
 
-class Newest:
+class NewestSamples:
     """Publications that come too often to be handled one by one: the newest of each key, when wanted."""
 
     def __init__(
@@ -101,7 +101,7 @@ class Newest:
     def _read(self, sample: zenoh.Sample) -> Any:
         if sample.kind == zenoh.SampleKind.DELETE:
             return None
-        if len(sample.payload) > pieces.MESSAGE:
+        if len(sample.payload) > fragmentation.MESSAGE_BYTES:
             raise errors.BadRequest(f"a message of {len(sample.payload):,} bytes is too large")
         return codec.decode(sample.payload.to_bytes(), self._kind)
 
@@ -142,7 +142,7 @@ def includes(key_exprs: Iterable[str], key_expr: str) -> bool:
     return any(zenoh.KeyExpr(one).includes(wanted) for one in key_exprs)
 
 
-def meets(key_exprs: Iterable[str], key_expr: str) -> bool:
+def intersects(key_exprs: Iterable[str], key_expr: str) -> bool:
     """Is any key of `key_expr` in one of `key_exprs`? So it is for what is no key expression."""
     try:
         wanted = zenoh.KeyExpr(key_expr)

@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple
 import zenoh
 from zenoh import ext
 
-from semmap.nodes.bus import pieces
+from semmap.nodes.bus import fragmentation
 
 _SPACE: Final = "@ros2_lv"
 _DEPTH: Final = 10
@@ -85,7 +85,7 @@ class RosNode:
         """Each message of a topic goes to `receive(cdr)`, on a thread of Zenoh's, unless it is too large."""
 
         def on_sample(sample: zenoh.Sample) -> None:
-            if len(sample.payload) <= pieces.PLANE:
+            if len(sample.payload) <= fragmentation.PLANE_BYTES:
                 receive(sample.payload.to_bytes())
 
         key = topic.key(self._domain)

@@ -18,7 +18,7 @@ import zenoh
 from msgspec import Struct
 from zenoh import Session as Session
 
-from semmap.nodes.bus import own_config, pieces
+from semmap.nodes.bus import fragmentation, zenoh_config
 from semmap.nodes.identity import Identity
 from semmap.schemas import errors, keys
 from semmap.schemas.endpoints import DEFAULT_ENDPOINT as DEFAULT_ENDPOINT
@@ -103,7 +103,7 @@ class Network(Struct, frozen=True):
     def as_file(self) -> str:
         """The same as a configuration file of Zenoh's, for a program that is not one of ours."""
         document: dict[str, Any] = {}
-        for path, value in {**self.values(), _LARGEST: pieces.PLANE}.items():
+        for path, value in {**self.values(), _LARGEST: fragmentation.PLANE_BYTES}.items():
             *above, last = path.split("/")
             inner = document
             for name in above:
@@ -114,15 +114,15 @@ class Network(Struct, frozen=True):
     def as_config(self) -> zenoh.Config:
         """The configuration of a session. Raises BadFile for one of one's own that cannot be read."""
         values = self.values()
-        config = zenoh.Config() if self.own_config is None else own_config.read(self.own_config)
+        config = zenoh.Config() if self.own_config is None else zenoh_config.read(self.own_config)
         if self.own_config is None or config.get_json(_LARGEST) == zenoh.Config().get_json(_LARGEST):
-            values[_LARGEST] = pieces.PLANE
+            values[_LARGEST] = fragmentation.PLANE_BYTES
         for key, value in values.items():
             config.insert_json5(key, json.dumps(value))
         return config
 
 
-def read_links_apart() -> None:
+def set_reader_threads() -> None:
     """Let a flood on some links not hold up the others; to be called before the process's first session."""
     os.environ.setdefault(_THREADS, f"(rx: (worker_threads: {_READERS}))")
 
@@ -136,7 +136,7 @@ def require_tls(endpoint: str) -> None:
         )
 
 
-class HungUp(errors.NoAnswer):
+class ConnectionClosed(errors.NoAnswer):
     """Somebody listens there, and does not want to talk with us."""
 
 
@@ -153,7 +153,7 @@ def is_local(endpoint: str) -> bool:
     return host in ("localhost", "::1") or re.fullmatch(r"127(\.\d{1,3}){3}", host) is not None
 
 
-def over_tls(endpoint: str) -> str:
+def to_tls(endpoint: str) -> str:
     """The endpoint by TLS, where it was given by plain TCP."""
     return TLS + endpoint.removeprefix("tcp/") if endpoint.startswith("tcp/") else endpoint
 
@@ -194,7 +194,7 @@ def open_session(network: Network) -> Iterator[zenoh.Session]:
                 ) from None
             raise errors.NoAnswer(f"no system answers at {where}; start one with: semmap up") from None
         if not network.listen and _HUNG_UP in str(error):
-            raise HungUp(
+            raise ConnectionClosed(
                 f"whoever listens at {where} hung up; a secure system wants to know who you are:"
                 " --identity DIR/NAME"
             ) from None

@@ -8,7 +8,7 @@ from concurrent.futures import Future
 from typing import Any
 
 from semmap.nodes import bus
-from semmap.nodes.runtime.futures import OwnFuture, settle
+from semmap.nodes.runtime.futures import SingleThreadFuture, settle
 from semmap.schemas import errors
 
 
@@ -25,7 +25,7 @@ class EarlyCommands:
 
     def wait(self, execute: Callable[[], Any]) -> Future[Any]:
         """The outcome of `execute()`, which is called when there is a map."""
-        future: Future[Any] = OwnFuture()
+        future: Future[Any] = SingleThreadFuture()
         self._waiting.append((time.monotonic() + bus.RESTART_S, execute, future))
         return future
 

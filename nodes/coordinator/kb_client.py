@@ -6,7 +6,7 @@ from concurrent.futures import Future
 from typing import TypeVar
 
 from semmap.nodes import bus
-from semmap.nodes.runtime.futures import OwnFuture
+from semmap.nodes.runtime.futures import SingleThreadFuture
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import errors, keys
 from semmap.schemas.calls import Call, Relay
@@ -43,7 +43,7 @@ class KbClient:
         """
         if not call.is_quick:
             return self.change_later(call)
-        future: Future[R] = OwnFuture()
+        future: Future[R] = SingleThreadFuture()
         try:
             future.set_result(self._node.ask(keys.BRIDGE, call, timeout_s=_AT_ONCE_S, patience_s=0.0))
         except errors.NoAnswer:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import Future
 from typing import Any, TypeVar
 
-from semmap.nodes.runtime.futures import OwnFuture
+from semmap.nodes.runtime.futures import SingleThreadFuture
 from semmap.schemas import errors
 from semmap.schemas.bridge import MadeBy, Outcome, Transactions
 from semmap.schemas.calls import Call
@@ -49,7 +49,7 @@ def run(coroutine: KbCoroutine[T], ask: Ask) -> T:
 
 def run_async(coroutine: KbCoroutine[T], ask_later: AskLater) -> Future[T]:
     """The result of a talk that goes on whenever an answer comes, on the thread that brings it."""
-    future: Future[T] = OwnFuture()
+    future: Future[T] = SingleThreadFuture()
     _continue(coroutine, ask_later, future, None)
     return future
 

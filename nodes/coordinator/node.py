@@ -32,9 +32,9 @@ from semmap.nodes.coordinator.scene.wall_queries import WallQueries
 from semmap.nodes.coordinator.scheduler import Change, Results, Scheduler
 from semmap.nodes.runtime import heap
 from semmap.nodes.runtime.class_names import ClassNames
-from semmap.nodes.runtime.following import Begun, Follower
-from semmap.nodes.runtime.futures import OwnFuture, settle, then
+from semmap.nodes.runtime.futures import SingleThreadFuture, settle, then
 from semmap.nodes.runtime.loop import Node, open_node
+from semmap.nodes.runtime.map_follower import Follower, SnapshotLoaded
 from semmap.schemas import calls, keys, wording
 from semmap.schemas import commands as c
 from semmap.schemas.entities import BodyState
@@ -151,7 +151,9 @@ class Coordinator:
                 c.Approve.answered_by(approvals.approve),
             ),
         }
-        Follower(node, dispatcher.map, keys.UNTOLD, heard=lambda commit, known: None, begun=self._on_map)
+        Follower(
+            node, dispatcher.map, keys.UNTOLD, on_commit=lambda commit, known: None, on_snapshot=self._on_map
+        )
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
         left = self._is_left_to_the_map
@@ -172,7 +174,7 @@ class Coordinator:
 
     # Following
 
-    def _on_map(self, begun: Begun) -> None:
+    def _on_map(self, begun: SnapshotLoaded) -> None:
         self._dispatcher.map.classes = ClassNames(begun.classes)
         self._has_map = True
         gc.freeze()  # most of the map stays as it is: the collector need not look through it again
@@ -218,7 +220,7 @@ class Coordinator:
         made = self._change_with_note(command)
         if not command.wait or command.dry_run:
             return made
-        future: Future[Changed] = OwnFuture()
+        future: Future[Changed] = SingleThreadFuture()
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
         return future
 
@@ -231,7 +233,7 @@ class Coordinator:
         settled = self._live.commit_pose(command.name) if command.off and not command.dry_run else None
         if settled is None:
             return self._scheduler.change(command)
-        future: Future[Changed] = OwnFuture()
+        future: Future[Changed] = SingleThreadFuture()
         settled.add_done_callback(lambda _: settle(future, lambda: self._scheduler.change(command)))
         return future
 
@@ -247,7 +249,7 @@ class Coordinator:
         return run_async(self._dispatcher.together(changes), ask)
 
     def _once_there_is_a_body(self, changed: Changed) -> Future[Changed]:
-        future: Future[Changed] = OwnFuture()
+        future: Future[Changed] = SingleThreadFuture()
         if not changed.names:  # the id is that of an earlier change, which named nothing
             future.set_result(changed)
             return future

@@ -15,7 +15,7 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
-from semmap.nodes.runtime.futures import OwnFuture, settle
+from semmap.nodes.runtime.futures import SingleThreadFuture, settle
 from semmap.schemas.commands import (
     Add,
     Attach,
@@ -82,7 +82,7 @@ class Scheduler:
 
     def change(self, change: Change) -> Future[Changed]:
         """The result of a change, in its turn."""
-        future: Future[Changed] = OwnFuture()
+        future: Future[Changed] = SingleThreadFuture()
         self._waiting.append(_Waiting(change, lambda: None, future))
         if len(self._waiting) >= GROUP:
             self.run_ready()
@@ -92,7 +92,7 @@ class Scheduler:
         """What `execute()` gives, or, when something came before it, a future of that."""
         if not self._waiting and not self._under_way:
             return execute()
-        future: Future[Any] = OwnFuture()
+        future: Future[Any] = SingleThreadFuture()
         self._waiting.append(_Waiting(None, execute, future))
         return future
 
@@ -144,7 +144,7 @@ class Scheduler:
         try:
             results = self._together(changes)
         except Exception as error:  # whatever it is, those who wait are told of it
-            results = OwnFuture()
+            results = SingleThreadFuture()
             results.set_exception(error)
         results.add_done_callback(on_done)
 

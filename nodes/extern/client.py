@@ -97,7 +97,7 @@ class Client(Verbs):
     ) -> None:
         self.session = session
         self.identity = identity
-        self._lifelines = bus.Lifelines(session)
+        self._liveliness = bus.LivelinessMonitor(session)
         self._live: dict[str, Any] = {}
         """The publishers of live poses and frames, by key."""
         self.prefix = keys.CMD if identity is None else keys.commands_as(identity.name)
@@ -111,7 +111,7 @@ class Client(Verbs):
         role of this client's certificate does not permit, and NoAnswer when the reply takes longer than
         `timeout_s` [s].
         """
-        signed, first_hand = _checked(command, self._signature), command.VERB in keys.OF_THE_MAP
+        signed, prefer_complete = _checked(command, self._signature), command.VERB in keys.OF_THE_MAP
         if self.identity is not None and (refusal := roles.refusal(self.identity.role, signed)) is not None:
             raise errors.Refused(refusal)
         reply: R = self._ask(
@@ -120,14 +120,14 @@ class Client(Verbs):
             reply_type(type(command)),
             timeout_s=timeout_s,
             patience_s=bus.RESTART_S if isinstance(command, _LONG) else bus.PATIENCE_S,
-            first_hand=first_hand,
+            prefer_complete=prefer_complete,
         )
         return reply
 
     def _ask(self, verb: str, command: Command, kind: Any, **how: Any) -> Any:
         """As `bus.ask`; a misunderstanding between versions is told as one."""
         try:
-            return bus.ask(self.session, self.prefix, verb, command, kind, lifelines=self._lifelines, **how)
+            return bus.ask(self.session, self.prefix, verb, command, kind, liveliness=self._liveliness, **how)
         except errors.SemmapError as error:
             if _may_be_of_versions(error) and (difference := version.difference(self._version_of_system())):
                 raise type(error)(f"{error.text}; {difference}", explanation=error.explanation) from None

@@ -21,7 +21,7 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 from msgspec import structs
 
 from semmap.nodes.identity.identity import AUTHORITY, SUPERVISOR
-from semmap.nodes.identity.register import FILE, Member, Register, changing
+from semmap.nodes.identity.register import FILE, Member, Register, lock_folder
 from semmap.schemas import errors, keys
 from semmap.schemas.keys import ROUTER
 from semmap.schemas.roles import Role
@@ -48,7 +48,7 @@ def _alone(change: Callable[Concatenate[Path, P], Member]) -> Callable[Concatena
     @functools.wraps(change)
     def alone(folder: Path, /, *args: P.args, **options: P.kwargs) -> Member:
         Register.read(folder)
-        with changing(folder):
+        with lock_folder(folder):
             return change(folder, *args, **options)
 
     return alone

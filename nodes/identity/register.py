@@ -57,7 +57,7 @@ class Register(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
             raise errors.BadFile(f"{path} is malformed: {error}") from None
 
     def write(self, folder: Path) -> None:
-        """Replace that of the folder as a whole, durably. Whoever changes it holds `changing`."""
+        """Replace that of the folder as a whole, durably. Whoever changes it holds `lock_folder`."""
         with tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
             file.write(msgspec.json.format(msgspec.json.encode(self)))
             file.flush()
@@ -66,7 +66,7 @@ class Register(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
 
 @contextlib.contextmanager
-def changing(folder: Path) -> Iterator[None]:
+def lock_folder(folder: Path) -> Iterator[None]:
     """While this is open no other process changes the folder of keys."""
     lock = os.open(folder, os.O_RDONLY)
     try:

@@ -37,8 +37,8 @@ from semmap.nodes.perception_node.tracking.map_updates import subject_of
 from semmap.nodes.perception_node.tracking.occupancy import occupancy_in
 from semmap.nodes.perception_node.tracking.tracks import Tracks
 from semmap.nodes.perception_node.watching import Watching
-from semmap.nodes.runtime.following import Begun, Follower
 from semmap.nodes.runtime.loop import Node, open_node
+from semmap.nodes.runtime.map_follower import Follower, SnapshotLoaded
 from semmap.nodes.runtime.map_replica import MapReplica
 from semmap.schemas import codec, errors, keys, wording
 from semmap.schemas.commands import Add, Command, LastSeen
@@ -93,8 +93,10 @@ class Perception:
         self._cloud_due = 0.0
         self._looked_at = time.monotonic()
         self._cloud = bus.publisher(node.session, keys.CLOUD)
-        self._cloud_is_wanted = bus.watched(node.session, keys.CLOUD)
-        Follower(node, self._map, keys.EFFECTS, heard=lambda commit, known: None, begun=self._on_map)
+        self._cloud_is_wanted = bus.subscriber_check(node.session, keys.CLOUD)
+        Follower(
+            node, self._map, keys.EFFECTS, on_commit=lambda commit, known: None, on_snapshot=self._on_map
+        )
         node.every(0.5, self._tick)
         self._on_taught = taught
         self._teaching = (
@@ -246,7 +248,7 @@ class Perception:
         self._refused[subject_of(command)] = time.monotonic() + _REFUSED_S
         self._on_complaint(f"the map rejected an observation: {error}")
 
-    def _on_map(self, begun: Begun) -> None:
+    def _on_map(self, begun: SnapshotLoaded) -> None:
         self._classes = hierarchy_of(begun.classes, self._usual_m)
         self._told_commit = min(self._told_commit, self._map.seq)
         self._node.ready("no camera frames yet")

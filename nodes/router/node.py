@@ -18,7 +18,7 @@ from semmap.nodes import bus
 from semmap.nodes.identity.register import LiveRegister, Register
 from semmap.nodes.router.access import access_control
 from semmap.nodes.router.config import RouterConfig
-from semmap.nodes.router.silent_links import give_up_after
+from semmap.nodes.router.tcp_timeout import set_user_timeout
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import keys
 from semmap.schemas.errors import enumerated
@@ -31,7 +31,7 @@ _SILENT_S = 2.5
 _SOON = timedelta(days=30)
 
 
-def in_words(register: Register, now: datetime) -> str:
+def describe_certificates(register: Register, now: datetime) -> str:
     """How many are admitted, and whose certificate expires next, if that is soon."""
     said = f"{len(register.admitted)} certificates"
     valid = [member for member in register.admitted if member.expires > now]
@@ -43,7 +43,7 @@ def in_words(register: Register, now: datetime) -> str:
     return said
 
 
-def told_of_links(met: int, connect: Sequence[str]) -> str:
+def describe_links(met: int, connect: Sequence[str]) -> str:
     """To how many routers of other hosts there is a link; nothing where none is to be."""
     if met:
         return f"linked to {counted(met, 'other router')}"
@@ -80,14 +80,16 @@ class Router:
             network = structs.replace(network, access=access)
         with bus.open_session(network) as session:
             node = self._node = Node(keys.ROUTER, session)
-            admitted = "admits everybody" if register is None else in_words(register, datetime.now(UTC))
+            admitted = (
+                "admits everybody" if register is None else describe_certificates(register, datetime.now(UTC))
+            )
 
             def look() -> None:
                 if self._stopped or (self._live is not None and self._live.now is not register):
                     node.stop()
-                give_up_after(_SILENT_S)
+                set_user_timeout(_SILENT_S)
                 met = bus.linked_routers(session)
-                said = "; ".join(filter(None, (told_of_links(met, network.connect), admitted)))
+                said = "; ".join(filter(None, (describe_links(met, network.connect), admitted)))
                 if met or not network.connect:
                     node.ready(said)
                 else:
@@ -96,7 +98,7 @@ class Router:
             def read() -> None:
                 nonlocal admitted
                 if register is not None:
-                    admitted = in_words(register, datetime.now(UTC))
+                    admitted = describe_certificates(register, datetime.now(UTC))
 
             look()
             node.every(_TELL_S, read)

@@ -13,7 +13,7 @@ T = TypeVar("T")
 U = TypeVar("U")
 
 
-class OwnFuture(Future[T]):
+class SingleThreadFuture(Future[T]):
     """A future that one thread both resolves and reads: it has no lock, and nobody can wait for it.
 
     A command passes through several; one with a lock takes four times as long.
@@ -102,7 +102,7 @@ def settle(future: Future[T], execute: Callable[[], T | Future[T]]) -> None:
 
 def then(future: Future[T], function: Callable[[T], U]) -> Future[U]:
     """The future of `function(result)`; errors pass through."""
-    following: Future[U] = OwnFuture() if isinstance(future, OwnFuture) else Future()
+    following: Future[U] = SingleThreadFuture() if isinstance(future, SingleThreadFuture) else Future()
 
     def on_done(done: Future[T]) -> None:
         try:
@@ -119,6 +119,6 @@ def and_then(future: Future[T], function: Callable[[T], U | Future[U]]) -> Futur
 
     Both belong to one thread.
     """
-    following: Future[U] = OwnFuture()
+    following: Future[U] = SingleThreadFuture()
     future.add_done_callback(lambda done: settle(following, lambda: function(done.result())))
     return following

@@ -67,7 +67,7 @@ class Heartbeat:
         """Say so, at once, and let the liveliness token appear."""
         if self._state != "ready":
             self._state = "ready"
-            self._token = bus.appear(self._session, self._name)
+            self._token = bus.declare_presence(self._session, self._name)
             log.info("ready: %s", detail)
             self.due_s = 0.0
         self.describe(detail)

@@ -69,7 +69,7 @@ class Node:
         self._afterwards: list[Callable[[], None]] = []
         self._stopping = False
         self._heartbeat = Heartbeat(name, session)
-        self._lifelines = bus.Lifelines(session)
+        self._liveliness = bus.LivelinessMonitor(session)
 
     @property
     def asker(self) -> str:
@@ -114,7 +114,7 @@ class Node:
     def serve_one(self, prefix: str, handler: Handler) -> None:
         """Answer queries on `prefix/<verb>` of one verb; another node serves all others of the prefix.
 
-        `prefix` may stand for everybody's own: `semmap/as/*/cmd`.
+        `prefix` may stand for ask_all's own: `semmap/as/*/cmd`.
         """
         verb = handler.kind.VERB
 
@@ -134,7 +134,7 @@ class Node:
             self._is_at_once = True
             self._events.put(partial(self._handle_at_once, handle))
             return
-        size = min(len(request.payload), bus.PIECE)  # what came in pieces is bounded by itself
+        size = min(len(request.payload), bus.FRAGMENT_BYTES)  # what came in pieces is bounded by itself
         again_s = self._requests.put(request.asker, handle, size=size, urgent=urgent)
         if again_s is None:
             self._events.put(_wake)
@@ -209,7 +209,7 @@ class Node:
         beating: bool = False,
     ) -> R:
         """`bus.ask` on this node's session; the heart stops meanwhile, or goes on if `beating` (slower)."""
-        meanwhile = self.beat if beating else None
+        on_wait = self.beat if beating else None
         answer: R = bus.ask(
             self.session,
             self._prefix(prefix),
@@ -218,8 +218,8 @@ class Node:
             reply_type(type(call)),
             timeout_s=timeout_s,
             patience_s=patience_s,
-            meanwhile=meanwhile,
-            lifelines=self._lifelines,
+            on_wait=on_wait,
+            liveliness=self._liveliness,
         )
         return answer
 
@@ -247,11 +247,11 @@ class Node:
         With `asked_by` it is asked in that one's name, who is told himself where somebody is busy.
         """
         future: Future[Any] = Future()
-        patience: list[bus.Patience] = []
+        patience: list[bus.BusyBackoff] = []
         deadline_s = time.monotonic() + patience_s
         round_s = bus.first_round_s(call, timeout_s)
 
-        def send(everybody: bool = False) -> None:
+        def send(ask_all: bool = False) -> None:
             try:
                 bus.ask_later(
                     self.session,
@@ -261,8 +261,8 @@ class Node:
                     reply_type(type(call)),
                     answer,
                     timeout_s=round_s,
-                    lifelines=self._lifelines,
-                    everybody=everybody,
+                    liveliness=self._liveliness,
+                    ask_all=ask_all,
                     source=None if asked_by is None else asked_by.source,
                 )
             except Exception as error:  # whoever waits for the future would wait for ever
@@ -281,13 +281,13 @@ class Node:
                     future.set_exception(error)
                     return
                 self.report(error.text)
-                self._at(time.monotonic() + _AGAIN_S, partial(send, everybody=True))
+                self._at(time.monotonic() + _AGAIN_S, partial(send, ask_all=True))
             except errors.Busy as error:
                 if asked_by is not None:
                     future.set_exception(error)
                     return
                 if not patience:
-                    patience.append(bus.Patience())
+                    patience.append(bus.BusyBackoff())
                 try:
                     self._at(time.monotonic() + patience[0].pause_s(error), send)
                 except errors.Busy:
@@ -314,7 +314,7 @@ class Node:
 
     def is_there(self, node: str) -> bool:
         """Is a process of another node ready? Any thread may ask."""
-        return self._lifelines.is_there(node)
+        return self._liveliness.is_there(node)
 
     def afterwards(self, handle: Callable[[], None]) -> None:
         """Call `handle()` after the handler in hand has replied, and before any other event."""
@@ -468,7 +468,7 @@ def _wake() -> None:
 @contextmanager
 def open_node(name: str, network: bus.Network) -> Iterator[Node]:
     """A node with an open session that stops on SIGTERM and SIGINT."""
-    bus.read_links_apart()
+    bus.set_reader_threads()
     with bus.open_session(network) as session:
         node = Node(name, session, network.commands)
         for number in (signal.SIGTERM, signal.SIGINT):

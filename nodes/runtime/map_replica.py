@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final, Generic, TypeVar
 
-from semmap.nodes.runtime.shared_parts import SharedParts
+from semmap.nodes.runtime.interning import EntityInterner
 from semmap.schemas import errors
 from semmap.schemas.bridge import SnapshotQuery
 from semmap.schemas.commits import Commit, Effects, Snapshot
@@ -26,7 +26,7 @@ class SnapshotPages:
     def __init__(self) -> None:
         self.query = SnapshotQuery(limit=PAGE)
         self.are_complete = False
-        self._shared = SharedParts()
+        self._shared = EntityInterner()
         self._seq: int | None = None
         self._digest = ""
         self._entities: list[Entity] = []

@@ -82,7 +82,7 @@ class Simulator:
         self._paused = config.still
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
-        self._studio = Studio(config.cameras, bus.watched(node.session, keys.SEGMENTS))
+        self._studio = Studio(config.cameras, bus.subscriber_check(node.session, keys.SEGMENTS))
         self._planes: dict[str, Any] = {}
         self._driving: dict[str, Future[Driven]] = {}
         """Who waits for the end of a robot's course."""

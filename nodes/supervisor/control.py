@@ -41,7 +41,7 @@ LONGEST_STOP_S = max(_STOP_WAITS_S.values()) + _STOP_WAIT_S
 """Until supervisord itself has ended."""
 SILENT_S = 10.0
 """For no longer is nothing said of what takes long."""
-_WONT_MEND = "0,1,2"
+_NO_RESTART = "0,1,2"
 """Exit statuses after which a restart would fail the same way: stopped, refused, bad request."""
 
 
@@ -191,7 +191,7 @@ class Supervisor:
         """End the processes of this data folder that run without `semmap up`; how many there were."""
         return orphans.end_all(self._conf_path, self._settings_path)
 
-    def last_words(self, node: str) -> str:
+    def last_log_line(self, node: str) -> str:
         """The last line that a node wrote to its log."""
         path = self.log_of(node)
         lines = path.read_text(errors="replace").strip().splitlines() if path.exists() else []
@@ -238,7 +238,7 @@ class Supervisor:
                 "startsecs": "0",
                 "startretries": "10",
                 "autorestart": "unexpected",
-                "exitcodes": _WONT_MEND,
+                "exitcodes": _NO_RESTART,
                 "stopwaitsecs": str(_STOP_WAITS_S.get(node, _STOP_WAIT_S)),
                 "stopasgroup": "true",
                 "killasgroup": "true",

@@ -65,7 +65,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
         if settings.web:
             settings = structs.replace(settings, web_port=_web_port(settings.web_port))
         with presence.announced(settings.reachable):
-            if seeded := supervisor.seed(settings, lambda since_s: say(_being_made(settings, since_s))):
+            if seeded := supervisor.seed(settings, lambda since_s: say(_describe_seeding(settings, since_s))):
                 say(f"{'map':<{_COLUMN}} {seeded}")
             notices = Notices(supervisor.notices)
             process = supervisor.start(settings, web_token=token)
@@ -148,12 +148,12 @@ class _Foreground:
                 self._hear(health)
             if not greeted and set(self._pids) == set(self._settings.nodes):
                 greeted = True
-                self._introduce()
-                self._greet()
+                self._wait_until_complete()
+                self._print_summary()
             if not greeted and time.monotonic() > self._deadline_s:
                 late = sorted(set(self._settings.nodes) - set(self._pids))
                 raise errors.NoAnswer(f"not ready after {_START_TIMEOUT_S:g} s: {', '.join(late)}")
-            self._replace_what_hangs()
+            self._restart_hanging()
         if not self._stopping and self._process.returncode != 0:
             raise errors.InternalError(
                 f"supervisord {_ending(self._process.returncode)}, and the nodes were stopped with it;"
@@ -232,7 +232,7 @@ class _Foreground:
         gave_up = info["statename"] == "EXITED" and int(info["exitstatus"]) >= 0
         ended = gave_up or info["statename"] == "FATAL"
         if ended and not self._stopping and self._process.poll() is None:
-            words = self._supervisor.last_words(node)
+            words = self._supervisor.last_log_line(node)
             raise errors.Refused(f"{node} exited: {words} (log: {self._supervisor.log_of(node)})")
 
     def _network(self) -> bus.Network:
@@ -245,12 +245,12 @@ class _Foreground:
             own_config=self._settings.zenoh_config,
         )
 
-    def _replace_what_hangs(self) -> None:
+    def _restart_hanging(self) -> None:
         for hang in self._watchdog.hanging():
             self._say(f"{hang.node:<{_COLUMN}} {hang.reason}: restarting it")
             self._supervisor.replace(hang.pid)
 
-    def _introduce(self) -> None:
+    def _wait_until_complete(self) -> None:
         """Let the coordinator know every node, and bodies stand, before anybody is told that all is ready.
 
         Not for long: where there are many bodies, or one cannot be as the map says, it is ready before.
@@ -273,11 +273,11 @@ class _Foreground:
             else:
                 for waited in waits_for:
                     self._say(f"{'scene':<{_COLUMN}} not complete yet: {waited}")
-            self._tell_of_truth(status.truth)
-            self._tell_of_models(session)
-            self._tell_of_robot(session)
+            self._report_truth(status.truth)
+            self._report_models(session)
+            self._report_robot_position(session)
 
-    def _tell_of_truth(self, truth: str) -> None:
+    def _report_truth(self, truth: str) -> None:
         """Say where perception looks at what the map itself has placed, as the coordinator elsewhere says."""
         sees_the_simulator = {"sim_node", "perception_node"} <= {*self._settings.only}
         if sees_the_simulator and self._settings.camera_hz and truth != "perceived":
@@ -286,7 +286,7 @@ class _Foreground:
                 " cameras only show what the map already says; start it with --truth perceived"
             )
 
-    def _tell_of_robot(self, session: bus.Session) -> None:
+    def _report_robot_position(self, session: bus.Session) -> None:
         """Say where a robot stands that is not new to the map, where another place was said for a new one."""
         name, at = self._settings.robot_name, self._settings.robot_at
         if self._settings.robot is None or at is None or not self._settings.sim:
@@ -301,7 +301,7 @@ class _Foreground:
                     f" to put it there: semmap move {name} --at {there}"
                 )
 
-    def _tell_of_models(self, session: bus.Session) -> None:
+    def _report_models(self, session: bus.Session) -> None:
         """Say which of the files in `--models` are nobody's model, and what models could not bring along."""
         if self._settings.models is None or not self._settings.sim:
             return
@@ -321,7 +321,7 @@ class _Foreground:
             for note in own_notes(folder, names):
                 self._say(f"{'models':<{_COLUMN}} {note}")
 
-    def _greet(self) -> None:
+    def _print_summary(self) -> None:
         usual = self._settings.reachable == bus.DEFAULT_ENDPOINT
         connect = "" if usual else f" --connect {self._settings.reachable}"
         if self._settings.secure is not None:
@@ -341,7 +341,7 @@ class _Foreground:
             self._say(f"{what:<{_COLUMN}} {value}")
 
 
-def _being_made(settings: Settings, since_s: float) -> str:
+def _describe_seeding(settings: Settings, since_s: float) -> str:
     """What is done before any node runs, and for how long it has been."""
     world = Path(settings.world)
     doing = "reading the map"

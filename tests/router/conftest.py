@@ -40,7 +40,7 @@ def router_network(folder, endpoint):
 @pytest.fixture(scope="session")
 def endpoint(folder):
     """Where a router listens."""
-    endpoint = bus.over_tls(free_endpoint())
+    endpoint = bus.to_tls(free_endpoint())
     with bus.open_session(router_network(folder, endpoint)):
         yield endpoint
 

@@ -100,7 +100,7 @@ def test_a_certificate_that_is_not_in_the_register_carries_nothing(changed, endp
 @pytest.mark.parametrize("impostor", ["operator", "node", "kb_node"])
 def test_only_the_router_can_be_a_server(folder, impostor):
     """Whoever listens with another certificate of the same authority is not taken for the router."""
-    endpoint = bus.over_tls(free_endpoint())
+    endpoint = bus.to_tls(free_endpoint())
     posing = bus.Network(
         mode="router", listen=(endpoint,), connect=(), identity=Identity.read(folder / impostor)
     )

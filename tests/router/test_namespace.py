@@ -31,7 +31,7 @@ def test_with_a_namespace_the_rules_are_about_whole_keys(folder):
 @pytest.fixture(scope="module")
 def robot1(folder):
     """Where the router of robot1 listens, with a coordinator that answers everybody."""
-    endpoint = bus.over_tls(free_endpoint())
+    endpoint = bus.to_tls(free_endpoint())
     network = structs.replace(
         router_network(folder, endpoint),
         access=access_control(Register.read(folder).admitted, "robot1"),
@@ -40,7 +40,7 @@ def robot1(folder):
     with bus.open_session(network), contextlib.ExitStack() as stack:
         node = opened(stack, endpoint, Identity.read(folder / "coordinator"), namespace="robot1")
         bus.serve(node, keys.commands_as(), lambda request: request.reply(Done(text=request.who)))
-        token = bus.appear(node, "coordinator")
+        token = bus.declare_presence(node, "coordinator")
         yield endpoint
         token.undeclare()
 
@@ -64,4 +64,4 @@ def test_nobody_asks_in_another(folder, robot1, namespace):
 def test_whoever_asks_which_robots_there_are_is_told(folder, robot1):
     with contextlib.ExitStack() as stack:
         session = opened(stack, robot1, Identity.read(folder / "viewer"))
-        until(lambda: bus.robots(session) == {"robot1": frozenset({"coordinator"})}, "the robot")
+        until(lambda: bus.find_robots(session) == {"robot1": frozenset({"coordinator"})}, "the robot")

@@ -14,7 +14,7 @@ import pytest
 from semmap.nodes import bus
 from semmap.nodes.identity import Identity, authority
 from semmap.nodes.identity.register import Member, Register
-from semmap.nodes.router.node import in_words
+from semmap.nodes.router.node import describe_certificates
 from semmap.nodes.supervisor.settings import Settings
 from semmap.schemas import codec, keys
 from semmap.schemas.commits import Effects
@@ -32,7 +32,7 @@ def own(folder, tmp_path):
 @pytest.fixture
 def routed(own, tmp_path):
     """Where the router's process listens."""
-    endpoint = bus.over_tls(free_endpoint())
+    endpoint = bus.to_tls(free_endpoint())
     settings = Settings(
         data=str(tmp_path), tbox="none", abox=None, world="none", listen=endpoint, secure=str(own)
     )
@@ -120,7 +120,7 @@ def test_whose_certificate_expires_soon_is_told():
             f"m{d}": Member(name=f"m{d}", role="viewer", serial="1", expires=now + timedelta(days=d))
             for d in days
         }
-        return in_words(Register(hosts=(), members=members), now)
+        return describe_certificates(Register(hosts=(), members=members), now)
 
     assert said(365, 31) == "2 certificates"
     assert said(365, 29, 10) == "3 certificates; that of m10 expires on 2026-12-02"

@@ -44,7 +44,7 @@ def printed(folder, capsys):
 
 
 def test_a_router_by_the_printed_file_admits_whom_ours_would(folder, printed):
-    endpoint = bus.over_tls(free_endpoint())
+    endpoint = bus.to_tls(free_endpoint())
     with contextlib.ExitStack() as stack:
         stack.enter_context(zenoh.open(zenoh.Config.from_json5(printed(endpoint))))
         coordinator, viewer, router = (

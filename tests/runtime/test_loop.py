@@ -12,7 +12,7 @@ import pytest
 import zenoh
 
 from semmap.nodes import bus
-from semmap.nodes.bus import asking
+from semmap.nodes.bus import query_client
 from semmap.nodes.runtime import heartbeat, loop
 from semmap.nodes.runtime.fair_queue import FairQueue
 from semmap.nodes.runtime.loop import Node
@@ -299,7 +299,7 @@ def test_somebody_who_comes_late_is_waited_for(network, monkeypatch):
 
 def test_what_is_quick_is_asked_anew_when_it_has_got_lost(network, monkeypatch):
     node, client = network
-    monkeypatch.setattr("semmap.nodes.bus.asking._ROUND_S", 0.3)
+    monkeypatch.setattr("semmap.nodes.bus.query_client._ROUND_S", 0.3)
     asked, answers = [], []
 
     def receive(request):
@@ -394,9 +394,9 @@ def test_who_is_told_to_come_again_does_so_by_himself(network, monkeypatch):
     node, client = network
     _, fill, release, _, _ = overloaded(node, client, monkeypatch)
     fill("xxx")
-    pause_s = asking.Patience.pause_s
+    pause_s = query_client.Patience.pause_s
     # who is told to come again finds room when he does
-    monkeypatch.setattr(asking.Patience, "pause_s", lambda *told: release.set() or pause_s(*told))
+    monkeypatch.setattr(query_client.Patience, "pause_s", lambda *told: release.set() or pause_s(*told))
     question = commands.Get(name="patient")
     assert bus.ask(client, "semmap/held", "get", question, replies.Done).text == "patient"
     assert release.is_set()
@@ -406,7 +406,7 @@ def test_nobody_comes_again_for_ever(network, monkeypatch):
     node, client = network
     _, fill, release, _, _ = overloaded(node, client, monkeypatch)
     fill("xxx")
-    monkeypatch.setattr(asking, "BUSY_S", 0.3)
+    monkeypatch.setattr(query_client, "BUSY_S", 0.3)
     with pytest.raises(errors.Busy):
         bus.ask(client, "semmap/held", "get", commands.Get(name="x"), replies.Done)
     release.set()

@@ -41,9 +41,11 @@ def test_seeding_tells_for_how_long_it_has_taken(tmp_path, monkeypatch):
 
 def test_it_is_said_what_world_is_compiled(tmp_path):
     settings = of(tmp_path, "/there/big.xml")
-    assert up._being_made(settings, 12.3).endswith("compiling the world big.xml, and reading the map (12 s)")
+    assert up._describe_seeding(settings, 12.3).endswith(
+        "compiling the world big.xml, and reading the map (12 s)"
+    )
     settings = of(tmp_path)
-    assert up._being_made(settings, 12.3).split(maxsplit=1)[1] == "reading the map (12 s)"
+    assert up._describe_seeding(settings, 12.3).split(maxsplit=1)[1] == "reading the map (12 s)"
 
 
 def test_a_node_that_starts_says_now_and_then_what_it_does(tmp_path, monkeypatch):

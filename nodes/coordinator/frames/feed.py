@@ -28,7 +28,7 @@ from semmap.nodes.coordinator.live.feed import LiveFeed
 from semmap.nodes.coordinator.reconciler.reconciler import AskSim
 from semmap.nodes.coordinator.scene.scene_view import SceneView
 from semmap.nodes.coordinator.scheduler import Scheduler
-from semmap.nodes.runtime.futures import OwnFuture, settle
+from semmap.nodes.runtime.futures import SingleThreadFuture, settle
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import commands as c
 from semmap.schemas import errors, keys
@@ -61,7 +61,7 @@ class Frames:
         self._map, self._live, self._scene = map_view, live, scene
         self._ask_sim, self._kb, self._scheduler = ask_sim, kb, scheduler
         self._published = PublishedFrames(stale_s)
-        self._stream = bus.Newest(node.session, keys.FRAME, _MOST, deletions=True)
+        self._stream = bus.NewestSamples(node.session, keys.FRAME, _MOST, deletions=True)
         node.every(_PERIOD_S, self._read)
 
     def problems(self) -> list[str]:
@@ -98,7 +98,7 @@ class Frames:
                 return self._unless_done(command, error)
             if not isinstance(command, c.Get | c.List):
                 return handle(wanted)
-            made: Future[Any] = OwnFuture()
+            made: Future[Any] = SingleThreadFuture()
             settle(made, lambda: handle(wanted))
             return _then(made, lambda found: self._told(tree, name, frame, found))
 
@@ -137,7 +137,7 @@ class Frames:
         """What `use` makes of the tree, with the cameras of the simulator if one runs."""
         if not self._scene.known:
             return use(self._tree())
-        future: Future[Any] = OwnFuture()
+        future: Future[Any] = SingleThreadFuture()
         asked = self._ask_sim(CamerasQuery())
         asked.add_done_callback(lambda done: settle(future, lambda: use(self._tree(_seen(done)))))
         return future
@@ -186,6 +186,6 @@ def _seen(done: Future[tuple[CameraPose, ...]]) -> Cameras:
 
 
 def _then(future: Future[Any], function: Callable[[Any], Any]) -> Future[Any]:
-    following: Future[Any] = OwnFuture()
+    following: Future[Any] = SingleThreadFuture()
     future.add_done_callback(lambda done: settle(following, lambda: function(done.result())))
     return following

@@ -52,7 +52,7 @@ class LiveFeed:
         """Whether the bodies of the scene are where the map's entities are."""
         self._published: dict[str, tuple[Pose, int]] = {}
         self._published_s = 0.0
-        self._stream = bus.Newest(node.session, keys.LIVE_POSE)
+        self._stream = bus.NewestSamples(node.session, keys.LIVE_POSE)
         self._out = bus.publisher(node.session, keys.LIVE_POSES)
         node.every(_PERIOD_S, self._tick)
 

@@ -35,7 +35,7 @@ from semmap.nodes.coordinator.reconciler.reconcile import (
 from semmap.nodes.coordinator.reconciler.rest_waits import RestWaits
 from semmap.nodes.coordinator.reconciler.spawn_batches import split_orders
 from semmap.nodes.coordinator.scene.scene_view import SceneView
-from semmap.nodes.runtime.futures import OwnFuture, settle, then
+from semmap.nodes.runtime.futures import SingleThreadFuture, settle, then
 from semmap.schemas import errors, wording
 from semmap.schemas.calls import Call
 from semmap.schemas.commands import Add
@@ -252,7 +252,7 @@ class Reconciler:
         """
         if not self._is_to_be_placed(name):
             return execute()
-        future: Future[T] = OwnFuture()
+        future: Future[T] = SingleThreadFuture()
         self._held.append((name, lambda: settle(future, execute)))
         return future
 

@@ -17,7 +17,7 @@ from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.nodes.coordinator.config import Truth
 from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
 from semmap.nodes.coordinator.reconciler.reconciler import Reconciler
-from semmap.nodes.runtime.futures import OwnFuture, then
+from semmap.nodes.runtime.futures import SingleThreadFuture, then
 from semmap.schemas import errors
 from semmap.schemas.commands import Close, Drive, Move, Open, Undo
 from semmap.schemas.entities import LESSER, Entity, Pose
@@ -102,7 +102,7 @@ class Completion:
             return immediate
         if done is not None and done.paused:
             return _paused(immediate)
-        order.reply = OwnFuture()
+        order.reply = SingleThreadFuture()
         return order.reply
 
     def arrive(self, command: Drive, text: str, done: Timed) -> None:
@@ -165,7 +165,7 @@ class Completion:
         `halt(name)` ends a robot's course. Bodies go back to where the map has them.
         """
         if command.id and self._stopped is not None and self._stopped[0] == command.id:
-            again: Future[Changed] = OwnFuture()
+            again: Future[Changed] = SingleThreadFuture()
             again.set_result(self._stopped[1])
             return again
         if command.commit is not None or command.dry_run or (order := self._newest(command)) is None:

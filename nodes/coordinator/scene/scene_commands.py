@@ -12,7 +12,7 @@ from semmap.nodes.coordinator.commands.plausibility import require_carry
 from semmap.nodes.coordinator.config import Truth
 from semmap.nodes.coordinator.reconciler.reconciler import AskSim, Reconciler, describe_ghost
 from semmap.nodes.coordinator.scene.completion import Completion
-from semmap.nodes.runtime.futures import OwnFuture, and_then, settle, then
+from semmap.nodes.runtime.futures import SingleThreadFuture, and_then, settle, then
 from semmap.schemas import commands as c
 from semmap.schemas import errors, wording
 from semmap.schemas.bridge import LoadOf
@@ -72,7 +72,7 @@ class SceneCommands:
             raise errors.Refused(f"{command.name} lost its body before it could be moved")
         if not command.carry:
             return self._place(command, body, ())
-        future: Future[Moved] = OwnFuture()
+        future: Future[Moved] = SingleThreadFuture()
         asked = self._ask_map(LoadOf(name=command.name, leave=command.leave))
         asked.add_done_callback(
             lambda done: settle(future, lambda: self._place(command, body, done.result()))
@@ -132,7 +132,7 @@ class SceneCommands:
         asked = self._ask_scene(order)
         self._dispatcher.manual_moves.register(command)
         immediate = Moved(name=command.name, text=f"{command.name} is on its way")
-        future: Future[Moved] = OwnFuture()
+        future: Future[Moved] = SingleThreadFuture()
         settle(future, lambda: self._completion.begin(command, immediate, lambda _: immediate.text, None))
 
         def ended(done: Future[Driven]) -> None:

@@ -16,8 +16,8 @@ from semmap.nodes.extern.ros.published_frames import Placed, PublishedFrames
 from semmap.nodes.extern.ros.things import Thing, things_of
 from semmap.nodes.extern.ros.types import encode, topic
 from semmap.nodes.navigation.grid import occupancy
-from semmap.nodes.runtime.following import Follower
 from semmap.nodes.runtime.loop import Node
+from semmap.nodes.runtime.map_follower import Follower
 from semmap.nodes.runtime.map_replica import MapReplica
 from semmap.schemas import keys
 from semmap.schemas.commands import PlanFloor
@@ -95,8 +95,8 @@ class Bridge:
             node,
             self._map,
             keys.EFFECTS,
-            heard=lambda _, __: self._stir(),
-            begun=self._begun,
+            on_commit=lambda _, __: self._stir(),
+            on_snapshot=self._begun,
             classes_at=keys.CMD,  # a viewer may ask for that, too
         )
         node.follow_newest(keys.POSES, self._on_poses)

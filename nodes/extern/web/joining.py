@@ -18,5 +18,5 @@ def network_of(where: str | None, identity: str | None, namespace: str | None) -
     name = robot(namespace, where)
     with open_session(where, name, who, mode="client"):
         pass
-    at = where if who is None else bus.over_tls(where)
+    at = where if who is None else bus.to_tls(where)
     return bus.Network(connect=(at,), mode="client", namespace=name, patience_s=bus.FOREVER_S, identity=who)

@@ -26,8 +26,8 @@ from semmap.nodes.extern.sparql_client import StandingQuery
 from semmap.nodes.extern.web.loads import loads_of
 from semmap.nodes.extern.web.views.rates import Rates
 from semmap.nodes.identity import Identity
-from semmap.nodes.runtime.following import Begun, Follower
 from semmap.nodes.runtime.loop import Node
+from semmap.nodes.runtime.map_follower import Follower, SnapshotLoaded
 from semmap.nodes.runtime.map_replica import MapReplica
 from semmap.schemas import keys, roles
 from semmap.schemas.bridge import CopyQuery, MapCopy
@@ -283,7 +283,12 @@ class _Following:
         self._told_s = 0.0
         classes_at = keys.CMD if secure else keys.BRIDGE
         Follower(
-            node, self._replica, keys.COMMIT, heard=self._on_commit, begun=self._on_map, classes_at=classes_at
+            node,
+            self._replica,
+            keys.COMMIT,
+            on_commit=self._on_commit,
+            on_snapshot=self._on_map,
+            classes_at=classes_at,
         )
         node.follow(keys.HEALTH, self._on_health)
         node.follow_newest(keys.POSES, self._on_poses)
@@ -307,7 +312,7 @@ class _Following:
             self._news.commits.append(commit)
             self._notice()
 
-    def _on_map(self, begun: Begun) -> None:
+    def _on_map(self, begun: SnapshotLoaded) -> None:
         """Which map is it? It is told when that is known."""
         self._is_told, self._classes = False, begun.classes
         self._news.commits.clear()

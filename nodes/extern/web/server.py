@@ -50,7 +50,7 @@ def run(config: WebConfig, tell: Callable[[str], None]) -> None:
     """
     token = new_token(config.token)
     with contextlib.closing(_listen(config.host, config.port)) as listening, _own_storage():
-        bus.read_links_apart()
+        bus.set_reader_threads()
         with bus.open_session(config.network) as session:
             _serve(config, token, session, listening, tell)
 

@@ -17,7 +17,7 @@ def silent(two_robots):
     """A robot of which a node is there, but none that answers commands."""
     network = bus.Network(connect=(two_robots[0].endpoint,), namespace="mute1")
     with bus.open_session(network) as session:
-        token = bus.appear(session, "recorder")
+        token = bus.declare_presence(session, "recorder")
         yield "mute1"
         token.undeclare()
 

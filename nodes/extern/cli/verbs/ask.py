@@ -346,7 +346,7 @@ def _watch_key(client: Client, keyexpr: str) -> None:
                 f"your certificate ({client.identity.role}) may not follow '{keyexpr}'; it may follow all of:"
                 f" {', '.join(followed)}"
             )
-    if not bus.meets(keys.published(), keyexpr):
+    if not bus.intersects(keys.published(), keyexpr):
         print(
             f"  note: semmap publishes nothing on '{keyexpr}', so this waits for somebody else to;"
             f" all that it publishes is on '{keys.ROOT}/**'",

@@ -228,7 +228,7 @@ def down(data: Path | None, connect: str | None) -> None:
     from semmap.nodes.supervisor.control import Supervisor
 
     if data is None and connect is not None:
-        meant = {connect, bus.over_tls(connect)}
+        meant = {connect, bus.to_tls(connect)}
         there = [Path(s.data) for s in registry.systems() if meant & {s.listen, s.reachable}]
         if not there:
             raise errors.NoAnswer(f"no system of this user listens on {connect}")
@@ -331,8 +331,8 @@ def _settings(
         "robot_yaw": robot_yaw,
         "stale_s": stale,
         "journal_every_s": journal_every,
-        "listen": listen if secure is None else bus.over_tls(listen),
-        "connect": connect if secure is None else tuple(map(bus.over_tls, connect)),
+        "listen": listen if secure is None else bus.to_tls(listen),
+        "connect": connect if secure is None else tuple(map(bus.to_tls, connect)),
         "only": nodes,
         "single": single,
         "window": window,
@@ -410,7 +410,7 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
     if not is_endpoint(listen):
         return  # which the settings refuse
     if config is not None:
-        bus.own_config.require_sound(config, secure=secure is not None)
+        bus.zenoh_config.require_sound(config, secure=secure is not None)
     if secure is not None:
         if insecure:
             raise errors.BadRequest("give either --secure or --insecure")
@@ -425,7 +425,7 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
                 f"the router's certificate is for {', '.join(register.hosts)}, not for {host}; add it:"
                 f" semmap keys renew router --host {host} --dir {shlex.quote(secure)}"
             )
-    elif not bus.is_local(listen) and not (config is not None and bus.own_config.is_protected(config)):
+    elif not bus.is_local(listen) and not (config is not None and bus.zenoh_config.is_protected(config)):
         if not insecure:
             raise errors.BadRequest(
                 f"without certificates everybody who reaches {listen} could read and change the map; make"

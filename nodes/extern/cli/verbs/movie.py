@@ -10,7 +10,7 @@ import click
 
 from semmap.nodes.extern.cli.calling import TIME, connect_option, identity_option, namespace_option
 from semmap.nodes.extern.cli.output.printable import say
-from semmap.nodes.runtime import rhythm
+from semmap.nodes.runtime import playback_clock
 from semmap.schemas import errors
 
 _path = click.Path(path_type=Path)
@@ -27,7 +27,7 @@ _SIZE, _FPS = (960, 640), 20
 @click.option(
     "--longest",
     type=float,
-    default=rhythm.LONGEST_S,
+    default=playback_clock.LONGEST_S,
     show_default=True,
     metavar="S",
     help="Show no commit for longer than S seconds.",

@@ -9,7 +9,7 @@ import click
 
 from semmap.nodes.extern.cli.calling import TIME, complain, connect_option, identity_option, namespace_option
 from semmap.nodes.extern.cli.output.printable import say
-from semmap.nodes.runtime import extras, rhythm
+from semmap.nodes.runtime import extras, playback_clock
 from semmap.schemas import errors
 
 _path = click.Path(path_type=Path)
@@ -25,7 +25,7 @@ _path = click.Path(path_type=Path)
     type=float,
     default=None,
     metavar="S",
-    help=f"Wait no longer than S seconds for a commit.  [default: {rhythm.LONGEST_S:g}]",
+    help=f"Wait no longer than S seconds for a commit.  [default: {playback_clock.LONGEST_S:g}]",
 )
 @click.option("--listen", metavar="EP", help="Zenoh endpoint of the replay. Default: a free port.")
 @click.option("--world", type=_path, help="Scene file. Default: the one that the map was last run with.")
@@ -72,7 +72,7 @@ def replay(
         run_again(
             what.resolve(),
             speed=1.0 if speed is None else speed,
-            longest_s=rhythm.LONGEST_S if longest_s is None else longest_s,
+            longest_s=playback_clock.LONGEST_S if longest_s is None else longest_s,
             sim=not options.pop("no_sim"),
             record=not options.pop("no_record"),
             say=say,

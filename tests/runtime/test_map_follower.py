@@ -4,8 +4,8 @@ import msgspec
 import pytest
 
 from semmap.nodes import bus
-from semmap.nodes.runtime.following import Follower
 from semmap.nodes.runtime.loop import Node
+from semmap.nodes.runtime.map_follower import Follower
 from semmap.nodes.runtime.map_replica import MapReplica
 from semmap.schemas import codec, keys
 from semmap.schemas.bridge import SnapshotQuery
@@ -62,8 +62,8 @@ class Following:
             self.node,
             self.map,
             keys.COMMIT,
-            heard=lambda commit, known: self.heard.append((commit.seq, known)),
-            begun=self.begun.append,
+            on_commit=lambda commit, known: self.heard.append((commit.seq, known)),
+            on_snapshot=self.begun.append,
         )
 
     @property

@@ -18,23 +18,23 @@ from msgspec import Meta, Struct
 from semmap.schemas import codec, errors
 from semmap.schemas.calls import DOCUMENT
 
-PIECE: Final = 8 << 20
+FRAGMENT_BYTES: Final = 8 << 20
 """Bytes; what is larger is cut."""
-MESSAGE: Final = 16 << 20
+MESSAGE_BYTES: Final = 16 << 20
 """Bytes of the largest message; a question of more is refused, and a publication ignored."""
-PLANE: Final = 64 << 20
+PLANE_BYTES: Final = 64 << 20
 """Bytes that a session takes, for planes of cameras; what is larger is dropped on arrival, by Zenoh."""
-PUBLISHED: Final = MESSAGE - (1 << 16)
+PUBLICATION_BYTES: Final = MESSAGE_BYTES - (1 << 16)
 """Bytes of the largest publication, which is not cut: there is room for what goes with it."""
-WHOLE: Final = DOCUMENT
+REQUEST_BYTES: Final = DOCUMENT
 """Bytes of the largest request, and of all that are put together or worked on at a time."""
 _AT_A_TIME: Final = 16
-_GIVEN_UP_S: Final = 30.0
+_FRAGMENT_TIMEOUT_S: Final = 30.0
 """After so long without another piece, nobody waits for the rest."""
 _AGAIN_S: Final = 1.0
 
 
-class Piece(Struct, frozen=True, array_like=True, forbid_unknown_fields=True):
+class Fragment(Struct, frozen=True, array_like=True, forbid_unknown_fields=True):
     """Which piece it is: `number` (from 0) of `count`, of the message called `of`."""
 
     of: Annotated[str, Meta(min_length=1, max_length=64)]
@@ -47,31 +47,31 @@ class Piece(Struct, frozen=True, array_like=True, forbid_unknown_fields=True):
         return self.number == self.count - 1
 
 
-def cut(payload: bytes | bytearray | zenoh.ZBytes) -> Iterator[tuple[bytes, Piece]]:
+def split(payload: bytes | bytearray | zenoh.ZBytes) -> Iterator[tuple[bytes, Fragment]]:
     """The pieces of a payload, each with which it is."""
     content = payload.to_bytes() if isinstance(payload, zenoh.ZBytes) else payload
-    name, count = uuid.uuid4().hex, -(-len(content) // PIECE)
+    name, count = uuid.uuid4().hex, -(-len(content) // FRAGMENT_BYTES)
     view = memoryview(content)
     for number in range(count):
-        piece = Piece(of=name, number=number, count=count)
-        yield bytes(view[number * PIECE : (number + 1) * PIECE]), piece
+        piece = Fragment(of=name, number=number, count=count)
+        yield bytes(view[number * FRAGMENT_BYTES : (number + 1) * FRAGMENT_BYTES]), piece
 
 
-def piece_of(attachment: zenoh.ZBytes | None) -> Piece | None:
+def fragment_of(attachment: zenoh.ZBytes | None) -> Fragment | None:
     """Which piece a message is, if it is one. Raises BadRequest."""
-    return None if attachment is None else codec.decode(attachment.to_bytes(), Piece)
+    return None if attachment is None else codec.decode(attachment.to_bytes(), Fragment)
 
 
-class Gathered:
+class ReplyAssembler:
     """A reply, piece by piece. They come in order."""
 
     def __init__(self) -> None:
         self._content = bytearray()
         self._next = 0
 
-    def take(self, piece: Piece, payload: zenoh.ZBytes) -> bytearray | None:
+    def take(self, piece: Fragment, payload: zenoh.ZBytes) -> bytearray | None:
         """The whole, with its last piece. Raises InternalError for one that is not the next."""
-        if piece.number != self._next or len(self._content) + len(payload) > 2 * WHOLE:
+        if piece.number != self._next or len(self._content) + len(payload) > 2 * REQUEST_BYTES:
             raise errors.InternalError("the pieces of a reply do not belong together")
         self._next += 1
         self._content += payload.to_bytes()
@@ -86,24 +86,24 @@ class _Arriving:
         self.at_s = time.monotonic()
 
 
-class Arrivals:
+class RequestAssembler:
     """Requests that are put together, bounded in all. Any thread may use it."""
 
-    def __init__(self, *, most: int = WHOLE) -> None:
+    def __init__(self, *, most: int = REQUEST_BYTES) -> None:
         """`most` bytes, of what is put together and what is not `done` with."""
         self._most = most
         self._arriving: dict[str, _Arriving] = {}
-        self._held = 0
+        self._bytes = 0
         self._lock = threading.Lock()
 
-    def take(self, piece: Piece, payload: bytes, largest: int) -> bytearray | None:
+    def take(self, piece: Fragment, payload: bytes, largest: int) -> bytearray | None:
         """The whole, with its last piece; it counts until it is `done`.
 
         Raises BadRequest when it gets larger than `largest` bytes; Busy when too much is put together already
         or its beginning is not here any more, so that it has to be sent again.
         """
         with self._lock:
-            self._give_up()
+            self._drop_expired()
             if piece.number == 0:
                 self._begin(piece, largest)
             arriving = self._arriving.get(piece.of)
@@ -117,34 +117,34 @@ class Arrivals:
             if size > arriving.largest:
                 self._drop(piece.of)
                 raise too_large(size, arriving.largest)
-            if self._held + len(payload) > self._most:
+            if self._bytes + len(payload) > self._most:
                 self._drop(piece.of)
                 raise errors.Busy("too many large messages are coming in already", again_s=_AGAIN_S)
             arriving.content += payload
             arriving.next += 1
             arriving.at_s = time.monotonic()
-            self._held += len(payload)
+            self._bytes += len(payload)
             return self._arriving.pop(piece.of).content if piece.is_last else None
 
     def done(self, size: int) -> None:
         """A whole one, of `size` bytes, has been answered."""
         with self._lock:
-            self._held -= size
+            self._bytes -= size
 
-    def _begin(self, piece: Piece, largest: int) -> None:
+    def _begin(self, piece: Fragment, largest: int) -> None:
         self._drop(piece.of)
         if len(self._arriving) >= _AT_A_TIME:
             raise errors.Busy("too many large messages are coming in already", again_s=_AGAIN_S)
         self._arriving[piece.of] = _Arriving(largest)
 
-    def _give_up(self) -> None:
-        until_s = time.monotonic() - _GIVEN_UP_S
+    def _drop_expired(self) -> None:
+        until_s = time.monotonic() - _FRAGMENT_TIMEOUT_S
         for name in [name for name, arriving in self._arriving.items() if arriving.at_s < until_s]:
             self._drop(name)
 
     def _drop(self, name: str) -> None:
         if (arriving := self._arriving.pop(name, None)) is not None:
-            self._held -= len(arriving.content)
+            self._bytes -= len(arriving.content)
 
 
 def too_large(size: int, largest: int) -> errors.BadRequest:

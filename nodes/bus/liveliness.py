@@ -19,7 +19,7 @@ _LOOK_S: Final = 1.0
 _LOOKS: Final = 6
 
 
-class Lifelines:
+class LivelinessMonitor:
     """Of the nodes that serve, as one session sees them: what hangs on one is cancelled when that is cut.
 
     It costs a question some microseconds. Any thread may use it.
@@ -88,7 +88,7 @@ class Lifelines:
             self._tokens.pop(nodes).cancel()  # type: ignore[no-untyped-call]
 
 
-def appear(session: zenoh.Session, node: str) -> Any:
+def declare_presence(session: zenoh.Session, node: str) -> Any:
     """Let this session be seen as a ready `node`, for as long as it lives and keeps what is returned.
 
     The token bears the session's id, which replies bear too, so that others can tell whose they are.
@@ -96,7 +96,7 @@ def appear(session: zenoh.Session, node: str) -> Any:
     return session.liveliness().declare_token(keys.live_key(node, str(session.info.zid())))
 
 
-def robots(session: zenoh.Session) -> dict[str, frozenset[str]]:
+def find_robots(session: zenoh.Session) -> dict[str, frozenset[str]]:
     """The robots that can be reached, by name, and which of their nodes are there.
 
     The session has no namespace. A system without one is a robot without a name: "".
@@ -132,7 +132,7 @@ def follow_robots(session: zenoh.Session, node: str, receive: Callable[[str, str
     there = {str(reply.ok.key_expr) for reply in replies if reply.ok is not None}
     subscriber = session.liveliness().declare_subscriber(pattern, on_change, history=True)
     with news:
-        news.wait_for(lambda: there <= told, _ROBOTS_S)  # one that has gone meanwhile is not told of
+        news.wait_for(lambda: there <= told, _ROBOTS_S)  # one that has gone on_wait is not told of
     return subscriber
 
 

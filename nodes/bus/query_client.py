@@ -19,8 +19,8 @@ from typing import Any, Final, NoReturn
 import zenoh
 from msgspec import Struct
 
-from semmap.nodes.bus import pieces
-from semmap.nodes.bus.lifelines import Lifelines
+from semmap.nodes.bus import fragmentation
+from semmap.nodes.bus.liveliness import LivelinessMonitor
 from semmap.nodes.bus.session import PATIENCE_S
 from semmap.schemas import codec, errors, keys
 from semmap.schemas.replies import Done
@@ -60,7 +60,7 @@ class ForeignReply(errors.NoAnswer):
     """Only somebody has answered who is not one of the nodes that serve the key."""
 
 
-class Patience:
+class BusyBackoff:
     """With those who are busy: when to come again, later each time and never all at once."""
 
     def __init__(self) -> None:
@@ -98,15 +98,15 @@ def ask(
     *,
     timeout_s: float = TIMEOUT_S,
     patience_s: float = PATIENCE_S,
-    meanwhile: Callable[[], None] | None = None,
-    first_hand: bool = False,
-    lifelines: Lifelines | None = None,
+    on_wait: Callable[[], None] | None = None,
+    prefer_complete: bool = False,
+    liveliness: LivelinessMonitor | None = None,
 ) -> Any:
     """Send `message` to `prefix/verb` and return the reply, of type `kind`.
 
-    `meanwhile` is called again and again while the answer takes its time. `first_hand`: whoever serves just
+    `meanwhile` is called again and again while the answer takes its time. `prefer_complete`: whoever serves just
     this verb is asked, and those who serve all verbs of the prefix only if there is no such one. With
-    `lifelines`, those of this session, the question ends, and is asked again, when who was asked is gone; and
+    `liveliness`, those of this session, the question ends, and is asked again, when who was asked is gone; and
     a reply counts only if it is by a node that serves the key: where another program has answered, everybody
     who serves the key is asked.
 
@@ -115,16 +115,16 @@ def ask(
     Raises the error of the reply; ForeignReply when nobody else has answered; NoAnswer when nobody serves the
     key for `patience_s` or the one that does takes longer than `timeout_s`.
     """
-    how = (timeout_s, patience_s, meanwhile, first_hand, lifelines)
+    how = (timeout_s, patience_s, on_wait, prefer_complete, liveliness)
     try:
         return _ask(session, prefix, verb, message, kind, *how)
     except errors.Busy as error:
-        busy, patience = error, Patience()
+        busy, patience = error, BusyBackoff()
     while True:
         until_s = time.monotonic() + patience.pause_s(busy)
         while (left_s := until_s - time.monotonic()) > 0:
-            if meanwhile is not None:
-                meanwhile()
+            if on_wait is not None:
+                on_wait()
             time.sleep(min(left_s, 0.1))
         try:
             return _ask(session, prefix, verb, message, kind, *how)
@@ -140,41 +140,41 @@ def _ask(
     kind: Any,
     timeout_s: float,
     patience_s: float,
-    meanwhile: Callable[[], None] | None,
-    first_hand: bool,
-    lifelines: Lifelines | None,
+    on_wait: Callable[[], None] | None,
+    prefer_complete: bool,
+    liveliness: LivelinessMonitor | None,
 ) -> Any:
     key = f"{prefix}/{verb}"
     payload, encoding = codec.encode(message), codec.encoding_of(message)
     deadline_s = time.monotonic() + patience_s
     servers, foreign = keys.servers(prefix, verb), False
     round_s = first_round_s(message, timeout_s)
-    target = zenoh.QueryTarget.ALL_COMPLETE if first_hand else zenoh.QueryTarget.BEST_MATCHING
+    target = zenoh.QueryTarget.ALL_COMPLETE if prefer_complete else zenoh.QueryTarget.BEST_MATCHING
     while True:
         asked_at_s = time.monotonic()
         replies: Any = ()
-        if (last := _sent_ahead(session, key, payload, encoding, lifelines)) is not None:
+        if (last := _sent_ahead(session, key, payload, encoding, liveliness)) is not None:
             replies = _get(
                 session,
                 key,
-                lifelines.of(servers) if lifelines else None,
+                liveliness.of(servers) if liveliness else None,
                 encoding=encoding,
                 timeout=round_s,
                 target=target,
                 **last,
             )
-        gathered = pieces.Gathered()
+        gathered = fragmentation.ReplyAssembler()
         try:
-            for reply in replies if meanwhile is None or last is None else _polled(replies, meanwhile):
-                if lifelines is not None:
-                    lifelines.look(servers)
-                if lifelines is None or lifelines.vouch(servers, reply) or _is_late(reply):
+            for reply in replies if on_wait is None or last is None else _polled(replies, on_wait):
+                if liveliness is not None:
+                    liveliness.look(servers)
+                if liveliness is None or liveliness.vouch(servers, reply) or _is_late(reply):
                     if (whole := read_reply(key, reply, kind, round_s, gathered)) is not None:
                         return whole.decode()
                     continue
                 if not foreign:
                     foreign, deadline_s = True, time.monotonic() + patience_s
-                    if lifelines.is_news(key):
+                    if liveliness.is_news(key):
                         log.warning("%s", _foreign(key, servers))
                 target = zenoh.QueryTarget.ALL
         except TimedOut:
@@ -183,18 +183,18 @@ def _ask(
             round_s = timeout_s
             continue
         took_s = (now_s := time.monotonic()) - asked_at_s
-        if took_s > _HAD_IT_S and (lifelines is None or lifelines.has_seen(servers)):
+        if took_s > _HAD_IT_S and (liveliness is None or liveliness.has_seen(servers)):
             deadline_s = now_s + patience_s
-        if first_hand:
-            first_hand = False
+        if prefer_complete:
+            prefer_complete = False
             target = zenoh.QueryTarget.ALL if foreign else zenoh.QueryTarget.BEST_MATCHING
             continue
         if now_s > deadline_s and foreign:
             raise ForeignReply(_foreign(key, servers))
         if now_s > deadline_s:
             _nobody(key)
-        if meanwhile is not None:
-            meanwhile()
+        if on_wait is not None:
+            on_wait()
         time.sleep(0.01)
 
 
@@ -203,23 +203,23 @@ def _sent_ahead(
     key: str,
     payload: bytes,
     encoding: str,
-    lifelines: Lifelines | None,
+    liveliness: LivelinessMonitor | None,
     source: zenoh.SourceInfo | None = None,
 ) -> dict[str, Any] | None:
     """What is left to be sent as the question itself: of a large payload, the last piece.
 
     None if nobody has taken the others. Raises the error that a piece is answered with.
     """
-    if len(payload) <= pieces.PIECE:
+    if len(payload) <= fragmentation.FRAGMENT_BYTES:
         return {"payload": payload}
     servers = keys.servers(*key.rsplit("/", 1))
-    for content, piece in pieces.cut(payload):
+    for content, piece in fragmentation.split(payload):
         sent = {"payload": content, "attachment": codec.encode(piece)}
         if piece.is_last:
             return sent
-        lifeline = lifelines.of(servers) if lifelines else None
+        lifeline = liveliness.of(servers) if liveliness else None
         for reply in _get(session, key, lifeline, source, encoding=encoding, timeout=TIMEOUT_S, **sent):
-            if lifelines is None or lifelines.vouch(servers, reply):
+            if liveliness is None or liveliness.vouch(servers, reply):
                 read_reply(key, reply, Done, TIMEOUT_S)
                 break
         else:
@@ -246,7 +246,7 @@ def _get(
         return ()
 
 
-def _polled(replies: Any, meanwhile: Callable[[], None]) -> Iterator[zenoh.Reply]:
+def _polled(replies: Any, on_wait: Callable[[], None]) -> Iterator[zenoh.Reply]:
     while True:
         try:
             reply = replies.try_recv()
@@ -255,7 +255,7 @@ def _polled(replies: Any, meanwhile: Callable[[], None]) -> Iterator[zenoh.Reply
         if reply is not None:
             yield reply
         else:
-            meanwhile()
+            on_wait()
             time.sleep(0.02)
 
 
@@ -268,8 +268,8 @@ def ask_later(
     answer: Callable[[Callable[[], Encoded]], None],
     *,
     timeout_s: float = TIMEOUT_S,
-    lifelines: Lifelines | None = None,
-    everybody: bool = False,
+    liveliness: LivelinessMonitor | None = None,
+    ask_all: bool = False,
     source: Any = None,
 ) -> None:
     """Like `ask`, without waiting: `answer` is given a function that returns the reply or raises its error.
@@ -281,10 +281,10 @@ def ask_later(
     key = f"{prefix}/{verb}"
     waiting, servers = [answer], keys.servers(prefix, verb)
     foreign: list[zenoh.Reply] = []
-    gathered = pieces.Gathered()
+    gathered = fragmentation.ReplyAssembler()
 
     def on_reply(reply: zenoh.Reply) -> None:
-        if lifelines is not None and not lifelines.vouch(servers, reply) and not _is_late(reply):
+        if liveliness is not None and not liveliness.vouch(servers, reply) and not _is_late(reply):
             foreign.append(reply)
         elif not waiting:
             return
@@ -314,15 +314,15 @@ def ask_later(
     handler = zenoh.handlers.Callback(on_reply, on_end, indirect=False)
     payload, encoding = codec.encode(message), codec.encoding_of(message)
     try:
-        last = _sent_ahead(session, key, payload, encoding, lifelines, source)
+        last = _sent_ahead(session, key, payload, encoding, liveliness, source)
     except errors.SemmapError as error:
         answer(partial(_raise, error))
         return
     if last is None:
         on_end()
         return
-    lifeline = lifelines.of(servers) if lifelines else None
-    target = zenoh.QueryTarget.ALL if everybody else zenoh.QueryTarget.BEST_MATCHING
+    lifeline = liveliness.of(servers) if liveliness else None
+    target = zenoh.QueryTarget.ALL if ask_all else zenoh.QueryTarget.BEST_MATCHING
     _get(
         session,
         key,
@@ -349,14 +349,18 @@ def read_whole(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Enc
 
 
 def read_reply(
-    key: str, reply: zenoh.Reply, kind: Any, timeout_s: float, gathered: pieces.Gathered | None = None
+    key: str,
+    reply: zenoh.Reply,
+    kind: Any,
+    timeout_s: float,
+    gathered: fragmentation.ReplyAssembler | None = None,
 ) -> Encoded | None:
     """The message of a reply, of type `kind`; None for a piece after which others come.
 
     Raises the error that it carries.
     """
     if (sample := reply.ok) is not None:
-        if gathered is None or (piece := pieces.piece_of(sample.attachment)) is None:
+        if gathered is None or (piece := fragmentation.fragment_of(sample.attachment)) is None:
             return Encoded(sample.payload, sample.encoding, kind)
         whole = gathered.take(piece, sample.payload)
         return None if whole is None else Encoded(whole, sample.encoding, kind)

@@ -11,7 +11,7 @@ import psutil
 import pytest
 
 from semmap.nodes import bus
-from semmap.nodes.bus import asking
+from semmap.nodes.bus import query_client
 from semmap.schemas import commands, errors, keys, replies
 from tests.bus.conftest import PREFIX, answer
 from tests.conftest import PATIENCE_S, until
@@ -52,7 +52,7 @@ def test_one_who_does_not_answer_in_time_is_no_answer(pair):
 
 def test_what_is_quick_is_asked_anew_after_a_while_and_nothing_else(pair, monkeypatch):
     server, client = pair
-    monkeypatch.setattr("semmap.nodes.bus.asking._ROUND_S", 0.3)
+    monkeypatch.setattr("semmap.nodes.bus.query_client._ROUND_S", 0.3)
     asked = []
 
     def receive(request):
@@ -72,7 +72,7 @@ def test_what_is_quick_is_asked_anew_after_a_while_and_nothing_else(pair, monkey
 
 def test_questions_that_may_take_long_leave_no_memory_behind_when_they_took_a_moment(pair, monkeypatch):
     server, client = pair
-    monkeypatch.setattr("semmap.nodes.bus.asking._ROUND_S", 0.2)
+    monkeypatch.setattr("semmap.nodes.bus.query_client._ROUND_S", 0.2)
     bus.serve(server, PREFIX, answer(lambda request: replies.Done(text="here")))
     process = psutil.Process()
 
@@ -96,11 +96,11 @@ def test_questions_that_may_take_long_leave_no_memory_behind_when_they_took_a_mo
 ASKED = (commands.Get(name="x"), replies.Done)
 
 
-def gone_when_asked(server, lifelines):
+def gone_when_asked(server, liveliness):
     """One who has a question, and whose token goes without that the question ends: as if it had got lost."""
     kept = []
     token = server.liveliness().declare_token(keys.live_key("kb_node", "1"))
-    until(lambda: lifelines.is_there("kb_node"), "the token is seen")
+    until(lambda: liveliness.is_there("kb_node"), "the token is seen")
 
     def lose(request):
         if not kept:
@@ -112,8 +112,8 @@ def gone_when_asked(server, lifelines):
 
 def test_a_question_that_got_lost_when_its_node_went_is_asked_again(pair):
     server, client = pair
-    lifelines = bus.Lifelines(client)
-    lose = gone_when_asked(server, lifelines)
+    liveliness = bus.LivelinessMonitor(client)
+    lose = gone_when_asked(server, liveliness)
     asked = []
 
     def receive(request):
@@ -121,17 +121,17 @@ def test_a_question_that_got_lost_when_its_node_went_is_asked_again(pair):
         lose(request) if len(asked) == 1 else request.reply(replies.Done(text="here"))
 
     bus.serve(server, keys.BRIDGE, receive)
-    assert bus.ask(client, keys.BRIDGE, "get", *ASKED, lifelines=lifelines).text == "here"
+    assert bus.ask(client, keys.BRIDGE, "get", *ASKED, liveliness=liveliness).text == "here"
     assert len(asked) == 2
 
 
 def test_so_is_one_to_a_node_that_serves_just_this_verb(pair):
     server, client = pair
-    lifelines = bus.Lifelines(client)
-    bus.serve(server, keys.CMD, gone_when_asked(server, lifelines), verb="sparql")
+    liveliness = bus.LivelinessMonitor(client)
+    bus.serve(server, keys.CMD, gone_when_asked(server, liveliness), verb="sparql")
     until_served(client, f"{keys.CMD}/sparql")
     bus.serve(client, keys.CMD, answer(lambda _: replies.Done(text="second hand")))
-    reply = bus.ask(client, keys.CMD, "sparql", *ASKED, first_hand=True, lifelines=lifelines)
+    reply = bus.ask(client, keys.CMD, "sparql", *ASKED, prefer_complete=True, liveliness=liveliness)
     assert reply.text == "second hand"
 
 
@@ -149,8 +149,8 @@ class Clock:
 def test_patience_begins_when_who_had_the_question_goes(pair, monkeypatch):
     server, client = pair
     clock = Clock()
-    monkeypatch.setattr(asking, "time", clock)
-    lifelines = bus.Lifelines(client)
+    monkeypatch.setattr(query_client, "time", clock)
+    liveliness = bus.LivelinessMonitor(client)
     token = server.liveliness().declare_token(keys.live_key("kb_node", "1"))
     kept = []
     numbers = itertools.count()
@@ -165,8 +165,8 @@ def test_patience_begins_when_who_had_the_question_goes(pair, monkeypatch):
             request.reply(replies.Done(text="back"))
 
     bus.serve(server, keys.BRIDGE, receive)
-    until(lambda: lifelines.is_there("kb_node"), "the token is seen")
-    how = {"patience_s": PATIENCE_S, "lifelines": lifelines}
+    until(lambda: liveliness.is_there("kb_node"), "the token is seen")
+    how = {"patience_s": PATIENCE_S, "liveliness": liveliness}
     assert bus.ask(client, keys.BRIDGE, "get", *ASKED, **how).text == "back"
 
 
@@ -179,32 +179,32 @@ def test_a_busy_machine_is_not_taken_for_a_node_that_goes_again_and_again(pair, 
         time.sleep(0.15)
         return ()
 
-    monkeypatch.setattr("semmap.nodes.bus.asking._get", ask_slowly)
+    monkeypatch.setattr("semmap.nodes.bus.query_client._get", ask_slowly)
     with pytest.raises(errors.NoAnswer):
-        bus.ask(client, keys.BRIDGE, "get", *ASKED, patience_s=0.3, lifelines=bus.Lifelines(client))
+        bus.ask(client, keys.BRIDGE, "get", *ASKED, patience_s=0.3, liveliness=bus.LivelinessMonitor(client))
 
 
 def test_ask_later_tells_that_the_node_went(pair):
     server, client = pair
     answers: queue.SimpleQueue = queue.SimpleQueue()
-    lifelines = bus.Lifelines(client)
-    bus.serve(server, keys.BRIDGE, gone_when_asked(server, lifelines))
+    liveliness = bus.LivelinessMonitor(client)
+    bus.serve(server, keys.BRIDGE, gone_when_asked(server, liveliness))
     until_served(client, f"{keys.BRIDGE}/get")
-    bus.ask_later(client, keys.BRIDGE, "get", *ASKED, answers.put, lifelines=lifelines)
+    bus.ask_later(client, keys.BRIDGE, "get", *ASKED, answers.put, liveliness=liveliness)
     with pytest.raises(errors.NoAnswer, match="kb_node is not running"):
         answers.get(timeout=PATIENCE_S)()
 
 
 def test_who_asks_on_a_lifeline_that_was_just_cut_is_told_so(pair):
     _, client = pair
-    lifelines = bus.Lifelines(client)
-    lifelines.of(("kb_node",)).cancel()
+    liveliness = bus.LivelinessMonitor(client)
+    liveliness.of(("kb_node",)).cancel()
     answers: queue.SimpleQueue = queue.SimpleQueue()
-    bus.ask_later(client, keys.BRIDGE, "get", *ASKED, answers.put, lifelines=lifelines)
+    bus.ask_later(client, keys.BRIDGE, "get", *ASKED, answers.put, liveliness=liveliness)
     with pytest.raises(errors.NoAnswer):
         answers.get(timeout=PATIENCE_S)()
     with pytest.raises(errors.NoAnswer):
-        bus.ask(client, keys.BRIDGE, "get", *ASKED, patience_s=0.0, lifelines=lifelines)
+        bus.ask(client, keys.BRIDGE, "get", *ASKED, patience_s=0.0, liveliness=liveliness)
 
 
 def test_patience_lasts_until_somebody_serves(pair):

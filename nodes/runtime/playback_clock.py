@@ -42,7 +42,7 @@ def waits_s(stamps_ns: Iterable[int], *, speed: float = 1.0, longest_s: float = 
     return (wait_s(*pair, speed=speed, longest_s=longest_s) for pair in pairwise(stamps_ns))
 
 
-def ahead(
+def next_position(
     stamps_ns: Sequence[int],
     at: int,
     *,

@@ -12,9 +12,9 @@ from typing import Any
 import zenoh
 from msgspec import Struct, field
 
-from semmap.nodes.bus import pieces
-from semmap.nodes.bus.asking import Encoded
+from semmap.nodes.bus import fragmentation
 from semmap.nodes.bus.pubsub import publisher
+from semmap.nodes.bus.query_client import Encoded
 from semmap.schemas import codec, errors, keys
 from semmap.schemas.calls import largest
 from semmap.schemas.replies import Ack, Document, Done
@@ -54,7 +54,7 @@ class Request(Struct, frozen=True):
     def read(self, kind: Any) -> Any:
         """The message, of type `kind`. Raises BadRequest."""
         if len(self.payload) > (most := largest(kind)):
-            raise pieces.too_large(len(self.payload), most)
+            raise fragmentation.too_large(len(self.payload), most)
         parameters = {k: v for k, v in self.parameters.items() if (k, v) != ("format", "json")}
         if self.payload:
             if parameters:
@@ -72,17 +72,17 @@ class Request(Struct, frozen=True):
 
 
 def _request_of_query(
-    prefix: str, query: zenoh.Query, arrivals: pieces.Arrivals, most: Most
+    prefix: str, query: zenoh.Query, arrivals: fragmentation.RequestAssembler, most: Most
 ) -> Request | None:
     """None for a piece after which others come. Raises what the query is to be refused with."""
     asked = str(query.key_expr)
     verb, who = keys.last_chunk(asked), keys.asked_as(asked) if prefix == keys.commands_as() else ""
     sent = query.payload
-    if sent is not None and len(sent) > pieces.MESSAGE:
-        raise pieces.too_large(len(sent), pieces.MESSAGE)
+    if sent is not None and len(sent) > fragmentation.MESSAGE_BYTES:
+        raise fragmentation.too_large(len(sent), fragmentation.MESSAGE_BYTES)
     payload: bytes | bytearray = sent.to_bytes() if sent is not None else b""
     done = _nothing_to_do
-    if (piece := pieces.piece_of(query.attachment)) is not None:
+    if (piece := fragmentation.fragment_of(query.attachment)) is not None:
         whole = arrivals.take(piece, bytes(payload), most(verb))
         if whole is None:
             return None
@@ -106,12 +106,12 @@ def _request_of_query(
         with query:
             if not ok:
                 query.reply_err(content, encoding=encoding)
-            elif len(content) <= pieces.PIECE:
+            elif len(content) <= fragmentation.FRAGMENT_BYTES:
                 query.reply(key, content, encoding=encoding)
             elif as_json:
                 _refuse(query, _too_long(len(content)), as_json=True)
             else:
-                for part, which in pieces.cut(content):
+                for part, which in fragmentation.split(content):
                     query.reply(key, part, encoding=encoding, attachment=codec.encode(which))
 
     return Request(verb, payload, parameters, send, plain=not as_json, who=who, source=query.source_info)
@@ -127,7 +127,7 @@ def _reply_key(prefix: str, asked: str, verb: str, who: str) -> str:
 
 def _too_long(size: int) -> errors.Refused:
     return errors.Refused(
-        f"the reply has {size >> 20:,} MB, and one in JSON may have {pieces.PIECE >> 20}; ask for less, or"
+        f"the reply has {size >> 20:,} MB, and one in JSON may have {fragmentation.FRAGMENT_BYTES >> 20}; ask for less, or"
         " with semmap's client, which takes it in pieces"
     )
 
@@ -145,7 +145,7 @@ Most = Callable[[str], int]
 
 
 def _whole(_: str) -> int:
-    return pieces.WHOLE
+    return fragmentation.REQUEST_BYTES
 
 
 def serve(
@@ -162,7 +162,7 @@ def serve(
     serves a single verb is `complete` (Zenoh's word) for its key, so that it can be asked alone. A request
     that comes in pieces may have `most(verb)` bytes.
     """
-    arrivals = pieces.Arrivals()
+    arrivals = fragmentation.RequestAssembler()
 
     def on_query(query: zenoh.Query) -> None:
         try:
@@ -205,13 +205,13 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
         def send(message: Any, ok: bool) -> None:
             reply, error = (message, None) if ok else (None, message)
             ack = encode(Ack(id=str(said.id), verb=verb, ok=ok, reply=reply, error=error))
-            if len(ack) > pieces.PIECE:
+            if len(ack) > fragmentation.FRAGMENT_BYTES:
                 long = errors.to_message(_too_long(len(ack)))
                 ack = encode(Ack(id=str(said.id), verb=verb, ok=False, reply=None, error=long))
             acks.put(ack)
 
-        if len(payload) > pieces.MESSAGE:
-            send(errors.to_message(pieces.too_large(len(payload), pieces.MESSAGE)), False)
+        if len(payload) > fragmentation.MESSAGE_BYTES:
+            send(errors.to_message(fragmentation.too_large(len(payload), fragmentation.MESSAGE_BYTES)), False)
             return
         receive(Request(verb, payload, {}, send, source=sample.source_info))
 

@@ -9,7 +9,7 @@ import pytest
 import zenoh
 
 from semmap.nodes import bus
-from semmap.nodes.bus import pieces
+from semmap.nodes.bus import fragmentation
 from semmap.schemas import codec, commands, errors, keys, replies
 from tests.bus.conftest import PREFIX, answer
 from tests.conftest import PATIENCE_S, until
@@ -19,7 +19,7 @@ from tests.waiting import until_followed
 @pytest.fixture
 def small(monkeypatch):
     """Pieces of a kilobyte."""
-    monkeypatch.setattr(pieces, "PIECE", 1000)
+    monkeypatch.setattr(fragmentation, "FRAGMENT_BYTES", 1000)
 
 
 def load(size):
@@ -70,10 +70,12 @@ def test_a_message_larger_than_a_session_takes_does_not_arrive(pair):
     server.declare_subscriber("semmap/large", lambda sample: came.put(len(sample.payload)))
     until_followed(client, "semmap/large")
     client.put(
-        "semmap/large", bytes(pieces.PLANE + (1 << 20)), congestion_control=zenoh.CongestionControl.BLOCK
+        "semmap/large",
+        bytes(fragmentation.PLANE_BYTES + (1 << 20)),
+        congestion_control=zenoh.CongestionControl.BLOCK,
     )
-    client.put("semmap/large", bytes(bus.PUBLISHED), congestion_control=zenoh.CongestionControl.BLOCK)
-    assert came.get(timeout=PATIENCE_S) == bus.PUBLISHED
+    client.put("semmap/large", bytes(bus.PUBLICATION_BYTES), congestion_control=zenoh.CongestionControl.BLOCK)
+    assert came.get(timeout=PATIENCE_S) == bus.PUBLICATION_BYTES
 
 
 def test_a_request_of_a_small_kind_is_refused_when_it_is_large(pair):
@@ -116,11 +118,11 @@ def test_a_strange_attachment_is_answered(pair):
 
 
 def piece(number, count=4, of="a"):
-    return pieces.Piece(of=of, number=number, count=count)
+    return fragmentation.Fragment(of=of, number=number, count=count)
 
 
 def test_pieces_are_counted_until_they_are_done_with():
-    arrivals = pieces.Arrivals(most=100)
+    arrivals = fragmentation.RequestAssembler(most=100)
     for number in range(3):
         assert arrivals.take(piece(number), b"x" * 20, 1000) is None
     assert arrivals.take(piece(3), b"y" * 20, 1000) == b"x" * 60 + b"y" * 20
@@ -132,7 +134,7 @@ def test_pieces_are_counted_until_they_are_done_with():
 
 @pytest.mark.parametrize("numbers", [[1], [0, 2], [0, 1, 1]])
 def test_what_is_missing_has_to_be_sent_again(numbers):
-    arrivals = pieces.Arrivals()
+    arrivals = fragmentation.RequestAssembler()
     *before, last = numbers
     for number in before:
         arrivals.take(piece(number), b"x", 1000)
@@ -141,16 +143,16 @@ def test_what_is_missing_has_to_be_sent_again(numbers):
 
 
 def test_what_does_not_go_on_is_given_up(monkeypatch):
-    arrivals = pieces.Arrivals(most=100)
+    arrivals = fragmentation.RequestAssembler(most=100)
     arrivals.take(piece(0), b"x" * 80, 1000)
     with pytest.raises(errors.Busy):
         arrivals.take(piece(0, of="b"), b"x" * 80, 1000)
-    monkeypatch.setattr(pieces, "_GIVEN_UP_S", -1.0)
+    monkeypatch.setattr(fragmentation, "_FRAGMENT_TIMEOUT_S", -1.0)
     assert arrivals.take(piece(0, of="b"), b"x" * 80, 1000) is None
 
 
 def test_no_more_than_a_few_are_put_together_at_a_time():
-    arrivals = pieces.Arrivals()
+    arrivals = fragmentation.RequestAssembler()
     for number in range(16):
         arrivals.take(piece(0, of=str(number)), b"x", 1000)
     with pytest.raises(errors.Busy):
@@ -160,7 +162,7 @@ def test_no_more_than_a_few_are_put_together_at_a_time():
 def test_a_question_that_was_not_cut_is_refused_in_words(pair):
     server, client = pair
     bus.serve(server, PREFIX, answer(echoed))
-    (reply,) = client.get(f"{PREFIX}/load", payload=bytes(bus.MESSAGE + 1))
+    (reply,) = client.get(f"{PREFIX}/load", payload=bytes(bus.MESSAGE_BYTES + 1))
     error = codec.decode(reply.err.payload.to_bytes(), errors.ErrorMessage)
     assert (error.code, error.text[-16:]) == ("bad-request", "have up to 16 MB")
 
@@ -170,6 +172,8 @@ def test_a_publication_that_is_too_large_is_counted(pair):
     heard, ignored = [], []
     bus.follow(server, keys.HEALTH, lambda _, beat: heard.append(beat), lambda: ignored.append(1))
     until_followed(client, keys.health_key("x"))
-    client.put(keys.health_key("x"), bytes(bus.MESSAGE + 1), congestion_control=zenoh.CongestionControl.BLOCK)
+    client.put(
+        keys.health_key("x"), bytes(bus.MESSAGE_BYTES + 1), congestion_control=zenoh.CongestionControl.BLOCK
+    )
     until(lambda: ignored, "it is ignored")
     assert heard == []

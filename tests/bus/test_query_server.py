@@ -11,7 +11,7 @@ import pytest
 import zenoh
 
 from semmap.nodes import bus
-from semmap.nodes.bus import serving
+from semmap.nodes.bus import query_server
 from semmap.schemas import codec, commands, errors, keys, replies
 from tests.bus.conftest import PREFIX, answer
 from tests.conftest import PATIENCE_S, until
@@ -78,7 +78,7 @@ class Gate:
 def test_a_server_of_puts_does_not_wait_for_slow_readers_of_acknowledgements(pair, monkeypatch):
     server, client = pair
     requests, gate = [], Gate()
-    monkeypatch.setattr(serving, "publisher", lambda *_: gate)
+    monkeypatch.setattr(query_server, "publisher", lambda *_: gate)
     bus.serve_puts(server, PREFIX, requests.append)
     until_followed(client, f"{PREFIX}/get")
     for number in range(MANY):
@@ -116,9 +116,9 @@ def in_time(function):
 
 
 def test_room_that_was_made_while_the_queue_was_declared_full_is_found(pair, monkeypatch):
-    monkeypatch.setattr(serving, "_ACKS", 2)
+    monkeypatch.setattr(query_server, "_ACKS", 2)
     server, _ = pair
-    acks = serving._Acks(server)
+    acks = query_server._Acks(server)
     acks._publisher = gate = Gate()
     acks._has_room = ClearedTooLate(gate, 3)
     acks.put(b"1")
@@ -130,9 +130,9 @@ def test_room_that_was_made_while_the_queue_was_declared_full_is_found(pair, mon
 
 
 def test_nobody_waits_for_room_after_the_end(pair, monkeypatch):
-    monkeypatch.setattr(serving, "_ACKS", 1)
+    monkeypatch.setattr(query_server, "_ACKS", 1)
     server, _ = pair
-    acks = serving._Acks(server)
+    acks = query_server._Acks(server)
     acks.end()
     for _ in range(20):
         acks.put(b"x")

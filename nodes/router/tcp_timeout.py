@@ -17,7 +17,7 @@ _OPTION: Final[int | None] = getattr(socket, "TCP_USER_TIMEOUT", None)
 _OWN: Final = Path("/proc/self/fd")
 
 
-def give_up_after(seconds: float) -> int:
+def set_user_timeout(seconds: float) -> int:
     """Let every TCP connection of this process end when what it has sent is not acknowledged for so long.
 
     Returns how many there are. To be called again and again, because there will be others.

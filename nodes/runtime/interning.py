@@ -12,7 +12,7 @@ _MOST: Final = 10_000
 """Texts, or provenances, remembered; then it begins anew."""
 
 
-class SharedParts:
+class EntityInterner:
     """Classes, words and provenance of entities: equal ones become one object. Halves a map's memory."""
 
     def __init__(self) -> None:

@@ -14,28 +14,28 @@ def lifelines_and_token(pair):
     """A session's view of a kb_node that came before it."""
     server, client = pair
     token = server.liveliness().declare_token(keys.live_key("kb_node", "7"))
-    lifelines = bus.Lifelines(client)
-    until(lambda: lifelines.is_there("kb_node"), "it is seen")
-    return lifelines, token
+    liveliness = bus.LivelinessMonitor(client)
+    until(lambda: liveliness.is_there("kb_node"), "it is seen")
+    return liveliness, token
 
 
 def test_who_has_a_token_is_there(pair, lifelines_and_token):
-    lifelines, token = lifelines_and_token
-    assert not lifelines.is_there("coordinator")
+    liveliness, token = lifelines_and_token
+    assert not liveliness.is_there("coordinator")
     newer = pair[0].liveliness().declare_token(keys.live_key("kb_node", "8"))
-    cut = lifelines.of(("kb_node",))
+    cut = liveliness.of(("kb_node",))
     token.undeclare()
     until(lambda: cut.is_cancelled, "the older one is gone")
-    assert lifelines.is_there("kb_node")
+    assert liveliness.is_there("kb_node")
     newer.undeclare()
-    until(lambda: not lifelines.is_there("kb_node"), "both are gone")
+    until(lambda: not liveliness.is_there("kb_node"), "both are gone")
 
 
 def test_the_robots_that_are_there_are_told_of_before_it_goes_on(pair):
     server, client = pair
     names = ("arm1", "arm2")
     tokens = [server.liveliness().declare_token(f"{name}/{keys.live_key('kb_node', '7')}") for name in names]
-    until(lambda: set(names) <= set(bus.robots(client)), "they are seen")
+    until(lambda: set(names) <= set(bus.find_robots(client)), "they are seen")
     there = bus.Network(connect=(f"{client.info.links()[0].dst}",))
     for _ in range(20):  # news are now and then as quick as that by themselves
         told = []
@@ -54,11 +54,11 @@ def test_the_robots_that_are_there_are_told_of_before_it_goes_on(pair):
 
 
 def test_all_that_hangs_on_a_node_is_cancelled_when_it_goes(lifelines_and_token):
-    lifelines, token = lifelines_and_token
-    old = [lifelines.of(("kb_node",)), lifelines.of(("kb_node", "coordinator"))]
-    others = lifelines.of(("coordinator",))
-    assert lifelines.of(("kb_node",)) is old[0]
+    liveliness, token = lifelines_and_token
+    old = [liveliness.of(("kb_node",)), liveliness.of(("kb_node", "coordinator"))]
+    others = liveliness.of(("coordinator",))
+    assert liveliness.of(("kb_node",)) is old[0]
     token.undeclare()
-    until(lambda: all(lifeline.is_cancelled for lifeline in old), "the lifelines are cut")
+    until(lambda: all(lifeline.is_cancelled for lifeline in old), "the liveliness are cut")
     assert not others.is_cancelled
-    assert not lifelines.of(("kb_node",)).is_cancelled
+    assert not liveliness.of(("kb_node",)).is_cancelled

@@ -20,7 +20,7 @@ def file(tmp_path):
 
 def test_what_it_says_holds_in_a_session(file):
     path = file("{ queries_default_timeout: 1234, /* JSON5 */ metadata: {name: 'robot'} }")
-    bus.own_config.require_sound(path, secure=True)
+    bus.zenoh_config.require_sound(path, secure=True)
     config = bus.Network(own_config=path).as_config()
     assert config.get_json("queries_default_timeout") == "1234"
     assert config.get_json("scouting/multicast/enabled") == "false"  # as in every session of ours
@@ -49,7 +49,7 @@ def test_what_it_says_holds_in_a_session(file):
 )
 def test_what_would_not_do_what_it_says_is_told(file, text, told):
     with pytest.raises(errors.BadFile, match=told):
-        bus.own_config.require_sound(file(text), secure=False)
+        bus.zenoh_config.require_sound(file(text), secure=False)
 
 
 @pytest.mark.parametrize(
@@ -60,18 +60,18 @@ def test_what_would_not_do_what_it_says_is_told(file, text, told):
     ],
 )
 def test_what_is_made_from_the_keys_cannot_be_set_beside_them(file, text):
-    bus.own_config.require_sound(file(text), secure=False)
+    bus.zenoh_config.require_sound(file(text), secure=False)
     with pytest.raises(errors.BadFile, match="which --secure makes"):
-        bus.own_config.require_sound(file(text), secure=True)
+        bus.zenoh_config.require_sound(file(text), secure=True)
 
 
 def test_a_missing_file_is_told(tmp_path):
     with pytest.raises(errors.BadFile, match="there is no file"):
-        bus.own_config.read(str(tmp_path / "none.json5"))
+        bus.zenoh_config.read(str(tmp_path / "none.json5"))
 
 
 def test_mutual_tls_protects(file):
-    assert bus.own_config.is_protected(
+    assert bus.zenoh_config.is_protected(
         file("{transport: {link: {tls: {enable_mtls: true, root_ca_certificate: 'ca.pem'}}}}")
     )
-    assert not bus.own_config.is_protected(file("{}"))
+    assert not bus.zenoh_config.is_protected(file("{}"))

@@ -1,6 +1,6 @@
 import msgspec
 
-from semmap.nodes.runtime.shared_parts import SharedParts
+from semmap.nodes.runtime.interning import EntityInterner
 from semmap.schemas.entities import IDENTITY, Entity
 from tests.recorder.messages import entity
 
@@ -10,7 +10,7 @@ def decoded(like):
 
 
 def test_equal_parts_are_one_object_and_nothing_else_is_changed():
-    shared = SharedParts()
+    shared = EntityInterner()
     a, b = (shared.entity(decoded(entity(name, "Cup"))) for name in ("a", "b"))
     assert (a, b) == (entity("a", "Cup"), entity("b", "Cup"))
     assert a.types is b.types
@@ -20,7 +20,7 @@ def test_equal_parts_are_one_object_and_nothing_else_is_changed():
 
 
 def test_another_commit_has_another_provenance():
-    shared = SharedParts()
+    shared = EntityInterner()
     said = entity("a", "Cup")
     later = msgspec.structs.replace(
         said, pose_provenance=msgspec.structs.replace(said.provenance, commit=said.provenance.commit + 1)

@@ -27,7 +27,7 @@ _BEHIND_S = 3.0
 C = TypeVar("C", Commit, Effects)
 
 
-class Begun(NamedTuple):
+class SnapshotLoaded(NamedTuple):
     """A replica was begun anew: the commit it was at before (-1: none), that of the snapshot, the classes."""
 
     before: int
@@ -44,8 +44,8 @@ class Follower(Generic[C]):
         replica: MapReplica[C],
         topic: keys.Topic,
         *,
-        heard: Callable[[C, bool], None],
-        begun: Callable[[Begun], None],
+        on_commit: Callable[[C, bool], None],
+        on_snapshot: Callable[[SnapshotLoaded], None],
         classes_at: str = keys.BRIDGE,
     ) -> None:
         """Follow `topic`, which publishes commits in full or their effects.
@@ -53,13 +53,13 @@ class Follower(Generic[C]):
         The class table is asked for at `classes_at`: of the knowledge base, or, by who may not ask that, as a
         command.
 
-        `heard(commit, known)` is called after each commit; `known`: the replica is at it or beyond.
-        `begun(what)` is called after each snapshot that the replica has begun with.
+        `on_commit(commit, known)` is called after each commit; `known`: the replica is at it or beyond.
+        `on_snapshot(what)` is called after each snapshot that the replica has begun with.
         """
         self._node = node
         self._replica: MapReplica[C] = replica
-        self._heard: Callable[[C, bool], None] = heard
-        self._begun = begun
+        self._on_commit_taken: Callable[[C, bool], None] = on_commit
+        self._on_snapshot = on_snapshot
         self._classes_at = classes_at
         self._fetching = False
         self._begun_ns = 0
@@ -75,7 +75,7 @@ class Follower(Generic[C]):
 
     def _on_commit(self, commit: C) -> None:
         known = self._replica.take(commit)
-        self._heard(commit, known)
+        self._on_commit_taken(commit, known)
         if not known or commit.tbox:
             self._fetch()
 
@@ -151,7 +151,7 @@ class Follower(Generic[C]):
         before = self._replica.seq
         if self._replica.begin(snapshot):
             self._begun_ns = time.time_ns()
-            self._begun(Begun(before, snapshot.seq, classes))
+            self._on_snapshot(SnapshotLoaded(before, snapshot.seq, classes))
 
     def _ask(self, call: Call[Any], take: Callable[[Any], None], *, at: str = keys.BRIDGE) -> None:
         def on_done(done: Future[Any]) -> None:
