@@ -126,7 +126,7 @@ def test_a_hand_in_the_scene_changes_the_map(client):
     asked = Grip(orders=(GripOrder(name="cup1", holder="tray1"),))
     assert bus.ask(client.session, keys.SIM, "grip", asked, Gripped).failed == {}
     until(lambda: holder_of(client.get("cup1")) == "tray1", "the map follows")
-    assert client.history("cup1", limit=1)[-1].reason == "cup1 was taken by tray1 in the scene"
+    assert client.history("cup1", limit=1)[-1].reason == "cup1 was attached to tray1 in the scene"
     bus.ask(client.session, keys.SIM, "grip", Grip(orders=(GripOrder(name="cup1"),)), Gripped)
     until(lambda: holder_of(client.get("cup1")) == "", "the map follows")
     agree(client, "cup1", "tray1")

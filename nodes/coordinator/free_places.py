@@ -147,7 +147,7 @@ class _Search:
             self._next = (ring, point + 1) if point + 1 < _points(ring) else (ring + 1, 0)
 
     def position(self, spot: Spot) -> tuple[float, float]:
-        """PoseLookup a spot is [m]."""
+        """Where a spot is [m]."""
         ring, point = spot
         angle = 2.0 * math.pi * point / _points(ring)
         x, y, _ = DEFAULT_POSITION

@@ -199,7 +199,7 @@ class Coordinator:
 
     def _reconcile(self) -> None:
         if self._has_map:
-            self._reconciler.keep()
+            self._reconciler.reconcile()
             self._answer_waiting()
             scene = self._reconciler.scene
             bodies = f", {wording.bodies(len(scene.bodies))}" if scene.known else ""
@@ -210,7 +210,7 @@ class Coordinator:
         self._scheduler.run_ready()
         if names := self._dispatcher.map.touched:
             self._dispatcher.map.touched = set()
-            self._reconciler.keep(names)
+            self._reconciler.reconcile(names)
             self._answer_waiting()
 
     # Changing

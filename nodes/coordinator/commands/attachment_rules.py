@@ -10,7 +10,7 @@ from semmap.schemas.grips import bearers, grip_of, holder_of
 from semmap.schemas.scenes import Body
 
 PoseLookup = Callable[[str], Pose | None]
-"""PoseLookup an entity is just now, if that is known."""
+"""Where an entity is just now, if that is known."""
 
 
 def resolve_name(word: str, entities: Mapping[str, Entity]) -> str:
@@ -89,7 +89,7 @@ def _stays(held: Entity, bodies: Mapping[str, Body]) -> str:
 def compute_grip(
     held: Pose | None, holder: Pose | None, at: tuple[float, float, float] | None, yaw: float | None
 ) -> Pose | None:
-    """PoseLookup a thing is held, in the frame of its holder; None where that is not known.
+    """Where a thing is held, in the frame of its holder; None where that is not known.
 
     `held` and `holder` are where both are just now (map frame); `at` [m] and `yaw` [rad] are where it is
     wanted, in the frame of the holder.
@@ -103,7 +103,7 @@ def compute_grip(
 
 
 def attached_pose(entity: Entity, where: PoseLookup) -> Pose | None:
-    """PoseLookup a held thing is, by where its holder is; None where nothing holds it, or that is unknown."""
+    """Where a held thing is, by where its holder is; None where nothing holds it, or that is unknown."""
     by, gripped = holder_of(entity), grip_of(entity)
     if not by or gripped is None:
         return None

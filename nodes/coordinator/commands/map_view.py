@@ -31,7 +31,7 @@ class MapView(map_replica.MapReplica[Effects]):
         self.held: dict[str, Entity] = {}
         """The entities that others hold, by name."""
         self.pose_of: PoseLookup = self._committed_pose
-        """PoseLookup an entity is just now; whoever hears of bodies and live poses knows better than the map."""
+        """Where an entity is just now; whoever hears of bodies and live poses knows better than the map."""
         self.bodies: Callable[[], Mapping[str, Body]] = dict
         """The bodies of the scene, by name, if there is one."""
         self._names = FreeNames()

@@ -226,7 +226,7 @@ def _covering(
 def _around(
     extent: str, at: Vector | None, size: Size | None
 ) -> tuple[Vector | None, Size | None, tuple[Statement, ...]]:
-    """PoseLookup a place with this extent is and how large, as far as that is given; and what is stated of it."""
+    """Where a place with this extent is and how large, as far as that is given; and what is stated of it."""
     polygon = polygons.read_wkt(extent)
     centre, box = polygons.box_around(
         polygon, 0.0 if at is None else at[2], polygons.HEIGHT_M if size is None else size[2]

@@ -15,7 +15,7 @@ PART_OF = "isDirectPartOf"
 
 
 class _Stand(NamedTuple):
-    """PoseLookup an entity is in the map's frame, and how that is known."""
+    """Where an entity is in the map's frame, and how that is known."""
 
     pose: Pose | None
     source: FrameSource

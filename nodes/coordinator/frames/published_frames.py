@@ -107,7 +107,7 @@ class PublishedFrames:
             del self._received[name]
 
     def link(self, name: str, now_s: float) -> Link | None:
-        """PoseLookup a frame is in its parent; None for one that nobody publishes."""
+        """Where a frame is in its parent; None for one that nobody publishes."""
         known = self._received.get(name)
         if known is None:
             return None

@@ -13,7 +13,7 @@ ORIGIN = Pose(position_m=(0.0, 0.0, 0.0))
 
 
 class Link(NamedTuple):
-    """How a frame is tied to its parent. PoseLookup `problem` says why it cannot be used, there may be no pose."""
+    """How a frame is tied to its parent. Where `problem` says why it cannot be used, there may be no pose."""
 
     parent: str
     pose: Pose | None
@@ -47,7 +47,7 @@ class Tree:
         )
 
     def map_pose(self, name: str) -> Pose:
-        """PoseLookup a frame that is there is in the map's.
+        """Where a frame that is there is in the map's.
 
         Raises Refused where it, or one above it, is stale, nowhere, or in itself.
         """

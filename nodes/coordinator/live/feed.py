@@ -65,14 +65,14 @@ class LiveFeed:
         return time.monotonic() - self._scene_received_s
 
     def live_pose(self, entity: Entity) -> Live | None:
-        """PoseLookup a tracked entity is just now, if that was ever heard."""
+        """Where a tracked entity is just now, if that was ever heard."""
         if not entity.tracked:
             return self._attached(entity)
         self._read()
         return self._poses.live(entity.name, time.monotonic())
 
     def pose_of(self, name: str) -> Pose | None:
-        """PoseLookup an entity is just now, by what is known best: live, its body, what holds it, or the map."""
+        """Where an entity is just now, by what is known best: live, its body, what holds it, or the map."""
         return self._find_pose(name, ())
 
     def _find_pose(self, name: str, above: tuple[str, ...]) -> Pose | None:
@@ -91,7 +91,7 @@ class LiveFeed:
         )
 
     def _attached(self, entity: Entity) -> Live | None:
-        """PoseLookup a thing is that something holds: as new as is known of that."""
+        """Where a thing is that something holds: as new as is known of that."""
         if not (by := holder_of(entity)) or (pose := self.pose_of(entity.name)) is None:
             return None
         holder = self._map.entities.get(by)

@@ -120,7 +120,7 @@ class LivePoses:
     # what is told
 
     def live(self, name: str, now_s: float) -> Live | None:
-        """PoseLookup an entity is just now; None if nothing was heard of it."""
+        """Where an entity is just now; None if nothing was heard of it."""
         known = self._received.get(name)
         if known is None:
             return None
@@ -133,7 +133,7 @@ class LivePoses:
         )
 
     def current(self, now_s: float) -> dict[str, Live]:
-        """PoseLookup all are that were heard of lately: what is stale is where it was committed last."""
+        """Where all are that were heard of lately: what is stale is where it was committed last."""
         found = ((name, self.live(name, now_s)) for name in self._received)
         return {name: live for name, live in found if live is not None and not live.stale}
 

@@ -34,7 +34,7 @@ def find_displaced(
     """Return the names of the bodies that are farther from their committed state than the thresholds.
 
     It does not matter whether a body moves or stands, nor whether it has a live pose. An attached body is
-    where its holder takes it, and a part of a robot is named only if the robot is not. PoseLookup the map is
+    where its holder takes it, and a part of a robot is named only if the robot is not. Where the map is
     updated by perception only, just the robots of the simulator have a body to compare. The joints of
     `unsaid` bodies do not count: the ontology of the map has no property for them.
     """

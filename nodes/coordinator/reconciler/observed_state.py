@@ -1,4 +1,4 @@
-"""PoseLookup things have come to be, as a change of the map that takes its turn among the others."""
+"""Where things have come to be, as a change of the map that takes its turn among the others."""
 
 from __future__ import annotations
 

@@ -10,7 +10,8 @@ from typing import TypeVar
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.nodes.coordinator.commands.plausibility import require_carry
 from semmap.nodes.coordinator.config import Truth
-from semmap.nodes.coordinator.reconciler.reconciler import AskSim, Reconciler, describe_ghost
+from semmap.nodes.coordinator.reconciler.reconciler import AskSim, Reconciler
+from semmap.nodes.coordinator.reconciler.scene_report import describe_ghost
 from semmap.nodes.coordinator.scene.completion import Completion
 from semmap.nodes.runtime.futures import SingleThreadFuture, and_then, settle, then
 from semmap.schemas import commands as c
@@ -228,13 +229,13 @@ def _describe_drive(driven: Driven) -> str:
 
 
 def _describe_rest(body: Body) -> str:
-    """PoseLookup a body has come to rest."""
+    """Where a body has come to rest."""
     where = "({:g}, {:g}, {:g})".format(*(round(c, 3) + 0.0 for c in body.pose.position_m))
     return f"moved {body.name} to {where}" + (f", where it {describe_ghost(body)}" if body.ghost else "")
 
 
 def _describe_release(command: c.Move, body: Body) -> str:
-    """PoseLookup the hand let go: where it was told to, or above, where there is room."""
+    """Where the hand let go: where it was told to, or above, where there is room."""
     (x, y, z), room_z_m = command.at, body.pose.position_m[2]
     if body.ghost:
         return f"put {body.name} at ({x:g}, {y:g}, {z:g}), where it {describe_ghost(body)}"

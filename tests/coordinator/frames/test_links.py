@@ -1,4 +1,4 @@
-"""PoseLookup entities and cameras stand just now, how that is known, and in which frame they are."""
+"""Where entities and cameras stand just now, how that is known, and in which frame they are."""
 
 from __future__ import annotations
 

@@ -63,10 +63,10 @@ def test_a_drawer_and_what_it_took_along_are_followed_in_one_commit_once_all_of_
     dispatcher, reconciler
 ):
     seq = dispatcher.map.seq
-    reconciler.keep()
+    reconciler.reconcile()
     assert dispatcher.map.seq == seq
     pull(reconciler, "apple2", resting=True)
-    reconciler.keep({"chest1", "apple1", "apple2"})
+    reconciler.reconcile({"chest1", "apple1", "apple2"})
     assert dispatcher.map.seq == seq + 1
     found = dispatcher.map.entities
     assert (found["apple1"].pose.position_m[0], found["apple2"].pose.position_m[0]) == (0.3, 0.3)
@@ -77,7 +77,7 @@ def test_a_drawer_and_what_it_took_along_are_followed_in_one_commit_once_all_of_
 def test_a_hand_that_opened_it_is_told(dispatcher, reconciler):
     pull(reconciler, "apple2", resting=True)
     dispatcher.manual_moves.register(c.Open(name="chest1", agent="ann"))
-    reconciler.keep()
+    reconciler.reconcile()
     assert dispatcher.map.entity("apple1").provenance.reason == "chest1 was opened by hand"
     assert dispatcher.map.entity("apple1").provenance.agent == "ann"
     assert set(dispatcher.change(c.Undo()).names) == {"chest1", "apple1", "apple2"}
@@ -86,7 +86,7 @@ def test_a_hand_that_opened_it_is_told(dispatcher, reconciler):
 def test_what_never_rests_is_not_waited_for(dispatcher, reconciler, monkeypatch):
     monkeypatch.setattr(rest_waits, "CALM_S", 0.0)
     seq = dispatcher.map.seq
-    reconciler.keep()
+    reconciler.reconcile()
     assert dispatcher.map.seq == seq + 1
     assert dispatcher.map.entity("apple1").pose.position_m[0] == 0.3
     assert dispatcher.map.entity("apple2").pose.position_m[0] == 0.0
@@ -97,8 +97,8 @@ def test_what_a_word_moved_is_followed_together_too(dispatcher, reconciler):
     body = reconciler.scene.bodies["chest1"]
     reconciler.scene.bodies["chest1"] = structs.replace(body, joint_commit=dispatcher.map.seq)
     seq = dispatcher.map.seq
-    reconciler.keep({"apple1"})
+    reconciler.reconcile({"apple1"})
     assert dispatcher.map.seq == seq
     pull(reconciler, "apple2", resting=True)
-    reconciler.keep({"apple1", "apple2"})
+    reconciler.reconcile({"apple1", "apple2"})
     assert dispatcher.map.seq == seq + 1

@@ -1,4 +1,4 @@
-"""PoseLookup bodies came to rest and how joints stand, as a change of the map and in words."""
+"""Where bodies came to rest and how joints stand, as a change of the map and in words."""
 
 from __future__ import annotations
 

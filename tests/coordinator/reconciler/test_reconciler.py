@@ -42,7 +42,7 @@ def test_where_only_perception_tells_the_map_nothing_is_asked_of_the_simulator(d
     )
     dispatcher.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
     reconciler.scene.known = True
-    reconciler.keep()
+    reconciler.reconcile()
     assert asked == []
     assert reconciler.agreement().holds is None
     assert reconciler.body_state(dispatcher.map.entity("chair1")).status == "none"
@@ -68,8 +68,8 @@ def test_a_reset_tries_again_what_could_not_be_made(dispatcher):
     )
     dispatcher.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
     reconciler.scene.known = True
-    reconciler.keep()
-    reconciler.keep()
+    reconciler.reconcile()
+    reconciler.reconcile()
     assert reconciler.body_state(dispatcher.map.entity("chair1")).status == "failed"
     assert len(spawns) == 1
     reconciler.place_all()
@@ -91,10 +91,10 @@ def test_a_body_that_cannot_be_made_is_a_problem_only_as_long_as_its_entity_is_t
     reconciler = Reconciler(CoordinatorConfig("map"), dispatcher, immediate(dispatcher), ask, said.append)
     reconciler.scene.known = True
     dispatcher.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
-    reconciler.keep()
+    reconciler.reconcile()
     assert reconciler.problems() == ["chair1: failed: its model file is broken"]
     dispatcher.change(c.Remove(names=("chair1",)))
-    reconciler.keep()
+    reconciler.reconcile()
     assert (reconciler.problems(), said) == ([], [])  # and no heartbeat says it for an hour
 
 
@@ -115,7 +115,7 @@ def test_an_order_by_hand_waits_until_the_map_s_own_is_carried_out(dispatcher):
             body_order(dispatcher.map.entity(name), dispatcher.map.entity(name).pose)
         )
     dispatcher.change(c.Update(name="chair1", at=(3.0, 1.0, 0.0)))
-    reconciler.keep()
+    reconciler.reconcile()
     done = []
 
     def execute(name):
@@ -161,7 +161,7 @@ def test_a_foreign_body_is_a_problem_only_as_long_as_it_is_there(dispatcher):
     gizmo = standing(BodyOrder(name="gizmo", class_="Gizmo", pose=Pose(position_m=(0.0, 0.0, 0.0)), commit=0))
     reconciler.scene.known = True
     reconciler.scene.bodies["gizmo"] = gizmo
-    reconciler.keep()
+    reconciler.reconcile()
     (problem,) = reconciler.problems()
     assert problem.startswith("gizmo: a scene body without a map entity: unknown class 'Gizmo'")
     del reconciler.scene.bodies["gizmo"]
@@ -202,9 +202,9 @@ def test_what_changes_while_orders_are_under_way_is_done_right_after_them(dispat
     )
     reconciler.scene.known = True
     dispatcher.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
-    reconciler.keep({"chair1"})
+    reconciler.reconcile({"chair1"})
     dispatcher.change(c.Add(class_="Chair", name="chair2", at=(3.0, 1.0, 0.0)))
-    reconciler.keep({"chair2"})
+    reconciler.reconcile({"chair2"})
     answer()
     answer()
     ((message, _),) = orders
@@ -237,7 +237,7 @@ def test_bodies_are_told_of_batch_by_batch(dispatcher):
     dispatcher.change(
         c.Load(content=f'{{"entities": [{", ".join(entities)}]}}'.encode(), filename="chairs.json")
     )
-    reconciler.keep()
+    reconciler.reconcile()
     assert told == [0, BATCH, 2 * BATCH]
 
 
@@ -274,17 +274,17 @@ def test_a_body_that_cannot_be_moved_where_the_map_says_has_a_reason_for_being_n
     )
     reconciler.scene.known = True
     dispatcher.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
-    reconciler.keep()
+    reconciler.reconcile()
     assert reconciler.body_state(dispatcher.map.entity("chair1")).status == "present"
     dispatcher.change(c.Update(name="chair1", at=(2000.0, 0.0, 0.0)))
-    reconciler.keep()
+    reconciler.reconcile()
     assert reconciler.problems() == ["chair1: failed: it is too far"]
     assert reconciler.agreement().holds
     asked.clear()
-    reconciler.keep()
+    reconciler.reconcile()
     assert asked == []
     dispatcher.change(c.Update(name="chair1", at=(2.0, 0.0, 0.0)))
-    reconciler.keep()
+    reconciler.reconcile()
     assert reconciler.body_state(dispatcher.map.entity("chair1")).status == "present"
 
 
@@ -327,8 +327,8 @@ def bodies_elsewhere(dispatcher, count):
 
 def test_the_map_follows_many_bodies_without_waiting_for_each(dispatcher):
     reconciler, changes, _ = bodies_elsewhere(dispatcher, 40)
-    reconciler.keep()
-    reconciler.keep()
+    reconciler.reconcile()
+    reconciler.reconcile()
     assert [*(name for change, _ in changes for name in change.poses)] == [f"chair{i}" for i in range(40)]
     assert not reconciler.agreement().holds
     for change, future in changes:
@@ -340,23 +340,23 @@ def test_the_map_follows_many_bodies_without_waiting_for_each(dispatcher):
 
 def test_a_body_goes_back_when_the_map_does_not_follow(dispatcher):
     reconciler, changes, moved = bodies_elsewhere(dispatcher, 1)
-    reconciler.keep()
+    reconciler.reconcile()
     changes[0][1].set_exception(errors.Refused("it may not stand there"))
-    reconciler.keep()
+    reconciler.reconcile()
     assert [(p.name, p.pose.position_m) for p in moved] == [("chair0", (0.0, 1.0, 0.0))]
 
 
 def test_a_body_is_followed_later_when_the_map_does_not_answer_now(dispatcher):
     reconciler, changes, moved = bodies_elsewhere(dispatcher, 1)
-    reconciler.keep()
+    reconciler.reconcile()
     changes[0][1].set_exception(MemoryError("no memory"))
-    reconciler.keep()
+    reconciler.reconcile()
     assert (len(changes), moved) == (2, [])
 
 
 def test_who_moves_an_entity_before_the_map_follows_its_body_is_right(dispatcher):
     reconciler, changes, _ = bodies_elsewhere(dispatcher, 1)
-    reconciler.keep()
+    reconciler.reconcile()
     dispatcher.change(c.Update(name="chair0", at=(7.0, 7.0, 0.0)))
     assert dispatcher.change(changes[0][0]).commit is None
     assert dispatcher.map.entity("chair0").pose.position_m == (7.0, 7.0, 0.0)
@@ -364,7 +364,7 @@ def test_who_moves_an_entity_before_the_map_follows_its_body_is_right(dispatcher
 
 def test_a_body_whose_entity_is_gone_is_no_longer_followed(dispatcher):
     reconciler, changes, _ = bodies_elsewhere(dispatcher, 1)
-    reconciler.keep()
+    reconciler.reconcile()
     dispatcher.change(c.Remove(names=("chair0",)))
     assert dispatcher.change(changes[0][0]).commit is None
 
@@ -383,8 +383,8 @@ def test_an_answer_that_cannot_be_taken_does_not_end_the_keeping(dispatcher):
     )
     reconciler.scene.known = True
     dispatcher.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
-    reconciler.keep()
-    reconciler.keep()
+    reconciler.reconcile()
+    reconciler.reconcile()
     assert asked == ["spawn", "spawn"]
 
 
@@ -416,7 +416,7 @@ class Refusing:
 
     def refuse(self, error):
         self.changes[-1][1].set_exception(error)
-        self.reconciler.keep()
+        self.reconciler.reconcile()
 
 
 OPENED = (Joint(name="door1", kind="hinge", lower=0.0, upper=1.0, closed=0.0, position=0.5),)
@@ -426,12 +426,10 @@ GRIP = Pose(position_m=(0.0, 0.0, 1.0))
 def test_joints_go_back_when_the_map_rejects_how_they_stand(dispatcher):
     map_ = Refusing(dispatcher, "chair1")
     map_.become("chair1", joints=OPENED, joint_commit=1)
-    map_.reconciler.keep()
+    map_.reconciler.reconcile()
     assert map_.changes[0][0].joints == {"chair1": OPENED}
     map_.refuse(errors.Refused("it is locked"))
-    assert map_.said == [
-        "chair1 was put back as it stood, because the map rejected how it stands: it is locked"
-    ]
+    assert map_.said == ["the joints of chair1 were moved back, because the map rejected them: it is locked"]
     ((moved,),) = [call.orders for call in map_.asked if call.VERB == "move-joints"]
     assert moved.name == "chair1"
     assert len(map_.changes) == 1
@@ -441,13 +439,13 @@ def test_joints_go_back_when_the_map_rejects_how_they_stand(dispatcher):
     ("error", "tries", "said"),
     [
         (errors.BadRequest("no such property"), 1, []),
-        (MemoryError("no memory"), 2, ["the map cannot take over how chair1 stands yet: no memory"]),
+        (MemoryError("no memory"), 2, ["chair1: joint positions are not committed yet: no memory"]),
     ],
 )
 def test_joints_that_the_map_cannot_take_over_are_tried_again(dispatcher, error, tries, said):
     map_ = Refusing(dispatcher, "chair1")
     map_.become("chair1", joints=OPENED, joint_commit=1)
-    map_.reconciler.keep()
+    map_.reconciler.reconcile()
     map_.refuse(error)
     assert (len(map_.changes), map_.said, map_.asked) == (tries, said, [])
     assert map_.reconciler.is_followed("chair1") is (tries == 1)
@@ -457,11 +455,11 @@ def test_the_map_takes_over_what_was_taken_in_the_scene_and_by_whom(dispatcher):
     map_ = Refusing(dispatcher, "chair1", "chair2", "table1")
     map_.become("chair1", held_by="stranger1", grip=GRIP, grip_commit=0)
     map_.become("chair2", held_by="table1", grip=GRIP, grip_commit=0)
-    map_.reconciler.keep()
-    ((change, _),) = map_.changes  # a stranger is no entity yet
+    map_.reconciler.reconcile()
+    ((change, _),) = map_.changes  # an unknown body is not an entity yet
     assert change.grips == {"chair2": ("table1", GRIP)}
-    assert change.reason == "chair2 was taken by table1 in the scene"
-    map_.reconciler.keep()
+    assert change.reason == "chair2 was attached to table1 in the scene"
+    map_.reconciler.reconcile()
     assert len(map_.changes) == 1  # it is under way
 
 
@@ -475,21 +473,21 @@ def test_the_map_takes_over_what_was_let_go_in_the_scene_and_by_whom(dispatcher)
     )
     dispatcher.map.entities["chair1"] = said
     map_.become("chair1", grip_commit=1)
-    map_.reconciler.keep()
+    map_.reconciler.reconcile()
     ((change, _),) = map_.changes
     assert change.grips == {"chair1": ("", None)}
-    assert change.reason == "chair1 was let go by table1 in the scene"
+    assert change.reason == "chair1 was detached from table1 in the scene"
 
 
 @pytest.mark.parametrize(
     ("error", "tries", "said", "asked"),
     [
         (errors.BadRequest("no such property"), 1, [], []),
-        (MemoryError("no memory"), 2, ["the map cannot take over what holds chair1 yet: no memory"], []),
+        (MemoryError("no memory"), 2, ["chair1: the attachment is not committed yet: no memory"], []),
         (
             errors.Refused("it is too heavy"),
             1,
-            ["chair1 is held as before, because the map rejected what holds it: it is too heavy"],
+            ["the attachment of chair1 was restored, because the map rejected the new: it is too heavy"],
             ["grip"],
         ),
     ],
@@ -497,7 +495,7 @@ def test_the_map_takes_over_what_was_let_go_in_the_scene_and_by_whom(dispatcher)
 def test_what_holds_a_body_is_put_back_when_the_map_rejects_it(dispatcher, error, tries, said, asked):
     map_ = Refusing(dispatcher, "chair1", "table1")
     map_.become("chair1", held_by="table1", grip=GRIP, grip_commit=0)
-    map_.reconciler.keep()
+    map_.reconciler.reconcile()
     map_.refuse(error)
     assert (len(map_.changes), map_.said) == (tries, said)
     assert [call.VERB for call in map_.asked] == asked
@@ -513,7 +511,7 @@ def test_bodies_that_the_map_rejects_are_put_back_and_that_is_reported(dispatche
         map_.become(name, pose=Pose(position_m=(7.0, 7.0, 0.0)))
     if len(names) > 1:
         dispatcher.manual_moves.register(c.Move(name=names[0], at=(7.0, 7.0, 0.0)), names[1:])
-    map_.reconciler.keep()
+    map_.reconciler.reconcile()
     map_.refuse(errors.Refused("they may not stand there"))
     who = " and ".join(names)
     assert map_.said == [f"{who} {were} put back, because the map rejected {told}: they may not stand there"]
@@ -558,7 +556,7 @@ def test_a_scene_that_is_silent_is_forgotten_unless_it_has_orders_of_ours(dispat
     assert not map_.reconciler.scene.known
     map_ = Refusing(dispatcher, "chair2")
     dispatcher.change(c.Add(class_="Chair", name="chair3", at=(5.0, 5.0, 0.0)))
-    map_.reconciler.keep()
+    map_.reconciler.reconcile()
     map_.reconciler.lose_scene()
     assert map_.reconciler.scene.known
 
@@ -620,7 +618,7 @@ def test_the_world_s_bodies_that_are_no_entities_are_problems_where_the_scene_is
     reconciler.scene.left_out = ("screw",)
     assert reconciler.problems()[1:] == [
         "sofa: a scene body that becomes an entity when it comes to rest",
-        "leg: a part of sofa, which is no entity yet",
+        "leg: a part of sofa, which is not an entity yet",
         "1 body of the world is only a part of another: screw"
         ' (to have one, add <text name="semmap:BODY" data="CLASS"/>)',
     ]
@@ -641,13 +639,13 @@ def test_a_body_of_the_scene_becomes_an_entity_after_what_it_is_part_of(dispatch
     sofa = standing(BodyOrder(name="sofa", class_="Chair", pose=Pose(position_m=(1.0, 2.0, 0.0)), commit=0))
     reconciler.scene.bodies["leg"] = structs.replace(sofa, name="leg", part_of="sofa")
     reconciler.scene.bodies["sofa"] = sofa
-    reconciler.keep()
-    reconciler.keep()
+    reconciler.reconcile()
+    reconciler.reconcile()
     ((add),) = added
     assert (add.name, add.class_, add.at, add.size) == ("sofa", "Chair", (1.0, 2.0, 0.0), (0.5, 0.5, 0.5))
     assert (add.source, add.reason, add.track, add.set) == ("scene", "sofa stands in the scene", None, ())
     dispatcher.change(add)
-    reconciler.keep({"leg"})
+    reconciler.reconcile({"leg"})
     assert (added[-1].name, added[-1].set) == ("leg", ("isDirectPartOf=sofa",))
 
 
@@ -668,11 +666,11 @@ def test_what_a_hand_carried_together_is_followed_in_one_commit_once_all_of_it_r
     }
     dispatcher.manual_moves.register(c.Move(name="chair1", at=(1.0, 5.0, 0.0), agent="ann"), ["chair3"])
     reconciler.scene.bodies.update(put)
-    reconciler.keep()
+    reconciler.reconcile()
     assert [e.pose.position_m[1] for e in dispatcher.map.entities.values()] == [1.0, 5.0, 1.0]
     seq = dispatcher.map.seq
     reconciler.scene.bodies["chair3"] = structs.replace(put["chair3"], resting=True)
-    reconciler.keep({"chair3"})
+    reconciler.reconcile({"chair3"})
     assert [e.pose.position_m[1] for e in dispatcher.map.entities.values()] == [5.0, 5.0, 5.0]
     assert dispatcher.map.seq == seq + 1
     assert dispatcher.map.entity("chair3").pose_provenance.agent == "ann"

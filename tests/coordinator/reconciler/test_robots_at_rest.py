@@ -52,15 +52,15 @@ def stands_at_m(dispatcher, name: str) -> float:
 def test_it_is_followed_whole_once_all_of_it_rests(dispatcher, reconciler, moving):
     have(reconciler, moving, resting=False)
     seq = dispatcher.map.seq
-    reconciler.keep()
+    reconciler.reconcile()
     assert dispatcher.map.seq == seq + 1  # the chair's
     assert {stands_at_m(dispatcher, name) for name in ("robot1", "gripper1", "hand1")} == {0.0}
     assert not reconciler.agreement().holds
     have(reconciler, moving, resting=True)
-    reconciler.keep({moving})
+    reconciler.reconcile({moving})
     assert dispatcher.map.seq == seq + 2
     assert {stands_at_m(dispatcher, name) for name in ("robot1", "gripper1", "hand1")} == {1.0}
-    reconciler.keep()
+    reconciler.reconcile()
     assert dispatcher.map.seq == seq + 2
     assert reconciler.agreement().holds
 
@@ -68,7 +68,7 @@ def test_it_is_followed_whole_once_all_of_it_rests(dispatcher, reconciler, movin
 def test_how_its_joints_stand_is_in_that_commit(dispatcher, reconciler):
     have(reconciler, "robot1", joints=(structs.replace(ARM, position=0.5),))
     seq = dispatcher.map.seq
-    reconciler.keep({"robot1"})
+    reconciler.reconcile({"robot1"})
     assert dispatcher.map.seq == seq + 1
     assert dispatcher.map.entity("robot1").properties["jointPositions"] == "arm=0.5"
     assert stands_at_m(dispatcher, "hand1") == 1.0
@@ -77,8 +77,8 @@ def test_how_its_joints_stand_is_in_that_commit(dispatcher, reconciler):
 def test_the_joints_of_a_part_come_too(dispatcher, reconciler):
     for name in ("robot1", "gripper1"):
         have(reconciler, name, joints=(structs.replace(ARM, position=0.5),))
-    reconciler.keep()
-    reconciler.keep()
+    reconciler.reconcile()
+    reconciler.reconcile()
     for name in ("robot1", "gripper1"):
         assert dispatcher.map.entity(name).properties["jointPositions"] == "arm=0.5"
 
@@ -88,10 +88,10 @@ def test_an_arm_that_never_rests_is_waited_for_in_simulated_time_only(dispatcher
     hours = SimpleNamespace(monotonic=(3600.0 * i for i in range(9)).__next__)
     monkeypatch.setattr(module, "time", hours, raising=False)  # as on a machine that is very busy
     for _ in range(3):
-        reconciler.keep()
+        reconciler.reconcile()
     assert [stands_at_m(dispatcher, name) for name in ("robot1", "gripper1", "hand1")] == [0.0, 0.0, 0.0]
     reconciler.scene.sim_time_s += CALM_S
-    reconciler.keep()
+    reconciler.reconcile()
     assert [stands_at_m(dispatcher, name) for name in ("robot1", "gripper1", "hand1")] == [1.0, 1.0, 0.0]
 
 
@@ -99,18 +99,18 @@ def test_a_robot_that_drove_on_is_waited_for_again_where_it_stops_next(dispatche
     """Its gripper rests last after each stop; the wait at the first must not count at the second."""
     parts = ("robot1", "gripper1", "hand1")
     have(reconciler, "gripper1", resting=False)
-    reconciler.keep()
+    reconciler.reconcile()
     seq = dispatcher.map.seq
     for name in parts:
         have(reconciler, name, resting=False, pose=Pose(position_m=(2.0, 0.0, 0.0)))
-    reconciler.keep(parts)
+    reconciler.reconcile(parts)
     reconciler.scene.sim_time_s += 10.0
     for name in ("robot1", "hand1"):
         have(reconciler, name, resting=True)
-    reconciler.keep(parts)
+    reconciler.reconcile(parts)
     assert dispatcher.map.seq == seq
     have(reconciler, "gripper1", resting=True)
-    reconciler.keep({"gripper1"})
+    reconciler.reconcile({"gripper1"})
     assert dispatcher.map.seq == seq + 1
     assert {stands_at_m(dispatcher, name) for name in parts} == {2.0}
 
@@ -120,7 +120,7 @@ def test_while_it_drives_map_and_scene_do_not_agree_and_the_rest_is_no_matter_to
 ):
     for name in ("robot1", "gripper1", "hand1"):
         have(reconciler, name, resting=False)
-    reconciler.keep()
+    reconciler.reconcile()
     found = reconciler.agreement()
     assert found == (False, (), ("robot1 is moving: 1 m from its committed pose",))
     assert reconciler.agreement({"chair1"}) == (True, (), ())
@@ -161,11 +161,11 @@ def test_a_new_robot_is_added_in_one_order_and_number_of_commits_whatever_rests_
     seq = dispatcher.map.seq
     if moving:
         have(newcomer, moving, resting=False)
-        newcomer.keep()
+        newcomer.reconcile()
         assert dispatcher.map.seq == seq
         have(newcomer, moving, resting=True)
     for _ in range(5):
-        newcomer.keep()
+        newcomer.reconcile()
     entities = dispatcher.map.entities
     added = [entities[name].provenance.commit for name in ("robot1", "gripper1", "hand1")]
     assert added == [seq + 1, seq + 2, seq + 3]
@@ -176,11 +176,11 @@ def test_a_new_robot_is_added_in_one_order_and_number_of_commits_whatever_rests_
 
 def test_a_new_robot_one_part_of_which_never_rests_is_added_after_a_while(dispatcher, newcomer):
     have(newcomer, "hand1", resting=False)
-    newcomer.keep()
+    newcomer.reconcile()
     assert not dispatcher.map.entities
     newcomer.scene.sim_time_s += CALM_S
     for _ in range(3):
-        newcomer.keep()
+        newcomer.reconcile()
     assert [*dispatcher.map.entities] == ["robot1", "gripper1"]
 
 
@@ -200,6 +200,6 @@ def test_a_new_robot_is_added_without_its_joints_to_a_map_that_has_no_property_f
     reconciler.scene.known = True
     reconciler.scene.bodies.update(newcomer.scene.bodies)
     for _ in range(5):
-        reconciler.keep()
+        reconciler.reconcile()
     assert [*dispatcher.map.entities] == ["robot1", "gripper1", "hand1"]
     assert reconciler.agreement().holds
