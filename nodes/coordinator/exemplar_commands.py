@@ -1,4 +1,4 @@
-"""What people show perception, on its way there: the map knows which classes and entities there are."""
+"""Commands about exemplars: checks their classes and entities, and forwards them to perception."""
 
 from __future__ import annotations
 
@@ -19,29 +19,29 @@ _TIMEOUT_S = 60.0
 
 
 class ExemplarCommands:
-    """Passes lessons on to perception. Raises NoAnswer when none runs."""
+    """Forwards exemplars to perception. Raises NoAnswer if perception is not running."""
 
     def __init__(self, dispatcher: CommandDispatcher, perceives: Callable[[], bool]) -> None:
-        """`perceives` tells whether perception runs."""
+        """`perceives()` returns whether perception is running."""
         self._dispatcher = dispatcher
         self._perceives = perceives
 
     def learn(self, command: c.Learn) -> Relay[LessonTold]:
-        """Raises UnknownClass, UnknownName, BadRequest for what cannot be shown."""
+        """Teach an exemplar. Raises UnknownClass, UnknownName or BadRequest if it cannot be taught."""
         found = self._class_of(command.class_)
         if (command.entity is None) == (not command.views):
-            raise errors.BadRequest("show either an entity that perception sees, or views of a thing")
+            raise errors.BadRequest("give either an entity that perception sees, or views of an object")
         if command.entity is not None:
             entity = self._dispatcher.map.entity(command.entity)
             if entity.place:
-                raise errors.Refused(f"{entity.name} is a place; only things can be shown")
+                raise errors.Refused(f"{entity.name} is a place; only objects can be learned")
         return self.relay(structs.replace(command, class_=found))
 
     def relay(self, command: c.Command[R]) -> Relay[R]:
-        """Let perception answer."""
+        """Forward a command to perception."""
         if not self._perceives():
             raise errors.NoAnswer(
-                "no perception is running, which could learn: semmap up --perception; or without a system:"
+                "perception is not running; start it with: semmap up --perception; or, without a system, use"
                 " --data DIR"
             )
         return Relay(keys.PERCEPTION, command, _TIMEOUT_S)
@@ -51,8 +51,8 @@ class ExemplarCommands:
             found = self._dispatcher.map.classes.spatial(word)
         except errors.UnknownClass as error:
             raise errors.UnknownClass(
-                f"{error.text}; a class of your own is added to the TBox first: semmap load --tbox FILE"
+                f"{error.text}; to use a new class, first add it to the TBox: semmap load --tbox FILE"
             ) from None
         if found.place:
-            raise errors.UnknownClass(f"'{found.name}' is a class of places; only things can be shown")
+            raise errors.UnknownClass(f"'{found.name}' is a class of places; only objects can be learned")
         return found.name

@@ -1,8 +1,10 @@
-"""Talks with the knowledge base, several at once and in step: what is asked at the same time goes together.
+"""Coroutines of requests to the knowledge base; requests of the same kind are sent together.
 
-A talk is a generator: it yields a question, and gets the answer or has the error raised at its `yield`. So a
-command is written as if it were alone; several of them in step are again one coroutine, and cost the round trips,
-and the knowledge base the waits for its disk, of one.
+A coroutine is a generator that yields a request. The `yield` returns the reply or raises its error, so a
+command handler is written as if it ran alone.
+
+Several coroutines in step are again one coroutine. Together they cost the round trips of one, and the
+knowledge base syncs its disk once.
 """
 
 from __future__ import annotations
@@ -21,22 +23,22 @@ T = TypeVar("T")
 
 
 Ask = Callable[[Call], Any]
-"""`ask(call)` gives the answer of the knowledge base, or raises a SemmapError."""
+"""`ask(call)` returns the reply of the knowledge base, or raises a SemmapError."""
 AskLater = Callable[[Call], Future[Any]]
-"""The same, without waiting."""
+"""Like `Ask`, without waiting."""
 KbCoroutine = Generator[Call, Any, T]
 Answer = Any
 """A message or an exception."""
 
 
 def ask(call: Call[T]) -> KbCoroutine[T]:
-    """The answer to one call, with its type: `answer = yield from` this."""
+    """Send one request and return its typed reply; use it with `yield from`."""
     answer: T = yield call
     return answer
 
 
 def run(coroutine: KbCoroutine[T], ask: Ask) -> T:
-    """The result of a coroutine. Raises the error that ends it."""
+    """Run a coroutine and return its result. Raises the error that ends it."""
     answer: Answer = None
     while True:
         try:
@@ -44,18 +46,18 @@ def run(coroutine: KbCoroutine[T], ask: Ask) -> T:
         except StopIteration as end:
             result: T = end.value
             return result
-        answer = _answer_of(lambda call=call: ask(call))  # type: ignore[misc]
+        answer = _try(lambda call=call: ask(call))  # type: ignore[misc]
 
 
 def run_async(coroutine: KbCoroutine[T], ask_later: AskLater) -> Future[T]:
-    """The result of a talk that goes on whenever an answer comes, on the thread that brings it."""
+    """Run a coroutine without waiting; it continues on the thread that delivers the replies."""
     future: Future[T] = SingleThreadFuture()
     _continue(coroutine, ask_later, future, None)
     return future
 
 
 def _continue(coroutine: KbCoroutine[T], ask_later: AskLater, future: Future[T], answer: Answer) -> None:
-    """Give it the answer, and ask what it asks next. Nothing of it is kept when it ends."""
+    """Resume the coroutine with the reply, and send its next request; keep no reference when it ends."""
     try:
         call = _resume(coroutine, answer)
     except StopIteration as end:
@@ -65,16 +67,14 @@ def _continue(coroutine: KbCoroutine[T], ask_later: AskLater, future: Future[T],
     else:
         try:
             asked = ask_later(call)
-        except Exception as error:  # whatever it is, the talk is told of it, and ends
+        except Exception as error:  # any error is raised in the coroutine, which ends
             _continue(coroutine, ask_later, future, error)
         else:
-            asked.add_done_callback(
-                lambda done: _continue(coroutine, ask_later, future, _answer_of(done.result))
-            )
+            asked.add_done_callback(lambda done: _continue(coroutine, ask_later, future, _try(done.result)))
 
 
 def run_single(coroutine: KbCoroutine[T]) -> KbCoroutine[list[T | Exception]]:
-    """`gather` for one coroutine: as most changes come."""
+    """Run one coroutine like `gather`: this is the usual case."""
     try:
         return [(yield from coroutine)]
     except Exception as error:
@@ -82,9 +82,9 @@ def run_single(coroutine: KbCoroutine[T]) -> KbCoroutine[list[T | Exception]]:
 
 
 def gather(coroutines: Sequence[KbCoroutine[T]]) -> KbCoroutine[list[T | Exception]]:
-    """Several coroutines as one, with their results in their order.
+    """Run several coroutines in step and return their results in order.
 
-    A talk that ends with an exception, expected or not, gives that; the others go on.
+    The result of a coroutine that raises is its exception; the others continue.
     """
     results: dict[int, T | Exception] = {}
     answers: dict[int, Answer] = dict.fromkeys(range(len(coroutines)))
@@ -105,7 +105,7 @@ def _resume(coroutine: KbCoroutine[T], answer: Answer) -> Call:
     return coroutine.throw(answer) if isinstance(answer, Exception) else coroutine.send(answer)
 
 
-def _answer_of(ask: Callable[[], Any]) -> Answer:
+def _try(ask: Callable[[], Any]) -> Answer:
     try:
         return ask()
     except Exception as error:
@@ -113,7 +113,7 @@ def _answer_of(ask: Callable[[], Any]) -> Answer:
 
 
 def _ask_together(calls: Mapping[int, Call]) -> KbCoroutine[dict[int, Answer]]:
-    """The answers, in the order of the calls."""
+    """Send these requests, together where possible, and return the replies in the order of the calls."""
     by_kind: dict[type[Call], dict[int, Any]] = {}
     for i, call in calls.items():
         by_kind.setdefault(type(call), {})[i] = call
@@ -144,12 +144,12 @@ def _made_by(queries: Mapping[int, MadeBy]) -> KbCoroutine[dict[int, Answer]]:
 def _commits(transactions: Mapping[int, Transaction]) -> KbCoroutine[dict[int, Answer]]:
     try:
         outcomes = yield from ask(Transactions(transactions=tuple(transactions.values())))
-    except errors.BadRequest:  # one of them
+    except errors.BadRequest:  # one of them is invalid: find out which
         return (yield from _each(transactions))
-    return {i: _said(outcome) for i, outcome in zip(transactions, outcomes, strict=True)}
+    return {i: _reply_of(outcome) for i, outcome in zip(transactions, outcomes, strict=True)}
 
 
-def _said(outcome: Outcome) -> Answer:
+def _reply_of(outcome: Outcome) -> Answer:
     return outcome.commit if outcome.error is None else errors.from_message(outcome.error)
 
 
@@ -157,4 +157,4 @@ _TOGETHER: Mapping[type[Call], Callable[[Mapping[int, Any]], KbCoroutine[dict[in
     MadeBy: _made_by,
     Transaction: _commits,
 }
-"""The calls that can be asked together."""
+"""The kinds of calls that can be sent together."""

@@ -1,4 +1,4 @@
-"""What the coordinator answers itself, from its replica of the map: list, get, status."""
+"""Queries that the coordinator answers from its replica of the map: list, get, status."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ from semmap.schemas.relations import Described
 from semmap.schemas.replies import SystemStatus
 
 _DIGITS = 4
-_MOST = 5
-"""So many sentences of one kind are in a status."""
+_MAX_SENTENCES = 5
+"""Largest number of sentences of one kind in a status."""
 E = TypeVar("E", bound=Entity)
 
 Listed = tuple[Entity, ...] | dict[str, Any]
-"""The entities, or the document of another format."""
+"""The entities, or a document in another format."""
 
 
 class LocalQueries:
-    """What is true now is known to the door; the past is asked of the knowledge base."""
+    """Answers queries about the present itself, and forwards queries about the past to the knowledge base."""
 
     def __init__(
         self,
@@ -59,7 +59,7 @@ class LocalQueries:
         self._frames = frames
 
     def list(self, query: c.List) -> Listed | Future[Listed]:
-        """The entities of a class, with what has become of their bodies."""
+        """Return the entities of a class, with the state of their bodies."""
         class_ = None if query.class_ is None else self._class_name(query.class_, query.as_of)
         if query.as_of is not None or query.where is not None:
             asked = bridge.Entities(class_=class_, as_of=query.as_of, where=query.where)
@@ -72,7 +72,7 @@ class LocalQueries:
         return self._formatted(entities, query.format)
 
     def get(self, query: c.Get) -> Described | Future[Described]:
-        """One entity, with what has become of its body."""
+        """Return one entity, with the state of its body."""
         if query.as_of is not None:
             return then(self._kb.ask_later(query, patience_s=bus.RESTART_S), with_size)
         if query.where:
@@ -80,7 +80,7 @@ class LocalQueries:
         return Described.of(self._with_body(self._dispatcher.map.entity(query.name)))
 
     def status(self, query: c.Status) -> SystemStatus:
-        """The nodes, the map, the scene."""
+        """Return the state of the nodes, the map and the scene."""
         agreement, streamed = (
             self._reconciler.agreement(query.names or None),
             self._live.displaced(query.names),
@@ -94,8 +94,8 @@ class LocalQueries:
             nodes=self._health.nodes(),
             problems=(*self._reconciler.problems(), *self._live.problems(), *self._frames.problems()),
             version=version(),
-            pending=_few(agreement.pending),
-            displaced=_few((*agreement.displaced, *streamed)),
+            pending=_shorten(agreement.pending),
+            displaced=_shorten((*agreement.displaced, *streamed)),
         )
 
     def _formatted(self, found: Iterable[Entity], wanted: c.ListFormat) -> Listed:
@@ -108,7 +108,7 @@ class LocalQueries:
         return entities
 
     def _class_name(self, word: str, as_of: When | None) -> str:
-        """The class that is meant; then there may have been others than now."""
+        """Return the name of a class. A class of the past may no longer exist: it is passed on as given."""
         try:
             return self._dispatcher.map.classes.find(word).name
         except errors.UnknownClass:
@@ -117,14 +117,14 @@ class LocalQueries:
             return word
 
     def _with_body(self, entity: E) -> E:
-        """With what has become of its body, and where it is just now if it is tracked or held."""
+        """Return the entity with its body state, and with its current pose if it is tracked or attached."""
         if entity.tracked or holder_of(entity):
             entity = structs.replace(entity, live=self._live.live_pose(entity))
         state, body = self._reconciler.body_state(entity), self._reconciler.scene.bodies.get(entity.name)
         if entity.size_m is not None or state.status == "none":
             return structs.replace(entity, body=state)
-        if not entity.model:  # its body is a box, whose size says nothing of the entity's
-            known = "" if body is None else _stands_in(body.size_m)
+        if not entity.model:  # its body is a default box, whose size is not that of the entity
+            known = "" if body is None else _describe_default_box(body.size_m)
             detail = "; ".join(filter(None, (state.detail, known)))
             return structs.replace(entity, body=structs.replace(state, detail=detail))
         sized = with_size(entity) if body is None else structs.replace(entity, size_m=_rounded(body.size_m))
@@ -132,24 +132,24 @@ class LocalQueries:
 
 
 def with_size(entity: E) -> E:
-    """The entity with the size of its model, if it has one, the map states none and it is no place."""
+    """Return the entity with the size of its model, if the map states none and it is not a place."""
     if entity.size_m is not None or entity.place or not entity.model:
         return entity
     return structs.replace(entity, size_m=own_size_m(entity.model))
 
 
-def _few(sentences: tuple[str, ...]) -> tuple[str, ...]:
-    """The first, and how many more there are."""
-    more = len(sentences) - _MOST
-    return sentences if more <= 0 else (*sentences[:_MOST], f"… and {more} more")
+def _shorten(sentences: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the first sentences, and how many more there are."""
+    more = len(sentences) - _MAX_SENTENCES
+    return sentences if more <= 0 else (*sentences[:_MAX_SENTENCES], f"… and {more} more")
 
 
-def _stands_in(size_m: Size) -> str:
+def _describe_default_box(size_m: Size) -> str:
     sides = " x ".join(f"{side:g}" for side in _rounded(size_m))
-    return f"a box of {sides} m stands in for it, because neither the map nor a model says how large it is"
+    return f"shown as a box of {sides} m, because neither the map nor a model gives its size"
 
 
 def _rounded(size_m: Size) -> Size:
-    """To the precision of the table of models, so that an entity's size is the same before it has a body."""
+    """Round to the precision of the model table, so that the size does not change when the body appears."""
     x, y, z = size_m
     return round(x, _DIGITS), round(y, _DIGITS), round(z, _DIGITS)

@@ -1,4 +1,4 @@
-"""The coordinator on the wire: `semmap/cmd/<verb>` in, transactions and orders out."""
+"""The coordinator's Zenoh interface: `semmap/cmd/<verb>` comes in, transactions and orders go out."""
 
 from __future__ import annotations
 
@@ -49,13 +49,13 @@ _SIM_TIMEOUT_S = 120.0
 _DRIVE_TIMEOUT_S = 3600.0
 _URGENT = frozenset({c.Status.VERB})
 _ROOM = 64
-"""Commands that wait for their turn at most: more wait in the node's queue, which is fair and bounded."""
+"""Largest number of scheduled commands. Further ones wait in the node's queue, which is bounded."""
 _LARGE_FILE = 16 << 20
 """Bytes."""
 
 
 class Coordinator:
-    """Binds the dispatcher and the keeper to the wire."""
+    """Connects the command dispatcher and the reconciler to Zenoh."""
 
     def __init__(self, node: Node, config: CoordinatorConfig) -> None:
         self._node = node
@@ -93,8 +93,8 @@ class Coordinator:
         dispatcher.map.pose_of, dispatcher.map.bodies = self._live.pose_of, lambda: scene.bodies
         relay = self._kb.relay
         of_the_map = calls.by_verb(
-            c.Add.answered_by(frames.in_map_frame(self._with_body)),
-            c.Update.answered_by(frames.in_map_frame(self._with_body)),
+            c.Add.answered_by(frames.in_map_frame(self._change_and_wait_for_body)),
+            c.Update.answered_by(frames.in_map_frame(self._change_and_wait_for_body)),
             c.Set.answered_by(self._scheduler.change),
             c.Unset.answered_by(self._scheduler.change),
             c.Batch.answered_by(self._change_with_note),
@@ -156,7 +156,7 @@ class Coordinator:
         )
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
-        left = self._is_left_to_the_map
+        left = self._is_answered_by_kb
         node.serve(keys.CMD, handlers, puts=True, leave=left, admit=admission.admit_claimed, urgent=_URGENT)
         if config.keys is not None:
             proved = admission.Admission(config.keys).admit_certified
@@ -165,8 +165,8 @@ class Coordinator:
         node.every(0.2, self._tick)
         node.when_idle(self._catch_up)
 
-    def _is_left_to_the_map(self, verb: str) -> bool:
-        """Does the knowledge base answer such queries itself just now?"""
+    def _is_answered_by_kb(self, verb: str) -> bool:
+        """Return whether the knowledge base currently answers queries of this command itself."""
         return verb in keys.OF_THE_MAP and self._node.is_there("kb_node")
 
     def _has_room(self) -> bool:
@@ -177,7 +177,7 @@ class Coordinator:
     def _on_map(self, begun: SnapshotLoaded) -> None:
         self._dispatcher.map.classes = ClassNames(begun.classes)
         self._has_map = True
-        gc.freeze()  # most of the map stays as it is: the collector need not look through it again
+        gc.freeze()  # most of the map stays as it is, so the collector does not have to visit it again
         self._node.ready(wording.entities(len(self._dispatcher.map.entities)))
         self._reconcile()
 
@@ -206,7 +206,7 @@ class Coordinator:
             self._node.describe(f"{wording.entities(len(self._dispatcher.map.entities))}{bodies}")
 
     def _catch_up(self) -> None:
-        """Begin the changes that wait, and look at what commits changed; all the rest at each tick."""
+        """Begin the scheduled changes, and reconcile what commits have changed."""
         self._scheduler.run_ready()
         if names := self._dispatcher.map.touched:
             self._dispatcher.map.touched = set()
@@ -215,21 +215,21 @@ class Coordinator:
 
     # Changing
 
-    def _with_body(self, command: c.Add | c.Update) -> Future[Changed]:
-        """The reply waits for the body if that is wanted."""
+    def _change_and_wait_for_body(self, command: c.Add | c.Update) -> Future[Changed]:
+        """Add or update an entity; the reply waits for its body if the command asks for that."""
         made = self._change_with_note(command)
         if not command.wait or command.dry_run:
             return made
         future: Future[Changed] = SingleThreadFuture()
-        made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
+        made.add_done_callback(lambda done: settle(future, lambda: self._wait_for_body(done.result())))
         return future
 
     def _follow(self, change: c.Add | ObservedState) -> Future[Changed]:
-        """The map follows the scene; those who wait for that are told."""
+        """Change the map after the scene, and notify the replies that wait for this commit."""
         return self._watched(change)
 
     def _track(self, command: c.Track) -> Future[Changed]:
-        """What is not tracked any more stays where it was last, by a commit of its own."""
+        """Change the tracking of an entity. If it ends, the last live pose is committed first."""
         settled = self._live.commit_pose(command.name) if command.off and not command.dry_run else None
         if settled is None:
             return self._scheduler.change(command)
@@ -244,13 +244,13 @@ class Coordinator:
         return made
 
     def _change_together(self, changes: Sequence[Change]) -> Future[Results]:
-        nobody_waits = len(changes) == 1 and not len(self._scheduler)
-        ask = self._kb.change if nobody_waits else self._kb.change_later
-        return run_async(self._dispatcher.together(changes), ask)
+        is_alone = len(changes) == 1 and not len(self._scheduler)
+        ask = self._kb.change if is_alone else self._kb.change_later
+        return run_async(self._dispatcher.run_together(changes), ask)
 
-    def _once_there_is_a_body(self, changed: Changed) -> Future[Changed]:
+    def _wait_for_body(self, changed: Changed) -> Future[Changed]:
         future: Future[Changed] = SingleThreadFuture()
-        if not changed.names:  # the id is that of an earlier change, which named nothing
+        if not changed.names:  # the id belongs to an earlier change without names
             future.set_result(changed)
             return future
         self._waiting.append((changed.names[0], time.monotonic() + _WAIT_S, changed, future))
@@ -263,19 +263,19 @@ class Coordinator:
         still = []
         undecided = {"pending"}
         if self._health.may_be_alive("sim_node"):
-            undecided.add("unknown")  # its scene is still to come
+            undecided.add("unknown")  # its scene has not arrived yet
         for name, deadline, changed, future in self._waiting:
             entity = self._dispatcher.map.entities.get(name)
             state = self._reconciler.body_state(entity) if entity is not None else None
             if state is not None and state.status in undecided and time.monotonic() < deadline:
                 still.append((name, deadline, changed, future))
                 continue
-            status = _describe_body(state) if state is not None else "removed meanwhile"
+            status = _describe_body(state) if state is not None else "removed in the meantime"
             future.set_result(structs.replace(changed, text=f"{changed.text}; body: {status}"))
         self._waiting = still
 
     def _change_with_note(self, command: c.Add | c.Update | c.Batch | c.Remove | c.Clear) -> Future[Changed]:
-        """With a word on what will become of it where the map does not own what it changes."""
+        """Change the map, and add a note if the scene or perception will override the change."""
         made, note = self._scheduler.change(command), authority.describe_override(command, self._config.truth)
         if note is None:
             return made
@@ -297,7 +297,7 @@ class Coordinator:
 
 
 def _release_memory() -> None:
-    """Part with a large file: the dialogue over it is a cycle, which would not be found for long."""
+    """Free the memory of a large file: its coroutine is a reference cycle, which is collected late."""
     gc.collect()
     heap.trim()
     gc.freeze()

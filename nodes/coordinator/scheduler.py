@@ -1,9 +1,10 @@
-"""Whose turn it is: commands keep their order where it matters, and the others go together.
+"""The scheduler of commands keeps the order of dependent commands and groups independent changes.
 
-Changes of different entities do not depend on one another: those that wait are asked of the knowledge base as
-one group, and the next group is sent while one is under way, so that neither waits for the other. Everything
-else, an entity without a name or a place among it (they have to suit the others), waits until what came
-before is done, and what comes after a change waits for that.
+Changes of different entities are independent. Those that wait are sent to the knowledge base as one group,
+and the next group is sent while one is under way.
+
+All other commands wait until the commands before them are done, and the commands after a change wait for it.
+This includes entities without a name or a position, because both depend on the other entities.
 """
 
 from __future__ import annotations
@@ -32,10 +33,10 @@ from semmap.schemas.commands import (
 )
 from semmap.schemas.replies import Changed
 
-GROUP = 16
-"""How many changes go together at most: two groups are as many as a busy client has in flight."""
-AT_ONCE = 2
-"""How many groups may be under way: one that the knowledge base works on, and one that waits there."""
+MAX_GROUP_SIZE = 16
+"""Largest number of changes in a group: two groups are as many as a busy client has in flight."""
+MAX_GROUPS = 2
+"""Largest number of groups under way: the knowledge base works on one while the other waits there."""
 
 Change = (
     Add
@@ -56,7 +57,7 @@ Results = list[Changed | Exception]
 
 
 class _Waiting(NamedTuple):
-    """A change, or something else that has to wait for its turn."""
+    """A change, or another command, in the queue."""
 
     change: Change | None
     execute: Callable[[], Any]
@@ -64,32 +65,32 @@ class _Waiting(NamedTuple):
 
 
 Group = frozenset[str | None]
-"""The entities that a group of changes is about; None for one that goes alone."""
+"""The entities that a group of changes is about; None for a change that is sent alone."""
 
 
 class Scheduler:
     """Owned by the coordinator's thread, which calls `run_ready` when it has nothing else to do."""
 
     def __init__(self, together: Callable[[Sequence[Change]], Future[Results]]) -> None:
-        """`together(changes)` makes changes of different entities, or one that goes alone."""
+        """`together(changes)` executes a group of changes, or one that is sent alone."""
         self._together = together
         self._waiting: deque[_Waiting] = deque()
         self._under_way: list[Group] = []
 
     def __len__(self) -> int:
-        """How many commands wait."""
+        """Return the number of waiting commands."""
         return len(self._waiting)
 
     def change(self, change: Change) -> Future[Changed]:
-        """The result of a change, in its turn."""
+        """Schedule a change and return its future result."""
         future: Future[Changed] = SingleThreadFuture()
         self._waiting.append(_Waiting(change, lambda: None, future))
-        if len(self._waiting) >= GROUP:
+        if len(self._waiting) >= MAX_GROUP_SIZE:
             self.run_ready()
         return future
 
     def run_after(self, execute: Callable[[], Any]) -> Any:
-        """What `execute()` gives, or, when something came before it, a future of that."""
+        """Return the result of `execute()`, or a future of it if earlier commands are not done."""
         if not self._waiting and not self._under_way:
             return execute()
         future: Future[Any] = SingleThreadFuture()
@@ -97,7 +98,7 @@ class Scheduler:
         return future
 
     def run_ready(self) -> None:
-        """Begin what can begin."""
+        """Begin all commands that can begin."""
         while self._waiting:
             if self._waiting[0].change is not None:
                 members = self._next_group()
@@ -111,17 +112,17 @@ class Scheduler:
                 settle(future, execute)
 
     def _next_group(self) -> list[Change]:
-        """The changes at the front that depend neither on one another nor on what is under way.
+        """Return the changes at the front that depend neither on one another nor on a group under way.
 
-        None of them begin beside a larger group: more will have come when that is done.
+        None of them begin beside a larger group, because more changes will have arrived when that is done.
         """
-        if not self._under_way and len(self._waiting) == 1:  # as most come
+        if not self._under_way and len(self._waiting) == 1:  # the usual case
             return [change for change, _, _ in self._waiting if change is not None]
-        if len(self._under_way) == AT_ONCE or any(None in group for group in self._under_way):
+        if len(self._under_way) == MAX_GROUPS or any(None in group for group in self._under_way):
             return []
         names = {name for group in self._under_way for name in group}
         members: list[Change] = []
-        for change, _, _ in islice(self._waiting, GROUP):
+        for change, _, _ in islice(self._waiting, MAX_GROUP_SIZE):
             name = None if change is None else _entity(change)
             if change is not None and name is None and not members and not self._under_way:
                 return [change]
@@ -143,14 +144,14 @@ class Scheduler:
 
         try:
             results = self._together(changes)
-        except Exception as error:  # whatever it is, those who wait are told of it
+        except Exception as error:  # any error goes to those who wait
             results = SingleThreadFuture()
             results.set_exception(error)
         results.add_done_callback(on_done)
 
 
 def _entity(change: Change) -> str | None:
-    """The one that it is about; None when it depends on others, or is to go alone."""
+    """Return the entity that a change is about; None if the change depends on others or is sent alone."""
     if isinstance(change, ObservedState):
         return change.names[0] if len(change.names) == 1 else None
     if change.dry_run:

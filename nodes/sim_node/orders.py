@@ -143,7 +143,7 @@ def moves(
                 raise ModelError(f"{placement.name} is held by {holder}; only its joints move it")
             if record.held_by:
                 raise ModelError(
-                    f"{placement.name} is held by {record.held_by}; to put it elsewhere, first:"
+                    f"{placement.name} is attached to {record.held_by}; to move it, first:"
                     f" semmap detach {placement.name}"
                 )
             _check_reach(placement.pose)
@@ -175,16 +175,16 @@ def grips(
 def _check_grip(order: GripOrder, there: Mapping[str, BodyRecord]) -> None:
     record = there[order.name]
     if order.name == order.holder:
-        raise ModelError(f"{order.name} cannot hold itself")
+        raise ModelError(f"{order.name} cannot be attached to itself")
     if order.name in chain(order.holder, there):
         raise ModelError(
-            f"{order.holder} is held by {order.name} or part of it, so it cannot hold {order.name}"
+            f"{order.holder} is attached to {order.name} or part of it, so {order.name} cannot be attached to it"
         )
     if record.anchored or record.fixed:
-        where = f"held by {record.part_of or 'its joint'}" if record.anchored else "fixed where it stands"
-        raise ModelError(f"{order.name} is {where}, so nothing can take it")
+        where = f"held by {record.part_of or 'its joint'}" if record.anchored else "fixed"
+        raise ModelError(f"{order.name} is {where}, so it cannot be attached")
     if order.commit is None and record.held_by not in ("", order.holder):
-        raise ModelError(f"{order.name} is held by {record.held_by} already")
+        raise ModelError(f"{order.name} is already attached to {record.held_by}")
 
 
 def _check_reach(pose: Pose) -> None:

@@ -28,7 +28,7 @@ def test_a_knowledge_base_at_work_is_waited_for(early):
     assert not done.done()
     early.there = False
     early.retry(has_map=False)
-    with pytest.raises(errors.NoAnswer, match="the knowledge base is not answering"):
+    with pytest.raises(errors.NoAnswer, match="no response from the knowledge base"):
         done.result(0)
 
 

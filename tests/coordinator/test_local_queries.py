@@ -25,7 +25,7 @@ def seen(entity, body=BODY):
 def test_a_thing_that_nobody_measured_has_no_size(body):
     found = seen(structs.replace(thing("probe1", (0.0, 0.0, 0.0), ""), size_m=None), body)
     assert (found.size_m, found.body.own_size) == (None, False)
-    stands_in = "a box of 0.3 x 0.3 x 0.3 m stands in for it"
+    stands_in = "shown as a box of 0.3 x 0.3 x 0.3 m"
     assert found.body.detail.startswith(stands_in) if body else not found.body.detail
 
 

@@ -7,7 +7,7 @@ from concurrent.futures import Future
 import pytest
 
 from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
-from semmap.nodes.coordinator.scheduler import GROUP, Scheduler
+from semmap.nodes.coordinator.scheduler import MAX_GROUP_SIZE, Scheduler
 from semmap.schemas import errors
 from semmap.schemas.commands import Add, Batch, Clear, Set, Track, Undo, Unset, Update
 from semmap.schemas.entities import Pose
@@ -83,10 +83,10 @@ def test_a_second_group_is_under_way_beside_a_smaller_one(kb, turns):
 
 
 def test_groups_are_of_a_size(kb, turns):
-    for i in range(3 * GROUP):
+    for i in range(3 * MAX_GROUP_SIZE):
         move(turns, f"e{i}")
     turns.run_ready()
-    assert [len(names) for names in kb.names] == [GROUP, GROUP]
+    assert [len(names) for names in kb.names] == [MAX_GROUP_SIZE, MAX_GROUP_SIZE]
 
 
 @pytest.mark.parametrize("change", [Add(class_="Chair"), Add(class_="Chair", name="c")])

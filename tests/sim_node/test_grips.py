@@ -125,10 +125,10 @@ def test_the_robot_carries_what_its_gripper_holds():
     ("name", "holder", "why"),
     [
         ("cup1", "nobody", "the scene has no body named nobody"),
-        ("cup1", "cup1", "cup1 cannot hold itself"),
-        ("wall1", "tray1", "wall1 is fixed where it stands, so nothing can take it"),
-        ("tray1", "cup1", "cup1 is held by tray1 or part of it, so it cannot hold tray1"),
-        ("cup1", "table1", "cup1 is held by tray1 already"),
+        ("cup1", "cup1", "cup1 cannot be attached to itself"),
+        ("wall1", "tray1", "wall1 is fixed, so it cannot be attached"),
+        ("tray1", "cup1", "cup1 is attached to tray1 or part of it, so tray1 cannot be attached to it"),
+        ("cup1", "table1", "cup1 is already attached to tray1"),
     ],
 )
 def test_what_cannot_be_held_is_told(world, name, holder, why):
@@ -138,7 +138,7 @@ def test_what_cannot_be_held_is_told(world, name, holder, why):
 
 def test_who_is_held_cannot_be_moved_by_itself(world):
     held(world, "cup1", "tray1")
-    why = "cup1 is held by tray1; to put it elsewhere, first: semmap detach cup1"
+    why = "cup1 is attached to tray1; to move it, first: semmap detach cup1"
     assert world.move([hand("cup1", pose(1.0, 1.0))]).failed == {"cup1": why}
 
 

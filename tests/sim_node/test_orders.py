@@ -165,13 +165,13 @@ THERE = {
     [
         ({"name": "x", "holder": "hand1"}, "no body named x"),
         ({"name": "cup1", "holder": "x"}, "no body named x"),
-        ({"name": "cup1", "holder": "cup1"}, "cannot hold itself"),
-        ({"name": "robot1", "holder": "hand1"}, "hand1 is held by robot1 or part of it"),
-        ({"name": "hand1", "holder": "ring1"}, "ring1 is held by hand1 or part of it"),
-        ({"name": "wall1", "holder": "hand1"}, "wall1 is fixed where it stands"),
+        ({"name": "cup1", "holder": "cup1"}, "cannot be attached to itself"),
+        ({"name": "robot1", "holder": "hand1"}, "hand1 is attached to robot1 or part of it"),
+        ({"name": "hand1", "holder": "ring1"}, "ring1 is attached to hand1 or part of it"),
+        ({"name": "wall1", "holder": "hand1"}, "wall1 is fixed"),
         ({"name": "door1", "holder": "hand1"}, "door1 is held by its joint"),
         ({"name": "lid1", "holder": "hand1"}, "lid1 is held by pot1"),
-        ({"name": "ring1", "holder": "robot1"}, "ring1 is held by hand1 already"),
+        ({"name": "ring1", "holder": "robot1"}, "ring1 is already attached to hand1"),
     ],
     ids=str,
 )

@@ -1,8 +1,8 @@
-"""Admission: who asks for a command, proved by a certificate or merely claimed, and whether their role may.
+"""Admission: identifies the client of a command by its certificate or its claim, and checks its role.
 
-Zenoh does not tell a queryable whose certificate a query came with, so a secure system has the name in the
-key: `semmap/as/bob/cmd/add` reaches the coordinator from bob only, because the router lets it through from
-nobody else. What the name may do is decided here, where commands can be read.
+Zenoh does not tell a queryable which certificate a query came with. In a secure system the client's name is
+therefore part of the key: the router accepts `semmap/as/bob/cmd/add` only from bob. Whether the role of that
+name permits the command is checked here, where commands can be decoded.
 """
 
 from __future__ import annotations
@@ -20,26 +20,25 @@ C = TypeVar("C", bound=Command)
 
 
 def admit_claimed(who: str, command: C) -> C:
-    """A command of somebody who says who they are. Raises BadRequest for the mark of a proved name."""
+    """Accept a command whose client is not certified. Raises BadRequest for the mark of certified names."""
     if agents.is_proved(command.agent):
         raise errors.BadRequest(
-            f"the agent '{command.agent}' begins with '@', which marks names that a certificate has proved;"
-            " leave it out"
+            f"the agent '{command.agent}' begins with '@', which marks certified names; remove the '@'"
         )
     return command
 
 
 class Admission:
-    """That of a secure system. Owned by the coordinator's thread."""
+    """Admission of a secure system. Owned by the coordinator's thread."""
 
     def __init__(self, folder: Path) -> None:
-        """`folder` is that of the keys. Raises BadFile."""
+        """`folder` is the folder of keys. Raises BadFile."""
         self._register = LiveRegister(folder)
 
     def admit_certified(self, who: str, command: C) -> C:
-        """The command in the name of `who`. Raises Refused when their role may not ask for it."""
+        """Return the command in the name of `who`. Raises Refused if the role does not permit it."""
         if "*" in who:
-            raise errors.Refused(f"'{who}' is not one name; ask for commands under your own")
+            raise errors.Refused(f"'{who}' is a pattern; use the key with your own name")
         role = self._register.role_of(who)
         if role is None:
             raise errors.NoAnswer(f"the certificate of {who} has been revoked")

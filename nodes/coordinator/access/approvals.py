@@ -1,4 +1,4 @@
-"""What agents ask to be allowed to do, and what persons decide. In memory: a restart forgets it."""
+"""Requests of agents that an operator approves or rejects. They are lost at a restart."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from semmap.schemas.entities import LESSER
 
 _LASTS_NS: Final = 3_600_000_000_000
 _MOST: Final = 100
-"""Requests that wait at most."""
+"""Largest number of waiting requests."""
 _MOST_OF_ONE: Final = 10
-"""Those of one agent: more than a person would want to read."""
+"""Largest number of waiting requests of one agent."""
 
 
 class Approvals:
@@ -29,24 +29,24 @@ class Approvals:
         self._by_id: dict[tuple[str, str], Request] = {}
 
     def submit(self, command: Submit) -> Request:
-        """Ask, or look what became of it: the same id of the same agent is the same request.
+        """Submit a request, or return its state: the same id of the same agent is the same request.
 
-        Raises BadRequest without an id; Refused when very many wait, or many of this agent: not Busy, for
-        clients ask again who is, and a person takes longer than they wait.
+        Raises BadRequest without an id. Raises Refused if too many requests wait, in total or of this agent.
+        It is not Busy, because clients repeat busy requests and an operator takes longer than they wait.
         """
         self._forget()
         if not command.id:
-            raise errors.BadRequest("give the request an id, by which to ask what became of it")
+            raise errors.BadRequest("the request has no id; it is needed to query the decision")
         key = (command.agent, command.id)
         if (known := self._by_id.get(key)) is not None:
             return known
         waiting = [request.agent for request in self._by_id.values() if request.decision == "waiting"]
         if waiting.count(command.agent) >= _MOST_OF_ONE:
             raise errors.Refused(
-                f"{_MOST_OF_ONE} requests of yours wait for a person already; wait until some are decided"
+                f"{_MOST_OF_ONE} of your requests already wait for approval; wait until some are decided"
             )
         if len(waiting) >= _MOST:
-            raise errors.Refused(f"{_MOST} requests wait for a person already; wait until some are decided")
+            raise errors.Refused(f"{_MOST} requests already wait for approval; wait until some are decided")
         self._last += 1
         self._by_id[key] = made = Request(
             number=self._last,
@@ -59,10 +59,10 @@ class Approvals:
         return made
 
     def approve(self, command: Approve) -> tuple[Request, ...]:
-        """Those that wait; or, with a number or `all`, those that are decided now, as decided.
+        """Return the waiting requests or, with a number or `all`, decide those and return them.
 
-        Raises BadRequest for `all` without `reject`; Refused for one that is not there or decided already,
-        for an agent, and for who asked for it.
+        Raises BadRequest for `all` without `reject`. Raises Refused for an agent, for the client's own
+        request, and for a request that is unknown or decided.
         """
         self._forget()
         waiting = {r.number: (key, r) for key, r in self._by_id.items() if r.decision == "waiting"}
@@ -73,7 +73,7 @@ class Approvals:
         if command.number is not None and command.number not in waiting:
             there = f"; waiting: {wording.few([str(number) for number in waiting])}" if waiting else ""
             raise errors.Refused(
-                f"no request {command.number} is waiting{there or '; none is waiting at all'}"
+                f"request {command.number} is not waiting{there or '; no request is waiting'}"
             )
         if command.source in LESSER:
             raise errors.Refused("only an operator may approve or reject")
@@ -83,7 +83,7 @@ class Approvals:
             return tuple(self._decide(key, request, command) for key, request in others)
         key, request = waiting[command.number]
         if request.agent == own:
-            raise errors.Refused(f"request {request.number} is your own; somebody else must decide it")
+            raise errors.Refused(f"request {request.number} is your own; another operator must decide it")
         return (self._decide(key, request, command),)
 
     def _decide(self, key: tuple[str, str], request: Request, command: Approve) -> Request:

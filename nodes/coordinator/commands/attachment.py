@@ -1,4 +1,4 @@
-"""Attach and detach: one entity is held by another until it is let go, with what stands on it if wanted."""
+"""Handlers of attach and detach: an entity, and on request its contents, moves with its holder."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from semmap.schemas.replies import Changed
 
 @idempotent
 def attach(view: MapView, command: Attach) -> KbCoroutine[Changed]:
-    """Have an entity held by another. Raises Refused where it cannot be."""
+    """Attach an entity to another. Raises Refused if that is not possible."""
     require_carry(command)
     entity, holder = (
         view.entity(command.name),
@@ -25,15 +25,15 @@ def attach(view: MapView, command: Attach) -> KbCoroutine[Changed]:
     )
     attachment_rules.require_attachable(entity, holder, view.entities, view.bodies())
     is_there = holder_of(entity) == holder.name and command.at is None and command.yaw is None
-    already = f"{holder.name} holds {entity.name} already"
+    already = f"{entity.name} is already attached to {holder.name}"
     if is_there and not command.carry:
         return make_reply(None, f"unchanged: {already}", names=(entity.name,))
-    borne = () if entity.pose is None else (yield from ask(LoadOf(name=entity.name, leave=command.leave)))
-    load = attachment_rules.find_load(borne, entity, holder, view.entities, view.bodies())
+    supported = () if entity.pose is None else (yield from ask(LoadOf(name=entity.name, leave=command.leave)))
+    load = attachment_rules.find_load(supported, entity, holder, view.entities, view.bodies())
     if is_there:
         if load:
             raise errors.Refused(
-                f"{already}, without {wording.few(load)}; to take it anew: semmap detach {entity.name}"
+                f"{already}, without {wording.few(load)}; first: semmap detach {entity.name}"
             )
         return make_reply(None, f"unchanged: {already}", names=(entity.name,))
     pose = view.pose_of(entity.name)
@@ -49,44 +49,44 @@ def attach(view: MapView, command: Attach) -> KbCoroutine[Changed]:
     made = yield from commit(view, transactions.attach(command, holder.name, taken))
     if made is None:
         return make_reply(None, f"unchanged: {already}", names=(entity.name,))
-    notes = (_left(entity, load),) if load and not command.carry else ()
+    notes = (_describe_left(entity, load),) if load and not command.carry else ()
     along = f"; {wording.carried(entity.name, load, command.leave)}" if command.carry else ""
-    text = f"{holder.name} holds {entity.name}{_off(grip)}{along}"
+    text = f"{entity.name} is attached to {holder.name}{_describe_offset(grip)}{along}"
     return make_reply(made, text, names=tuple(one.name for one in taken), notes=notes)
 
 
 @idempotent
 def detach(view: MapView, command: Detach) -> KbCoroutine[Changed]:
-    """Let go of what something holds, and of what was taken with it. Raises Refused where nothing does."""
+    """Detach an entity, and what was attached together with it. Raises Refused if it is not attached."""
     entity = view.entity(command.name)
     if not (by := holder_of(entity)):
-        raise errors.Refused(f"nothing holds {entity.name}")
+        raise errors.Refused(f"{entity.name} is not attached")
     along = attachment_rules.find_attached_with(entity, view.held)
     poses = {name: _rounded(view.pose_of(name)) for name in (entity.name, *along)}
     made = yield from commit(view, transactions.detach(command, poses))
     pose = poses[entity.name]
-    at = "" if pose is None else f" at {_metres(pose)}"
-    free = f"; {wording.few(along)} {'is' if len(along) == 1 else 'are'} free again, too" if along else ""
-    return make_reply(made, f"{by} let go of {entity.name}{at}{free}", names=tuple(poses))
+    at = "" if pose is None else f" at {_format_position(pose)}"
+    free = f"; also detached: {wording.few(along)}" if along else ""
+    return make_reply(made, f"{entity.name} is detached from {by}{at}{free}", names=tuple(poses))
 
 
 def _rounded(pose: Pose | None) -> Pose | None:
     return None if pose is None else rounded(pose)
 
 
-def _off(grip: Pose | None) -> str:
+def _describe_offset(grip: Pose | None) -> str:
     if grip is None:
         return ""
-    return f", at {_metres(grip)} in its frame"
+    return f", at {_format_position(grip)} in its frame"
 
 
-def _metres(pose: Pose) -> str:
+def _format_position(pose: Pose) -> str:
     return "({:g}, {:g}, {:g})".format(*(round(c, 3) + 0.0 for c in pose.position_m))
 
 
-def _left(entity: Entity, load: tuple[str, ...]) -> str:
+def _describe_left(entity: Entity, load: tuple[str, ...]) -> str:
     verb = "is" if len(load) == 1 else "are"
     return (
-        f"{wording.few(load)} {verb} on or inside {entity.name} and held by nothing; to take that along:"
+        f"{wording.few(load)} {verb} on or inside {entity.name} but not attached; to attach the contents too:"
         f" semmap attach {entity.name} --carry"
     )

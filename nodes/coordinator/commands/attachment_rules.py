@@ -1,4 +1,4 @@
-"""What may be held by what, and where it is then."""
+"""Which entity can be attached to which, and where an attached entity is."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from semmap.schemas.grips import bearers, grip_of, holder_of
 from semmap.schemas.scenes import Body
 
 PoseLookup = Callable[[str], Pose | None]
-"""Where an entity is just now, if that is known."""
+"""Returns the current pose of an entity, if it is known."""
 
 
 def resolve_name(word: str, entities: Mapping[str, Entity]) -> str:
-    """The name of an entity, also of a part as `robot1/gripper`, which is called `robot1_gripper`."""
+    """Return the name of an entity; `robot1/gripper` is resolved to `robot1_gripper`."""
     part = word.replace("/", "_")
     return part if word not in entities and part in entities else word
 
@@ -22,47 +22,55 @@ def resolve_name(word: str, entities: Mapping[str, Entity]) -> str:
 def require_attachable(
     held: Entity, holder: Entity, entities: Mapping[str, Entity], bodies: Mapping[str, Body]
 ) -> None:
-    """Raises Refused, with the reason, where one cannot be held by the other."""
+    """Raise Refused, with the reason, if one entity cannot be attached to the other."""
     name, to = held.name, holder.name
     for entity in (held, holder):
         if entity.place:
-            raise errors.Refused(f"{entity.name} is a place, which neither holds anything nor is held")
+            raise errors.Refused(f"{entity.name} is a place; only objects can be attached to each other")
     if name == to:
-        raise errors.Refused(f"{name} cannot hold itself")
+        raise errors.Refused(f"{name} cannot be attached to itself")
     if name in (above := bearers(to, entities)):
-        how = "is held by" if holder_of(holder) == name else "is part of" if len(above) == 1 else "goes with"
-        raise errors.Refused(f"{to} {how} {name}, so it cannot hold {name}")
+        how = (
+            "is attached to"
+            if holder_of(holder) == name
+            else "is part of"
+            if len(above) == 1
+            else "moves with"
+        )
+        raise errors.Refused(f"{to} {how} {name}, so {name} cannot be attached to it")
     by = holder_of(held)
     if by and by != to:
-        raise errors.Refused(f"{name} is held by {by} already; first: semmap detach {name}")
-    if why := _stays(held, bodies):
+        raise errors.Refused(f"{name} is already attached to {by}; first: semmap detach {name}")
+    if why := _why_not_movable(held, bodies):
         raise errors.Refused(why)
 
 
 def find_load(
-    borne: Sequence[str],
+    supported: Sequence[str],
     held: Entity,
     holder: Entity,
     entities: Mapping[str, Entity],
     bodies: Mapping[str, Body],
 ) -> tuple[str, ...]:
-    """What goes with a thing that is taken, of all that it bears: not what is fixed, or part of something.
+    """Return the contents that move with an entity: supported objects that are not fixed, parts or attached.
 
-    Raises Refused where it bears what is to hold it.
+    Raises Refused if the holder itself is among the supported objects.
     """
     above = {holder.name, *bearers(holder.name, entities)}
-    for name in borne:
+    for name in supported:
         if name in above:
-            who = holder.name if name == holder.name else f"{name}, which {holder.name} goes with,"
+            who = holder.name if name == holder.name else f"{name}, which carries {holder.name},"
             raise errors.Refused(
-                f"{who} stands on {held.name} or is inside it, so {holder.name} cannot take {held.name} away"
+                f"{who} is on or inside {held.name}, so {held.name} cannot be attached to {holder.name}"
             )
-    there = (entities[name] for name in borne if name in entities)
-    return tuple(entity.name for entity in there if not (_stays(entity, bodies) or holder_of(entity)))
+    there = (entities[name] for name in supported if name in entities)
+    return tuple(
+        entity.name for entity in there if not (_why_not_movable(entity, bodies) or holder_of(entity))
+    )
 
 
 def find_attached_with(entity: Entity, held: Mapping[str, Entity]) -> tuple[str, ...]:
-    """What a held thing holds since it was taken itself, in the same commit: that came along with it."""
+    """Return what was attached to an entity by the same commit that attached the entity itself."""
     since = entity.grip_provenance
     return tuple(
         sorted(
@@ -76,23 +84,23 @@ def find_attached_with(entity: Entity, held: Mapping[str, Entity]) -> tuple[str,
     )
 
 
-def _stays(held: Entity, bodies: Mapping[str, Body]) -> str:
-    """Why nothing can take a thing: it is fixed, or part of another; "" for what can be taken."""
+def _why_not_movable(held: Entity, bodies: Mapping[str, Body]) -> str:
+    """Return why an entity cannot be attached: it is fixed or a part. Return "" if it can."""
     body = bodies.get(held.name)
     if body is not None and body.part_of:
-        return f"{held.name} is part of {body.part_of}, which cannot let go of it"
+        return f"{held.name} is part of {body.part_of} and cannot be separated from it"
     if held.fixed or (body is not None and body.fixed):
-        return f"{held.name} is fixed where it stands, so nothing can take it"
+        return f"{held.name} is fixed, so it cannot be attached"
     return ""
 
 
 def compute_grip(
     held: Pose | None, holder: Pose | None, at: tuple[float, float, float] | None, yaw: float | None
 ) -> Pose | None:
-    """Where a thing is held, in the frame of its holder; None where that is not known.
+    """Return the pose of an attached entity in the frame of its holder; None if it is unknown.
 
-    `held` and `holder` are where both are just now (map frame); `at` [m] and `yaw` [rad] are where it is
-    wanted, in the frame of the holder.
+    `held` and `holder` are their current poses (map frame). `at` [m] and `yaw` [rad] are the wanted values in
+    the holder's frame.
     """
     now = None if held is None or holder is None else relative(held, holder)
     if at is None and now is None:
@@ -103,7 +111,7 @@ def compute_grip(
 
 
 def attached_pose(entity: Entity, where: PoseLookup) -> Pose | None:
-    """Where a held thing is, by where its holder is; None where nothing holds it, or that is unknown."""
+    """Return the pose of an attached entity, from its holder's; None if it is not attached or unknown."""
     by, gripped = holder_of(entity), grip_of(entity)
     if not by or gripped is None:
         return None
@@ -112,16 +120,19 @@ def attached_pose(entity: Entity, where: PoseLookup) -> Pose | None:
 
 
 def require_detached(entity: Entity) -> None:
-    """Raises Refused for what something holds: it is where that is."""
+    """Raise Refused for an attached entity: its pose follows from its holder."""
     if by := holder_of(entity):
         raise errors.Refused(
-            f"{entity.name} is held by {by}; to put it elsewhere, first: semmap detach {entity.name}"
+            f"{entity.name} is attached to {by}; to move it, first: semmap detach {entity.name}"
         )
 
 
 def require_no_attachments(leaving: Collection[str], held: Mapping[str, Entity]) -> None:
-    """Raises Refused where one of those that leave holds something that stays."""
+    """Raise Refused if an entity to remove has an entity attached that stays."""
     stay = [(holder_of(entity), name) for name, entity in held.items() if name not in leaving]
     for holder in sorted({by for by, _ in stay if by in leaving}):
         things = sorted(name for by, name in stay if by == holder)
-        raise errors.Refused(f"{holder} holds {wording.few(things)}; first: semmap detach {things[0]}")
+        are = "is" if len(things) == 1 else "are"
+        raise errors.Refused(
+            f"{wording.few(things)} {are} attached to {holder}; first: semmap detach {things[0]}"
+        )

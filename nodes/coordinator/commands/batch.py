@@ -1,4 +1,4 @@
-"""Several changes of entities in one commit: all of them, or none."""
+"""Handler of a batch: several changes of entities in one commit, all or none."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _OF_ALL: Final = (
     *("id", "source", "agent", "reason"),
     *("confidence", "unchanged", "since", "dry_run"),
 )
-"""What a command says of itself is said of a batch, once."""
+"""Fields that are given once for the batch, not for a change in it."""
 _NOT_HERE: Final = ("wait", "frame")
 _DEFAULTS: Final = {name: getattr(Update(name="_"), name) for name in (*_OF_ALL, *_NOT_HERE)}
 
@@ -33,21 +33,21 @@ class _Wanted(NamedTuple):
     change: Update | Set | Unset
     entity: Entity
     found: ClassInfo | None
-    """The class that the entity is to have, where that changes."""
+    """The new class of the entity, if it changes."""
     transaction: Transaction
 
 
 @idempotent
 def batch(view: MapView, command: Batch) -> KbCoroutine[Changed]:
-    """Make all of the changes, or none. Raises the error that the first would get which is refused."""
+    """Make all changes, or none. Raises the error of the first change that is rejected."""
     if not command.changes:
-        raise errors.BadRequest("a batch without changes: give an update, a set or an unset")
+        raise errors.BadRequest("the batch has no changes; give an update, a set or an unset")
     _require_each_once(command)
     wanted = [_wanted(view, command, change) for change in command.changes]
     made = yield from commit(view, transactions.combine(command, [one.transaction for one in wanted]))
     names = tuple(dict.fromkeys(one.entity.name for one in wanted))
     return make_reply(
-        made, _said(names, made), names=names, notes=tuple(dict.fromkeys(_notes(view, wanted, made)))
+        made, _describe(names, made), names=names, notes=tuple(dict.fromkeys(_notes(view, wanted, made)))
     )
 
 
@@ -72,18 +72,18 @@ def _notes(view: MapView, wanted: list[_Wanted], made: Effects | None) -> list[s
     ]
 
 
-def _said(names: tuple[str, ...], made: Effects | None) -> str:
+def _describe(names: tuple[str, ...], made: Effects | None) -> str:
     if made is None:
         return UNCHANGED
     touched = {entity.name for entity in made.changed}
-    is_so = [name for name in names if name not in touched]
+    unchanged = [name for name in names if name not in touched]
     done = [name for name in names if name in touched]
-    also = f"; already so: {wording.few(is_so)}" if is_so else ""
+    also = f"; already so: {wording.few(unchanged)}" if unchanged else ""
     return f"changed {len(done)}: {wording.few(done)}{also}"
 
 
 def _require_each_once(command: Batch) -> None:
-    """Raises BadRequest where it is not clear which of two changes holds, for all happen together."""
+    """Raise BadRequest if two changes affect the same property, because all changes happen together."""
     known: set[tuple[str, str]] = set()
     for change in command.changes:
         touched = {(change.name, normalize_property(word)): word for word in _words(change)}
@@ -93,24 +93,24 @@ def _require_each_once(command: Batch) -> None:
             word = touched[min(twice)]
             what = f"{word} of {change.name}" if word else change.name
             raise errors.BadRequest(
-                f"a batch happens all at once, and this one changes {what} twice: say it in one change"
+                f"the batch changes {what} twice, but all its changes happen together; use one change"
             )
         known |= touched.keys()
 
 
 def _words(change: Update | Set | Unset) -> tuple[str, ...]:
-    """The properties that it changes, as they are written."""
+    """Return the properties that a change affects, as they are written."""
     if not isinstance(change, Update):
         return (change.property,)
     return properties_in((*change.set, *change.unset))
 
 
 def _require_bare(change: Command) -> None:
-    """Raises BadRequest for a change that says of itself what is said of the batch, or cannot be in one."""
+    """Raise BadRequest for a change with a field that belongs to the batch, or is not possible in one."""
     given = [name for name, usual in _DEFAULTS.items() if getattr(change, name, usual) != usual]
     if misplaced := [name for name in given if name in _OF_ALL]:
-        raise errors.BadRequest(f"say {wording.few(misplaced)} once, of the batch, not of a change in it")
+        raise errors.BadRequest(f"give {wording.few(misplaced)} once for the batch, not for a change in it")
     if "frame" in given:
-        raise errors.BadRequest("positions in a batch are in the map frame: leave the frame out")
+        raise errors.BadRequest("positions in a batch are in the map frame; remove the frame")
     if given:
-        raise errors.BadRequest("a batch does not wait for bodies: leave wait out")
+        raise errors.BadRequest("a batch does not wait for bodies; remove wait")

@@ -1,4 +1,4 @@
-"""What every command that changes the map does: commit, and only once."""
+"""Sends a transaction to the knowledge base, and makes commands idempotent by their id."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ Change = Callable[[MapView, C], KbCoroutine[Changed]]
 
 
 def idempotent(change: Change[C]) -> Change[C]:
-    """A command that is sent again under the same id is answered with its first result.
+    """Make a command idempotent: if it is sent again under the same id, return its first result.
 
-    The knowledge base executes an id once and answers it with the first commit, so the command is simply
-    executed. Only when it fails, changes nothing or comes back with an old commit is it asked whether that id
-    was executed before: a command that comes for the first time costs no additional question.
+    The knowledge base executes an id only once and answers it with the first commit, so the command is simply
+    executed again. If it fails, changes nothing or returns an old commit, one more request finds the earlier
+    result. A command that is sent only once needs no additional request.
     """
 
     @functools.wraps(change)
@@ -56,7 +56,7 @@ def idempotent(change: Change[C]) -> Change[C]:
 
 
 def find_earlier_result(command: Command) -> KbCoroutine[Changed | None]:
-    """The result of the command with this id, if there was one."""
+    """Return the result of an earlier command with this id, if there was one."""
     (commit,) = yield from ask(MadeBy(ids=(command.id,)))
     if commit is None:
         return None
@@ -65,12 +65,12 @@ def find_earlier_result(command: Command) -> KbCoroutine[Changed | None]:
 
 
 def commit(view: MapView, transaction: Transaction) -> KbCoroutine[Effects | None]:
-    """Commit it; None if it changes nothing."""
+    """Commit a transaction and apply it to the view. Return None if it changes nothing."""
     return (yield from apply(view, (yield from ask(transaction))))
 
 
 def apply(view: MapView, commit: Effects | None) -> KbCoroutine[Effects | None]:
-    """The commit, shown in the view so that the next command sees it; the map anew if it is abridged."""
+    """Apply a commit to the view, so that the next command sees it. Reload the map if it is abridged."""
     if commit is None or commit.trial is not None:
         return commit
     known = view.take(commit)
@@ -81,7 +81,7 @@ def apply(view: MapView, commit: Effects | None) -> KbCoroutine[Effects | None]:
 
 
 def reload_map(view: MapView) -> KbCoroutine[None]:
-    """The map as it is, page by page."""
+    """Reload the map from the knowledge base, page by page."""
     pages = view.begin_pages()
     try:
         while not pages.are_complete:
@@ -91,23 +91,26 @@ def reload_map(view: MapView) -> KbCoroutine[None]:
         raise
     view.begin(pages.snapshot)
     heap.trim()
-    gc.freeze()  # most of the map stays as it is: the collector need not look through it again
+    gc.freeze()  # most of the map stays as it is, so the collector does not have to visit it again
 
 
 def apply_with_classes(view: MapView, commit: Effects) -> KbCoroutine[None]:
-    """Like `taken`, for a commit that may have replaced the TBox."""
+    """Apply a commit that may have replaced the TBox, and reload the classes."""
     yield from apply(view, commit)
     if commit.tbox and commit.trial is None:
         view.classes = ClassNames((yield from ask(Classes())))
 
 
 def new_id() -> str:
-    """For a command that came without."""
+    """Return a new id, for a command without one."""
     return uuid.uuid4().hex
 
 
 def make_reply(commit: Effects | None, text: str, *, notes: tuple[str, ...] = (), **fields: Any) -> Changed:
-    """The reply to a command that has made `commit`, or would have; `fields` are those of `Changed`."""
+    """Return the reply to a command that has made `commit`, or would make it (dry run).
+
+    `fields` are fields of `Changed`.
+    """
     if commit is None:
         return Changed(commit=None, text=text, notes=notes, **fields)
     fields["notes"] = (*notes, *commit.notes)

@@ -1,4 +1,4 @@
-"""The door, as the coordinator's node sees it: a command goes in, and its result comes out."""
+"""Selects the handler of a command that changes the map, and returns its result."""
 
 from __future__ import annotations
 
@@ -45,35 +45,34 @@ _CHANGING: Mapping[type[Command], Callable[[MapView, Any], KbCoroutine[Changed]]
 
 
 class CommandDispatcher:
-    """Executes the commands that change the map, and sees it as they leave it.
+    """Executes the commands that change the map, and holds the resulting map.
 
-    Owned by the coordinator's thread. Errors are those that the command deserves, and those of the knowledge
-    base.
+    Owned by the coordinator's thread. Raises the errors of the handlers and of the knowledge base.
     """
 
     def __init__(self, ask: Ask) -> None:
-        """`ask(call)` asks the knowledge base."""
+        """`ask(call)` sends a request to the knowledge base."""
         self.map = MapView()
         self._ask = ask
         self.manual_moves = ManualMoves()
 
     def change(self, command: Change) -> Changed:
-        """Change the map as a command says."""
-        return run(self._changing(command), self._ask)
+        """Execute one command and return its result."""
+        return run(self._handle(command), self._ask)
 
-    def together(self, commands: Sequence[Change]) -> KbCoroutine[list[Changed | Exception]]:
-        """Changes of different entities, with as few questions as one."""
+    def run_together(self, commands: Sequence[Change]) -> KbCoroutine[list[Changed | Exception]]:
+        """Execute changes of different entities with as few requests as one needs."""
         if len(commands) == 1:
-            return run_single(self._changing(commands[0]))
-        return gather([self._changing(command) for command in commands])
+            return run_single(self._handle(commands[0]))
+        return gather([self._handle(command) for command in commands])
 
-    def _changing(self, command: Change) -> KbCoroutine[Changed]:
+    def _handle(self, command: Change) -> KbCoroutine[Changed]:
         if isinstance(command, ObservedState):
             return self._adopt(command)
         return _CHANGING[type(command)](self.map, command)
 
     def _adopt(self, observed: ObservedState) -> KbCoroutine[Changed]:
-        """The map takes over where things are: one, or those that a cause carried together."""
+        """Commit the observed state of one entity, or of those that were moved run_together."""
         if observed.reason:
             return (
                 yield from entity_changes.adopt_observed(

@@ -1,4 +1,4 @@
-"""Add, update, remove, clear: one entity, or those that are named."""
+"""Handlers that change entities: add, update, set, unset, track, remove, clear."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from semmap.schemas.scene_files import pose_of
 
 UNCHANGED = "unchanged: already up to date"
 _TRIES = 4
-"""How often a name is thought of anew: others may publish made-up commits one after another."""
+"""How often another name is tried if a generated name turns out to be taken."""
 
 
 @idempotent
@@ -46,7 +46,7 @@ def add(view: MapView, command: Add) -> KbCoroutine[Changed]:
         except errors.NameTaken:
             if command.name is not None:
                 raise
-        yield from reload_map(view)  # it was not as it seemed: somebody published what was never committed
+        yield from reload_map(view)  # the replica was wrong: it had a publication that was never committed
     return (yield from _add(view, command, found))
 
 
@@ -85,7 +85,7 @@ def update(view: MapView, command: Update) -> KbCoroutine[Changed]:
 
 
 def resolve_update(view: MapView, command: Update) -> tuple[Entity, ClassInfo | None]:
-    """The entity that is to be changed so, and the class that it is to have. Raises where it may not be."""
+    """Return the entity to update, and its new class if it changes. Raises if the update is not allowed."""
     entity = view.entity(command.name)
     require_openable(view, command)
     require_carry(command)
@@ -102,7 +102,7 @@ def resolve_update(view: MapView, command: Update) -> tuple[Entity, ClassInfo | 
 def notes_for(
     view: MapView, command: Update, entity: Entity, found: ClassInfo | None, made: Effects | None
 ) -> tuple[str, ...]:
-    """What is to be known of an entity that was changed so."""
+    """Return the notes about an updated entity."""
     now = _find_changed(made, entity.name) or entity
     return (
         *(view.classes.note(command.class_ or "", found) if found else ()),
@@ -118,14 +118,14 @@ def notes_for(
 
 @idempotent
 def set_(view: MapView, command: Set) -> KbCoroutine[Changed]:
-    """State a property of an entity."""
+    """Set a property of an entity."""
     require_openable(view, command)
     return (yield from _change_property(view, command, transactions.set_property(command)))
 
 
 @idempotent
 def unset(view: MapView, command: Unset) -> KbCoroutine[Changed]:
-    """Take back what is stated by a property of an entity."""
+    """Remove the values of a property of an entity, or one of them."""
     return (yield from _change_property(view, command, transactions.unset_property(command)))
 
 
@@ -139,7 +139,7 @@ def _change_property(view: MapView, command: Set | Unset, transaction: Transacti
 
 
 def _describe_value(entity: Entity, command: Set | Unset) -> KbCoroutine[str]:
-    """What is stated by a property that a command did not change."""
+    """Return in words the value of a property that a command has not changed."""
     known = NameIndex(
         Named(p.name, p.iri, labels=tuple(p.labels.values())) for p in (yield from ask(Properties()))
     )
@@ -150,12 +150,12 @@ def _describe_value(entity: Entity, command: Set | Unset) -> KbCoroutine[str]:
     stated = entity.properties.get(name)
     is_ = "not set" if stated is None else changes.stated_in_words(stated)
     if isinstance(command, Unset) and (value := (yield from _find_inferred(entity, name, command.value))):
-        is_ += f", but {value} follows; for the reason: semmap explain {entity.name} {name} {value}"
+        is_ += f", but {value} is inferred; for the reason: semmap explain {entity.name} {name} {value}"
     return f"unchanged: {name} is {is_}"
 
 
 def _find_inferred(entity: Entity, property_: str, wanted: Value | None) -> KbCoroutine[str | None]:
-    """A value that follows, the one that is wanted or the first."""
+    """Return an inferred value: the wanted one or the first."""
     inferred = yield from ask(Infer(name=entity.name))
     found = [o for _, p, o in inferred.triples if v.local_name(p) == property_ and o.startswith("<")]
     values = map(v.entity_name, found)
@@ -163,7 +163,7 @@ def _find_inferred(entity: Entity, property_: str, wanted: Value | None) -> KbCo
 
 
 def _describe(was: Entity, made: Effects | None) -> str:
-    """What a commit has changed of an entity, in words."""
+    """Return in words what a commit has changed of an entity."""
     now = _find_changed(made, was.name)
     if made is None:
         return f"{was.name}: {UNCHANGED}"
@@ -172,21 +172,21 @@ def _describe(was: Entity, made: Effects | None) -> str:
 
 
 def _other_names(made: Effects | None, name: str) -> tuple[str, ...]:
-    """The other entities that a commit changes: those that were carried along."""
+    """Return the other entities that a commit has changed: those that were carried along."""
     return tuple(e.name for e in made.changed if e.name != name) if made is not None else ()
 
 
 def _find_changed(made: Effects | None, name: str) -> Entity | None:
-    """The entity as a commit leaves it, if it changes it."""
+    """Return the entity after a commit, if the commit changes it."""
     return next((e for e in made.changed if e.name == name), None) if made is not None else None
 
 
 @idempotent
 def track(view: MapView, command: Track) -> KbCoroutine[Changed]:
-    """Let an entity's pose come live, or no more. Raises Refused for a place."""
+    """Start or stop tracking an entity. Raises Refused for a place."""
     entity = view.entity(command.name)
     if entity.place:
-        raise errors.Refused(f"{entity.name} is a place, which stays where it is; track what moves")
+        raise errors.Refused(f"{entity.name} is a place and does not move; only objects can be tracked")
     made = yield from commit(view, transactions.track(command))
     if made is None:
         source = "the simulator" if entity.tracked == "sim" else "a stream of poses"
@@ -197,7 +197,7 @@ def track(view: MapView, command: Track) -> KbCoroutine[Changed]:
 
 @idempotent
 def remove(view: MapView, command: Remove) -> KbCoroutine[Changed]:
-    """Take entities out: all of them, or, if one is unknown, none."""
+    """Remove entities: all of them, or none if one is unknown."""
     if not command.names:
         raise errors.BadRequest("name at least one entity to remove")
     leaving = [view.entity(name) for name in dict.fromkeys(command.names)]
@@ -208,13 +208,13 @@ def remove(view: MapView, command: Remove) -> KbCoroutine[Changed]:
 
 @idempotent
 def clear(view: MapView, command: Clear) -> KbCoroutine[Changed]:
-    """Take every entity out."""
+    """Remove all entities."""
     require_authority(command, view.entities.values())
     return (yield from _remove(view, command, "clear", list(view.entities.values())))
 
 
 def adopt_observed(view: MapView, observed: ObservedState, cause: Attribution) -> KbCoroutine[Changed]:
-    """The map takes over where bodies came to rest, in one commit: those that nobody has moved meanwhile."""
+    """Commit the state of bodies at rest in one commit, except of those that were changed since."""
     edits = observed.edits(view.entities)
     if not edits:
         return make_reply(None, UNCHANGED)

@@ -1,4 +1,4 @@
-"""Load: a document of any RDF syntax, a scene, a HuRIC map, or another TBox."""
+"""Handler of load: a document in an RDF syntax, a scene, a HuRIC map, or another TBox."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from semmap.schemas.replies import Changed
 from semmap.schemas.scene_files import Described
 
 PART: Final = 10_000
-"""Entities in a part of a scene that is loaded in parts."""
+"""Number of entities in each part of a scene that is loaded in parts."""
 
 READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
     "scene": lambda content, filename: scene_files.read(content, filename).entities,
@@ -44,7 +44,7 @@ READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
 
 @idempotent
 def load(view: MapView, command: Load) -> KbCoroutine[Changed]:
-    """Add what a file describes."""
+    """Add the entities of a file to the map."""
     if command.source == "operator":
         command = structs.replace(command, source="file")
     if command.parts and (command.replace or command.tbox):
@@ -95,7 +95,7 @@ def _load_described(view: MapView, command: Load, described: Iterable[Described]
 
 
 def _commit_parts(view: MapView, whole: Transaction) -> KbCoroutine[Effects | None]:
-    """The last commit; each part is one, and the last part's has the command's id."""
+    """Commit a scene in parts and return the last commit; the last part has the command's id."""
     last: Effects | None = None
     done: list[int] = []
     starts = range(0, len(whole.add), PART)
@@ -170,7 +170,7 @@ def _load_tbox(view: MapView, command: Load) -> KbCoroutine[Changed]:
 def _sort_out(
     classes: ClassNames, described: Iterable[Described], *, skip_unknown: bool
 ) -> tuple[list[tuple[Described, ClassInfo]], tuple[str, ...], tuple[str, ...]]:
-    """Those of a known class, a word on each of the others, and how class names were read."""
+    """Return the entities of known classes, a note on each of the others, and how class names were read."""
     known: list[tuple[Described, ClassInfo]] = []
     unknown: dict[str, list[str]] = {}
     notes: dict[str, None] = {}

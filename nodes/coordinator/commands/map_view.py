@@ -1,4 +1,4 @@
-"""What the coordinator knows of the map: a snapshot, and the commits since."""
+"""The coordinator's view of the map: a snapshot, and the commits since."""
 
 from __future__ import annotations
 
@@ -18,36 +18,36 @@ from semmap.schemas.scenes import Body
 
 
 class MapView(map_replica.MapReplica[Effects]):
-    """Besides the entities the classes, and both by name."""
+    """The entities and classes of the map by name, with indexes of places, tracked and attached entities."""
 
     def __init__(self) -> None:
         super().__init__()
         self.classes = ClassNames()
         self.touched: set[str] = set()
-        """The names of the entities that commits touched, for whoever looks after them to take."""
+        """The names of entities that commits have changed; the reconciler takes them from here."""
         self._places: dict[str, Entity] | None = None
         self.tracked: dict[str, Entity] = {}
-        """The entities that are tracked, by name."""
+        """The tracked entities, by name."""
         self.held: dict[str, Entity] = {}
-        """The entities that others hold, by name."""
+        """The attached entities, by name."""
         self.pose_of: PoseLookup = self._committed_pose
-        """Where an entity is just now; whoever hears of bodies and live poses knows better than the map."""
+        """Returns the current pose of an entity; set to a function that also uses bodies and live poses."""
         self.bodies: Callable[[], Mapping[str, Body]] = dict
-        """The bodies of the scene, by name, if there is one."""
+        """Returns the bodies of the scene, by name."""
         self._names = FreeNames()
         self._floor: FreePlaces | None = None
-        """Once somebody asked for a free place."""
+        """Created at the first request for a free place."""
 
     def _committed_pose(self, name: str) -> Pose | None:
         entity = self.entities.get(name)
         return None if entity is None else entity.pose
 
     def free_name(self, class_name: str) -> str:
-        """The first name that is free for an entity of a class."""
+        """Return the first free name for an entity of a class."""
         return self._names.name(class_name, self.entities)
 
     def free_place(self, size_m: Size | None) -> Vector:
-        """The place nearest to a default position where a thing of `size_m` touches nothing."""
+        """Return the place nearest to a default position where an object of `size_m` touches nothing."""
         if self._floor is None:
             self._floor = FreePlaces()
             self._floor.touch(self.entities)
@@ -61,13 +61,13 @@ class MapView(map_replica.MapReplica[Effects]):
         return self._places.values()
 
     def entity(self, name: str) -> Entity:
-        """The entity of that name. Raises UnknownName with the nearest ones."""
+        """Return the entity of that name. Raises UnknownName with the nearest names."""
         if name in self.entities:
             return self.entities[name]
         raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self.entities)}")
 
     def entities_of(self, class_name: str | None) -> tuple[Entity, ...]:
-        """The entities, or those of a class by inference, in the order of their names."""
+        """Return the entities, or those of a class (inferred ones included), sorted by name."""
         there = self.entities.values()
         found = list(there) if class_name is None else [e for e in there if class_name in e.types]
         return tuple(sorted(found, key=attrgetter("name")))

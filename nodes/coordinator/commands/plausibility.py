@@ -1,4 +1,4 @@
-"""Values that are probably mistakes: noted in the reply, or refused where a class is surely wrong."""
+"""Checks for values that are probably mistakes: noted in the reply, or rejected if the class is wrong."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from semmap.schemas.entities import ClassInfo, Entity, Pose, Size
 from semmap.schemas.polygons import extent_of
 
 FAR_OFF = 10.0
-"""A size is doubtful whose longest side is so many times its class's usual one, or its fraction."""
+"""A size is doubtful if its longest side differs by this factor from the usual size of its class."""
 
 
 def require_same_nature(entity: Entity, found: ClassInfo | None, *, force: bool) -> None:
-    """Raises Refused for a class that would make an object a place, or a place an object."""
+    """Raise Refused for a class that would turn an object into a place, or a place into an object."""
     if force or found is None or found.place == entity.place:
         return
     is_, would_be = ("a place", "an object") if entity.place else ("an object", "a place")
@@ -28,15 +28,15 @@ def require_same_nature(entity: Entity, found: ClassInfo | None, *, force: bool)
 
 
 def require_carry(command: Update | Move | Attach) -> None:
-    """Raises BadRequest where something is to be left of what is not carried."""
+    """Raise BadRequest if entities are excluded from contents that are not carried."""
     if command.leave and not command.carry:
-        raise errors.BadRequest("--leave says what is not to be carried along: add --carry")
+        raise errors.BadRequest("--leave requires --carry: it excludes contents from being carried along")
 
 
 def find_doubts(
     name: str, found: ClassInfo | None, pose: Pose | None, size_m: Size | None, places: Collection[Entity]
 ) -> tuple[str, ...]:
-    """What may be wrong with the pose and size of entity `name`, of class `found`; None for the unsaid."""
+    """Return what may be wrong with the pose and size of entity `name` of class `found`."""
     return (*_outside(name, found, pose, places), *_odd_size(name, found, size_m))
 
 
@@ -52,7 +52,7 @@ def _outside(
 
 
 def _is_over(place: Entity, pose: Pose) -> bool:
-    """Is the pose above the place's ground?"""
+    """Return whether the pose is above the ground of a place."""
     if place.pose is None:
         raise errors.InternalError(f"{place.name} has no pose")
     if place.size_m is None:

@@ -1,4 +1,4 @@
-"""Commands as transactions: what is wanted of which entities. The knowledge base says it in triples."""
+"""Builds transactions from commands; the knowledge base converts them to triples."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from semmap.schemas.grips import GRASP_POSE, IS_GRASPED_BY, pose_text
 from semmap.schemas.scene_files import Described, pose_of
 
 _FEW: Final = 4
-"""Of so many changes that are made together the reason names each."""
+"""Up to this number of changes, the reason of a batch names each."""
 
 
 def build(
@@ -24,7 +24,7 @@ def build(
     edit: Iterable[Edit] = (),
     add: Iterable[NewEntity] = (),
 ) -> Transaction:
-    """A transaction on behalf of `command`. What the scene says no client asked for, so it has no verb."""
+    """Build a transaction for `command`. Changes that come from the scene have no verb."""
     return Transaction(
         id=command.id,
         source=command.source,
@@ -43,8 +43,11 @@ def build(
 
 
 def add(command: Add, name: str, found: ClassInfo, pose: Pose, ref: str | None) -> Transaction:
-    """A new entity; its name must be free. Raises BadRequest for an extent of what is no place."""
-    at, size, extent = _covering(found, command.extent, pose, command.size)
+    """Build a transaction that adds an entity, whose name must be free.
+
+    Raises BadRequest if an extent is given for an object.
+    """
+    at, size, extent = _pose_and_size(found, command.extent, pose, command.size)
     new = NewEntity(
         name=name,
         class_iri=found.iri,
@@ -59,10 +62,10 @@ def add(command: Add, name: str, found: ClassInfo, pose: Pose, ref: str | None) 
 
 
 def update(command: Update, entity: Entity, found: ClassInfo | None = None) -> Transaction:
-    """What is given of an entity changes; omitted fields keep their values.
+    """Build a transaction that updates an entity; omitted fields keep their values.
 
-    Raises BadRequest for an extent of what is no place; Refused where a box would be of no consequence,
-    because the entity's extent is a polygon.
+    Raises BadRequest if an extent is given for an object. Raises Refused for a new box if the extent is a
+    polygon.
     """
     at, size = command.at, command.size
     extent: tuple[Statement, ...] = ()
@@ -72,8 +75,8 @@ def update(command: Update, entity: Entity, found: ClassInfo | None = None) -> T
         is_place, class_name = (entity.place, entity.class_) if found is None else (found.place, found.name)
         _require_place(is_place, class_name)
         if command.yaw is not None or command.orientation is not None:
-            raise errors.BadRequest("an extent is in the map frame, and not turned: leave the angle out")
-        at, size, extent = _around(command.extent, at, size)
+            raise errors.BadRequest("an extent is in the map frame and cannot be turned; remove the angle")
+        at, size, extent = _box_around(command.extent, at, size)
     edit = Edit(
         name=command.name,
         class_iri=None if found is None else found.iri,
@@ -93,7 +96,7 @@ def update(command: Update, entity: Entity, found: ClassInfo | None = None) -> T
 
 
 def set_property(command: Set) -> Transaction:
-    """A property gets values. Raises BadRequest without any."""
+    """Build a transaction that sets values of a property. Raises BadRequest without any."""
     if not command.values:
         raise errors.BadRequest(f"give a value of {command.property}; to have none: semmap unset")
     if command.if_unset and command.if_is is not None:
@@ -106,27 +109,27 @@ def set_property(command: Set) -> Transaction:
         only_if=() if condition is None else (condition,),
         set=(_statement(command.property, *command.values),),
     )
-    said = " ".join(map(_text, command.values))
-    return build(command, f"set {command.name} {command.property} {said}", edit=[edit])
+    text = " ".join(map(_text, command.values))
+    return build(command, f"set {command.name} {command.property} {text}", edit=[edit])
 
 
 def unset_property(command: Unset) -> Transaction:
-    """A property loses a value, or all of them."""
+    """Build a transaction that removes a value of a property, or all of them."""
     value = () if command.value is None else (command.value,)
     edit = Edit(
         name=command.name,
         only_if=() if command.if_is is None else (_statement(command.property, command.if_is),),
         unset=(_statement(command.property, *value),),
     )
-    said = "".join(f" {_text(v)}" for v in value)
-    return build(command, f"unset {command.name} {command.property}{said}", edit=[edit])
+    text = "".join(f" {_text(v)}" for v in value)
+    return build(command, f"unset {command.name} {command.property}{text}", edit=[edit])
 
 
 def combine(command: Batch, changes: Sequence[Transaction]) -> Transaction:
-    """All of these changes as one."""
+    """Combine the transactions of a batch into one."""
     reasons = [change.reason for change in changes]
-    said = "; ".join(reasons if len(reasons) <= _FEW else [*reasons[: _FEW - 1], _more(reasons)])
-    return build(command, said, edit=[edit for change in changes for edit in change.edit])
+    text = "; ".join(reasons if len(reasons) <= _FEW else [*reasons[: _FEW - 1], _more(reasons)])
+    return build(command, text, edit=[edit for change in changes for edit in change.edit])
 
 
 def _more(reasons: Sequence[str]) -> str:
@@ -134,14 +137,14 @@ def _more(reasons: Sequence[str]) -> str:
 
 
 def track(command: Track) -> Transaction:
-    """An entity is tracked from now on, or not any more."""
+    """Build a transaction that starts or stops tracking an entity."""
     edit = Edit(name=command.name, tracked="" if command.off else command.from_)
-    said = "--off" if command.off else f"--from {command.from_}"
-    return build(command, f"track {command.name} {said}", edit=[edit])
+    text = "--off" if command.off else f"--from {command.from_}"
+    return build(command, f"track {command.name} {text}", edit=[edit])
 
 
 class Attachment(NamedTuple):
-    """What is held from now on: by what, where in the frame of that, and where it is just now (map frame)."""
+    """A new attachment: its holder, the pose in the holder's frame, and the current pose (map frame)."""
 
     name: str
     holder: str
@@ -150,7 +153,7 @@ class Attachment(NamedTuple):
 
 
 def attach(command: Attach, to: str, taken: Iterable[Attachment]) -> Transaction:
-    """Entities are held from now on: the one that was named, by `to`, and what goes with it."""
+    """Build a transaction that attaches the named entity to `to`, and its contents to it."""
     edits = [
         Edit(
             name=one.name,
@@ -165,7 +168,7 @@ def attach(command: Attach, to: str, taken: Iterable[Attachment]) -> Transaction
 
 
 def detach(command: Detach, poses: Mapping[str, Pose | None]) -> Transaction:
-    """Nothing holds these entities any more, which are at `poses` just now (map frame)."""
+    """Build a transaction that detaches entities, which are at `poses` (map frame)."""
     edits = [
         Edit(
             name=name,
@@ -179,7 +182,7 @@ def detach(command: Detach, poses: Mapping[str, Pose | None]) -> Transaction:
 
 
 def grip_statements(holder: str, grip: Pose | None) -> tuple[Statement, ...]:
-    """What a map states of who holds a thing, and where; without a holder, what it states no more."""
+    """Return the statements about a holder and the pose in its frame; without a holder, those to remove."""
     if not holder:
         return (Statement(property=IS_GRASPED_BY), Statement(property=GRASP_POSE))
     by = Statement(property=IS_GRASPED_BY, values=(holder,))
@@ -187,15 +190,15 @@ def grip_statements(holder: str, grip: Pose | None) -> tuple[Statement, ...]:
 
 
 def remove(command: Command, reason: str, names: Iterable[str]) -> Transaction:
-    """Entities go, with all that is only theirs and all that others say of them."""
+    """Build a transaction that removes entities with all facts about them."""
     return build(command, reason, remove=names)
 
 
-def new_entity(name: str, found: ClassInfo, said: Described) -> NewEntity:
-    """The entity that a file describes. Raises BadRequest for a pose that is none."""
-    given = pose_of(said.at, said.yaw, said.orientation) if said.at is not None else None
+def new_entity(name: str, found: ClassInfo, text: Described) -> NewEntity:
+    """Return the new entity that a file describes. Raises BadRequest for an invalid pose."""
+    given = pose_of(text.at, text.yaw, text.orientation) if text.at is not None else None
     try:
-        pose, size, extent = _covering(found, said.extent, given, said.size)
+        pose, size, extent = _pose_and_size(found, text.extent, given, text.size)
     except errors.BadRequest as error:
         raise errors.BadRequest(f"{name}: {error.text}") from None
     return NewEntity(
@@ -203,30 +206,30 @@ def new_entity(name: str, found: ClassInfo, said: Described) -> NewEntity:
         class_iri=found.iri,
         pose=pose,
         size=size,
-        ref=said.ref,
-        alt=said.alt,
-        affordances=said.affords,
-        set=(*extent, *map(_assignment, said.set)),
+        ref=text.ref,
+        alt=text.alt,
+        affordances=text.affords,
+        set=(*extent, *map(_assignment, text.set)),
     )
 
 
-def _covering(
+def _pose_and_size(
     found: ClassInfo, extent: str | None, pose: Pose | None, size: Size | None
 ) -> tuple[Pose | None, Size | None, tuple[Statement, ...]]:
-    """The pose and size of a new entity, and what is stated of its extent. Raises BadRequest."""
+    """Return the pose, the size and the extent statements of a new entity. Raises BadRequest."""
     if extent is None:
         return pose, size, ()
     _require_place(found.place, found.name)
     if pose is not None and pose.orientation_wxyz != IDENTITY:
-        raise errors.BadRequest("an extent is in the map frame, and not turned: leave the angle out")
-    at, size, stated = _around(extent, None if pose is None else pose.position_m, size)
+        raise errors.BadRequest("an extent is in the map frame and cannot be turned; remove the angle")
+    at, size, stated = _box_around(extent, None if pose is None else pose.position_m, size)
     return None if at is None else Pose(position_m=at), size, stated
 
 
-def _around(
+def _box_around(
     extent: str, at: Vector | None, size: Size | None
 ) -> tuple[Vector | None, Size | None, tuple[Statement, ...]]:
-    """Where a place with this extent is and how large, as far as that is given; and what is stated of it."""
+    """Return the position, the size and the statements of a place with this extent, as far as given."""
     polygon = polygons.read_wkt(extent)
     centre, box = polygons.box_around(
         polygon, 0.0 if at is None else at[2], polygons.HEIGHT_M if size is None else size[2]
@@ -238,12 +241,12 @@ def _around(
 def _require_place(is_place: bool, class_name: str) -> None:
     if not is_place:
         raise errors.BadRequest(
-            f"only places have an extent, and a {class_name} is none; say how large it is with --size X Y Z"
+            f"only places have an extent, and a {class_name} is not a place; use --size X Y Z"
         )
 
 
 def _require_box(command: Update, entity: Entity) -> None:
-    """Raises Refused for a place that a polygon puts where it is."""
+    """Raise Refused for a new box of a place whose extent is a polygon."""
     if any(word.partition("=")[0].strip() == polygons.EXTENT for word in command.unset):
         return
     if polygons.extent_of(entity) is None or entity.pose is None or entity.size_m is None:
@@ -262,12 +265,12 @@ def _statement(property_: str, *values: Value) -> Statement:
 
 
 def _text(value: Value) -> str:
-    """A value as people write it."""
+    """Return a value as text."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _assignment(words: str) -> Statement:
-    """`PROPERTY=VALUE`. Raises BadRequest."""
+    """Parse `PROPERTY=VALUE`. Raises BadRequest."""
     name, equals, value = words.partition("=")
     if not (name and equals):
         raise errors.BadRequest(f"'{words}' is not of the form PROPERTY=VALUE")
@@ -275,6 +278,6 @@ def _assignment(words: str) -> Statement:
 
 
 def _unassignment(words: str) -> Statement:
-    """`PROPERTY` or `PROPERTY=VALUE`."""
+    """Parse `PROPERTY` or `PROPERTY=VALUE`."""
     name, equals, value = words.partition("=")
     return Statement(property=name.strip(), values=(value,) if equals else ())

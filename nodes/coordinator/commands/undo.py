@@ -1,4 +1,4 @@
-"""Undo: the knowledge base works out which commits go together, and what takes them back."""
+"""Handler of undo: the knowledge base decides which commits are undone together."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.replies import Changed
 
 _FEW: Final = 50
-"""So many changes are told as data."""
+"""Largest number of changes in the reply."""
 _NAMED: Final = 3
-"""So many are told in words."""
+"""Largest number of changes in its text."""
 _VERBS: Final = frozenset(("moved", "turned", "tilted", "placed", "added", "removed"))
 
 
 @idempotent
 def undo(view: MapView, command: Undo) -> KbCoroutine[Changed]:
-    """Take back a commit."""
+    """Undo a commit."""
     commit = yield from ask(
         TakeBack(
             id=command.id,
@@ -41,8 +41,8 @@ def undo(view: MapView, command: Undo) -> KbCoroutine[Changed]:
         return Changed(commit=None, text="nothing is left to undo")
     if not commit.undoes:
         raise errors.Refused(
-            f"the id '{command.id}' is that of commit {commit.seq}, which took nothing back;"
-            " give each command an id of its own"
+            f"the id '{command.id}' belongs to commit {commit.seq}, which is not an undo;"
+            " use a different id for each command"
         )
     first, *settling = commit.undoes
     undone = _changes_of(view.entities, commit)
@@ -50,7 +50,7 @@ def undo(view: MapView, command: Undo) -> KbCoroutine[Changed]:
     text = f"undid commit {first}"
     if settling:
         text += f" and what settled after it ({wording.commits(settling)})"
-    if said := _said(undone, commit):
+    if said := _describe(undone, commit):
         text = f"{text}: {said}"
     return make_reply(commit, text, names=commit.names, undone=undone)
 
@@ -69,7 +69,7 @@ def _changes_of(before: Mapping[str, Entity], undoing: Effects) -> tuple[Change,
     return tuple(found[:_FEW])
 
 
-def _said(undone: tuple[Change, ...], undoing: Effects) -> str:
+def _describe(undone: tuple[Change, ...], undoing: Effects) -> str:
     """Return the changes in words: the first ones, or the commit's reason where they are not known."""
     if not undone:
         return undoing.reason.partition(": ")[2]

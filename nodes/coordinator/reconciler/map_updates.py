@@ -222,7 +222,7 @@ class MapUpdater:
                 yield self._wanted(sorted(group)).follow
 
     def _follow(self, placements: Sequence[Placement], opened: str = "") -> None:
-        """Commit new poses, and the joint positions of the body `opened`; restore them if that is rejected."""
+        """Commit new poses, and the joints of the body `opened`; restore them if the map rejects that."""
         poses = {placement.name: rounded(placement.pose) for placement in placements}
         if any(name in self._placements for name in poses):
             return

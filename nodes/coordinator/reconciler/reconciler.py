@@ -1,7 +1,7 @@
 """Executes what `reconcile` decides: orders to the simulator, and changes of the map.
 
-Only one batch of orders is under way at a time. It ends with a new scene snapshot, so the next comparison never
-uses a scene that is older than the orders before it.
+Only one batch of orders is under way at a time. It ends with a new scene snapshot, so the next comparison
+never uses a scene that is older than the orders before it.
 """
 
 from __future__ import annotations

@@ -60,8 +60,8 @@ class AttachCommands:
         if not command.carry or not self._must_change_scene_first(command, (entity.name, holder.name)):
             return self._attach_in_scene(command, (order,))
 
-        def with_load(borne: Sequence[str]) -> Future[Changed]:
-            load = attachment_rules.find_load(borne, entity, holder, view.entities, bodies)
+        def with_load(supported: Sequence[str]) -> Future[Changed]:
+            load = attachment_rules.find_load(supported, entity, holder, view.entities, bodies)
             along = [GripOrder(name=name, holder=entity.name) for name in load if name in bodies]
             return self._attach_in_scene(command, (*along, order))
 

@@ -45,7 +45,7 @@ def test_a_decision_is_made_once_and_told(approvals):
     assert (asked(approvals).decision, asked(approvals).by) == ("approved", "cli/ann")
     assert asked(approvals, id="b").decision == "rejected"
     assert approvals.approve(Approve()) == ()
-    with pytest.raises(errors.Refused, match="no request 1 is waiting"):
+    with pytest.raises(errors.Refused, match="request 1 is not waiting"):
         approvals.approve(Approve(number=1, reject=True))
 
 
@@ -75,7 +75,7 @@ def test_what_nobody_decides_is_forgotten_after_an_hour(approvals, clock):
 def test_there_is_room_for_so_many_of_one_agent(approvals):
     for number in range(10):
         asked(approvals, id=f"{number}")
-    with pytest.raises(errors.Refused, match="10 requests of yours"):
+    with pytest.raises(errors.Refused, match="10 of your requests"):
         asked(approvals, id="one more")
     assert asked(approvals, id="9").number == 10
     approvals.approve(Approve(number=1))
@@ -85,7 +85,7 @@ def test_there_is_room_for_so_many_of_one_agent(approvals):
 def test_there_is_room_for_so_many_of_all(approvals):
     for number in range(100):
         asked(approvals, id=f"{number}", agent=f"robot{number // 10}")
-    with pytest.raises(errors.Refused, match="100 requests wait"):
+    with pytest.raises(errors.Refused, match="100 requests already wait"):
         asked(approvals, agent="another")
 
 
@@ -106,7 +106,7 @@ def test_all_is_for_rejecting_only(approvals, fields):
 
 
 def test_with_none_waiting_there_is_none_to_name(approvals):
-    with pytest.raises(errors.Refused, match="no request 1 is waiting; none is waiting at all"):
+    with pytest.raises(errors.Refused, match="request 1 is not waiting; no request is waiting"):
         approvals.approve(Approve(number=1))
 
 

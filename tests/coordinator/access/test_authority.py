@@ -26,7 +26,7 @@ changes = pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES.keys()
 def test_what_an_operator_said_only_an_operator_changes(dispatcher, source, change):
     add(dispatcher, name="chair1", alt=("seat",))
     before = dispatcher.map.entity("chair1")
-    with pytest.raises(errors.Refused, match="an operator stated what chair1 is, so only an operator may"):
+    with pytest.raises(errors.Refused, match="chair1 was defined by an operator, so only an operator may"):
         change(dispatcher, source)
     assert dispatcher.map.entity("chair1") == before
     change(dispatcher, "operator")

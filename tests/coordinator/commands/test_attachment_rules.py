@@ -56,50 +56,50 @@ REFUSED = {
         thing("kitchen1", place=True),
         HAND,
         {},
-        "kitchen1 is a place, which neither holds anything nor is held",
+        "kitchen1 is a place; only objects can be attached to each other",
     ),
     "a place holds nothing": (
         CUP,
         thing("kitchen1", place=True),
         {},
-        "kitchen1 is a place, which neither holds anything nor is held",
+        "kitchen1 is a place; only objects can be attached to each other",
     ),
-    "itself": (CUP, CUP, {}, "cup1 cannot hold itself"),
+    "itself": (CUP, CUP, {}, "cup1 cannot be attached to itself"),
     "its own holder": (
         CUP,
         thing("hand1", held_by="cup1"),
         {},
-        "hand1 is held by cup1, so it cannot hold cup1",
+        "hand1 is attached to cup1, so cup1 cannot be attached to it",
     ),
     "its own whole": (
         CUP,
         thing("hand1", part_of="cup1"),
         {},
-        "hand1 is part of cup1, so it cannot hold cup1",
+        "hand1 is part of cup1, so cup1 cannot be attached to it",
     ),
     "another's": (
         thing("cup1", held_by="hand2"),
         HAND,
         {},
-        "cup1 is held by hand2 already; first: semmap detach cup1",
+        "cup1 is already attached to hand2; first: semmap detach cup1",
     ),
     "fixed in the map": (
         thing("cup1", fixed=True),
         HAND,
         {},
-        "cup1 is fixed where it stands, so nothing can take it",
+        "cup1 is fixed, so it cannot be attached",
     ),
     "fixed in the scene": (
         CUP,
         HAND,
         {"cup1": structs.replace(body("cup1", HERE), fixed=True)},
-        "cup1 is fixed where it stands, so nothing can take it",
+        "cup1 is fixed, so it cannot be attached",
     ),
     "a part in the scene": (
         CUP,
         HAND,
         {"cup1": structs.replace(body("cup1", HERE), part_of="oven1")},
-        "cup1 is part of oven1, which cannot let go of it",
+        "cup1 is part of oven1 and cannot be separated from it",
     ),
 }
 
@@ -117,7 +117,7 @@ def test_what_a_robot_holds_cannot_hold_the_robot():
         thing("gripper1", part_of="robot1"),
         thing("cup1", held_by="gripper1"),
     )
-    with pytest.raises(errors.Refused, match=r"^cup1 goes with robot1, so it cannot hold robot1$"):
+    with pytest.raises(errors.Refused, match=r"^cup1 moves with robot1, so robot1 cannot be attached to it$"):
         attachment_rules.require_attachable(robot, cup, by_name(robot, gripper, cup), {})
 
 
@@ -154,8 +154,8 @@ def test_a_load_is_what_stands_on_it_and_can_be_taken():
 def test_a_thing_is_not_taken_by_what_stands_on_it():
     table, robot, gripper = thing("table1"), thing("robot1"), thing("gripper1", part_of="robot1")
     there = by_name(table, robot, gripper)
-    end = "stands on table1 or is inside it, so gripper1 cannot take table1 away"
-    for borne, who in (("gripper1",), "gripper1"), (("robot1",), "robot1, which gripper1 goes with,"):
+    end = "is on or inside table1, so table1 cannot be attached to gripper1"
+    for borne, who in (("gripper1",), "gripper1"), (("robot1",), "robot1, which carries gripper1,"):
         with pytest.raises(errors.Refused) as refused:
             attachment_rules.find_load(borne, table, gripper, there, {})
         assert str(refused.value) == f"{who} {end}"
@@ -229,9 +229,7 @@ def test_where_a_held_thing_is_follows_only_from_a_known_holder_and_grip():
 
 def test_only_what_nothing_holds_is_put_elsewhere():
     attachment_rules.require_detached(CUP)
-    with pytest.raises(
-        errors.Refused, match=r"^cup1 is held by hand1; to put it elsewhere, first: semmap detach"
-    ):
+    with pytest.raises(errors.Refused, match=r"^cup1 is attached to hand1; to move it, first: semmap detach"):
         attachment_rules.require_detached(thing("cup1", held_by="hand1"))
 
 
@@ -241,7 +239,9 @@ def test_what_leaves_may_hold_only_what_leaves_too():
     )
     attachment_rules.require_no_attachments(("cup1",), held)
     attachment_rules.require_no_attachments(("hand1", "cup1", "fork1"), held)
-    with pytest.raises(errors.Refused, match=r"^hand1 holds fork1; first: semmap detach fork1$"):
+    with pytest.raises(errors.Refused, match=r"^fork1 is attached to hand1; first: semmap detach fork1$"):
         attachment_rules.require_no_attachments(("hand1", "cup1"), held)
-    with pytest.raises(errors.Refused, match=r"^hand1 holds cup1 and fork1; first: semmap detach cup1$"):
+    with pytest.raises(
+        errors.Refused, match=r"^cup1 and fork1 are attached to hand1; first: semmap detach cup1$"
+    ):
         attachment_rules.require_no_attachments(("hand1",), held)

@@ -77,14 +77,14 @@ def test_where_one_is_refused_none_is_made(home, semantic_map, last, error):
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ((), "a batch without changes"),
+        ((), "the batch has no changes"),
         ((c.Update(name="chair1", ref="a"), c.Update(name="chair1", ref="b")), "changes chair1 twice"),
         ((c.Unset(name="chair1", property="is open"), *opened("chair1")), "changes isOpen of chair1 twice"),
         ((c.Update(name="chair1", set=("isOpen=no",)), *opened("chair1")), "changes isOpen of chair1 twice"),
-        ((c.Update(name="chair1", ref="a", dry_run=True),), "say dry_run once, of the batch"),
-        ((c.Update(name="chair1", ref="a", id="1", source="agent"),), "say id and source once"),
-        ((c.Update(name="chair1", ref="a", wait=True),), "leave wait out"),
-        ((c.Update(name="chair1", at=(0.0, 0.0, 0.0), frame="chair2"),), "leave the frame out"),
+        ((c.Update(name="chair1", ref="a", dry_run=True),), "give dry_run once for the batch"),
+        ((c.Update(name="chair1", ref="a", id="1", source="agent"),), "give id and source once"),
+        ((c.Update(name="chair1", ref="a", wait=True),), "remove wait"),
+        ((c.Update(name="chair1", at=(0.0, 0.0, 0.0), frame="chair2"),), "remove the frame"),
     ],
 )
 def test_what_makes_no_sense_in_a_batch_is_refused(home, changes, said):

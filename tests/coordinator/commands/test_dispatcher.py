@@ -291,7 +291,7 @@ def test_what_is_tracked_no_more_is_forgotten_and_places_are_known_as_they_come_
     assert list(dispatcher.map.places) == []
     add(dispatcher, class_="Kitchen", name="kitchen1", at=(0.0, 0.0, 0.0))
     assert [place.name for place in dispatcher.map.places] == ["kitchen1"]
-    with pytest.raises(errors.Refused, match="kitchen1 is a place, which stays where it is"):
+    with pytest.raises(errors.Refused, match="kitchen1 is a place and does not move"):
         dispatcher.change(c.Track(name="kitchen1"))
     dispatcher.change(c.Update(name="kitchen1", size=(3.0, 3.0, 2.5)))
     assert [place.size_m for place in dispatcher.map.places] == [(3.0, 3.0, 2.5)]
@@ -375,7 +375,7 @@ def in_their_turn(dispatcher: CommandDispatcher, changes: list) -> list:
         settle(future, lambda: dispatcher._ask(call))
         return future
 
-    turns = Scheduler(lambda group: run_async(dispatcher.together(group), ask_later))
+    turns = Scheduler(lambda group: run_async(dispatcher.run_together(group), ask_later))
     futures = [turns.change(change) for change in changes]
     turns.run_ready()
     return [future.exception() or future.result() for future in futures]
@@ -518,7 +518,7 @@ def test_a_property_is_set_and_unset(dispatcher):
     assert none.text == "chair2: unchanged: isOpen is not set"
     follows = dispatcher.change(c.Unset(name="chair2", property="fits"))
     assert follows.text == (
-        "chair2: unchanged: fits is not set, but kitchen follows; for the reason:"
+        "chair2: unchanged: fits is not set, but kitchen is inferred; for the reason:"
         " semmap explain chair2 fits kitchen"
     )
     other = dispatcher.change(c.Unset(name="chair2", property="fits", value="chair1"))

@@ -10,7 +10,7 @@ from tests.coordinator.scene.test_joint_commands import HINGE, SWITCH, body
 BALL = Joint(name="neck1", kind="ball")
 DOOR = Joint(name="door", kind="hinge", lower=0.0, upper=1.0, closed=0.0)
 NO = "thing1 has no door, lid or drawer that could be open or shut: its joint"
-TOLD = "; how it stands is told by jointPositions: semmap get thing1"
+TOLD = "; for its joint positions, see jointPositions in: semmap get thing1"
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ def have(home, *joints):
     ("joints", "why"),
     [
         ((BALL,), "neck1 is a ball joint"),
-        ((HINGE, SWITCH), "hinge1 has no limits, of which one could be the closed one"),
+        ((HINGE, SWITCH), "hinge1 has no limits, so it has no closed position"),
     ],
 )
 @pytest.mark.parametrize(

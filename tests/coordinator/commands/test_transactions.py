@@ -122,9 +122,9 @@ def test_a_new_place_with_an_extent_is_in_the_middle_of_it():
         (
             CHAIR,
             HERE,
-            "only places have an extent, and a Chair is none; say how large it is with --size X Y Z",
+            "only places have an extent, and a Chair is not a place; use --size X Y Z",
         ),
-        (KITCHEN, TURNED, "an extent is in the map frame, and not turned: leave the angle out"),
+        (KITCHEN, TURNED, "an extent is in the map frame and cannot be turned; remove the angle"),
     ],
 )
 def test_only_a_place_that_is_not_turned_has_an_extent(found, pose, why):
@@ -183,9 +183,9 @@ def test_an_extent_given_to_a_place_moves_and_resizes_it_only_where_that_is_give
     ("fields", "one", "found", "error"),
     [
         ({}, entity("chair1", HERE), None, "only places"),
-        ({}, ROOM, CHAIR, "a Chair is none"),
-        ({"yaw": 0.0}, ROOM, None, "not turned"),
-        ({"orientation": (1.0, 0.0, 0.0, 0.0)}, ROOM, None, "not turned"),
+        ({}, ROOM, CHAIR, "a Chair is not a place"),
+        ({"yaw": 0.0}, ROOM, None, "cannot be turned"),
+        ({"orientation": (1.0, 0.0, 0.0, 0.0)}, ROOM, None, "cannot be turned"),
     ],
 )
 def test_an_extent_is_refused_of_what_is_no_place_and_with_an_angle(fields, one, found, error):
@@ -348,7 +348,9 @@ def test_a_place_of_a_file_is_where_its_extent_is_if_it_is_anywhere():
     assert (new.pose, new.size, list(said(new.set))) == (None, None, ["hasExtent"])
     new = transactions.new_entity("kitchen1", KITCHEN, structs.replace(given, at=(0.0, 0.0, 0.0)))
     assert new.pose == Pose(position_m=(2.0, 1.0, 0.0))
-    with pytest.raises(errors.BadRequest, match=r"^chair1: only places have an extent, and a Chair is none"):
+    with pytest.raises(
+        errors.BadRequest, match=r"^chair1: only places have an extent, and a Chair is not a place"
+    ):
         transactions.new_entity("chair1", CHAIR, given)
 
 

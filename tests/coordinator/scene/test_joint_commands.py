@@ -40,7 +40,7 @@ SWITCH = Joint(name="knob1", kind="hinge", lower=0.0, upper=1.0, closed=0.0, swi
     ("joints", "said"),
     [
         ((), NO),
-        ((HINGE,), f"{NO}: its joint hinge1 has no limits, of which one could be the closed one"),
+        ((HINGE,), f"{NO}: its joint hinge1 has no limits, so it has no closed position"),
         ((Joint(name="neck1", kind="ball"),), f"{NO}: its joint neck1 is a ball joint"),
         ((HINGE, SWITCH), f"{NO}; to switch it: semmap set thing1 isSwitchedOn true"),
     ],

@@ -322,7 +322,7 @@ def test_commits_that_wait_for_a_person_hold_up_nobody(client, flat):
     took_s, found, again = agent(client, talk, approve=True, patience_s=30.0)
     assert took_s < 15.0
     assert sum("has rejected it" in text for text in found) == 2  # the others are told when they ask again
-    assert sum("10 requests of yours wait" in text for text in found) == 5
+    assert sum("10 of your requests wait" in text for text in found) == 5
     assert "has rejected it" in again  # its token was still good
 
 
