@@ -259,7 +259,7 @@ def test_where_the_scene_is_the_truth_what_stands_on_it_is_taken_along_there_fir
     with running(tmp_path, *options) as system, system.client() as client:
         until(lambda: [e.name for e in client.list(on="tray1")] == ["cup1", "cup2"], "the map follows")
         agree(client, "tray1", "cup1", "cup2")
-        with pytest.raises(errors.BadRequest, match="--leave says what is not to be carried along"):
+        with pytest.raises(errors.BadRequest, match="--leave requires --carry"):
             client.attach("tray1", to="table1", leave=("cup1",))
         reply = client.attach("tray1", to="table1", at=(0.0, 0.0, 0.8), carry=True, leave=("cup1",))
         assert "tray1 carried cup2 along" in reply.text

@@ -1,4 +1,4 @@
-"""Positions between frames: commands into the map's frame, answers out of it. Pure."""
+"""Converts the positions of commands to the map frame, and those of replies from it. Pure functions."""
 
 from __future__ import annotations
 
@@ -21,27 +21,29 @@ E = TypeVar("E", bound=Entity)
 
 
 def require_position(command: Framed) -> None:
-    """Raises BadRequest where a frame is given and nothing that is in it, or not of the present."""
+    """Raise BadRequest if a frame is given without a position, or for a time in the past."""
     if isinstance(command, Get | List):
         if command.as_of is not None:
-            raise errors.BadRequest("frames are known as they are now: give either --frame or --as-of")
+            raise errors.BadRequest("past poses of frames are not stored; use either --frame or --as-of")
         if isinstance(command, List) and command.format != "json":
-            raise errors.BadRequest(f"the format {command.format} is in the map frame: leave --frame out")
+            raise errors.BadRequest(f"the format {command.format} uses the map frame; remove --frame")
     elif isinstance(command, Drive):
         if not command.to:
-            raise errors.BadRequest(f"say where in {command.frame}: --frame goes with --to X Y")
+            raise errors.BadRequest(f"position in {command.frame} is missing: --frame requires --to X Y")
     elif isinstance(command, Add | Update):
         if command.extent is not None:
-            raise errors.BadRequest("an extent is in the map frame: leave --frame out")
+            raise errors.BadRequest("an extent is in the map frame; remove --frame")
         if command.at is None and command.yaw is None and command.orientation is None:
-            raise errors.BadRequest(f"say where in {command.frame}: --frame goes with --at X Y Z or --yaw")
+            raise errors.BadRequest(
+                f"position in {command.frame} is missing: --frame requires --at X Y Z or --yaw"
+            )
 
 
 def convert_to_map(command: F, frame: Pose) -> F:
-    """The same command in the map frame, of one whose frame is at `frame` there.
+    """Return the command in the map frame, given the pose of its frame in the map.
 
-    Without an angle only the position is in the frame: what is added is upright and faces the map's +x, and
-    what is moved stays turned as it was. Raises BadRequest for what is beyond `REACH_M`, or no pose.
+    Without an angle only the position is converted: a new entity is upright and faces the map's +x, and a
+    moved entity keeps its orientation. Raises BadRequest for an invalid pose and beyond `REACH_M`.
     """
     if isinstance(command, Get):
         return structs.replace(command, frame=None)
@@ -62,7 +64,7 @@ def convert_to_map(command: F, frame: Pose) -> F:
 
 
 def convert_to_frame(frame: Pose, entity: E) -> E:
-    """An entity with its poses in a frame that is at `frame` in the map."""
+    """Return the entity with its poses converted to a frame, given the pose of the frame in the map."""
     if entity.live is not None:
         live = structs.replace(entity.live, pose=pose_in_frame(frame, entity.live.pose))
         entity = structs.replace(entity, live=live)
@@ -82,6 +84,7 @@ def _position(at: Vector, frame: Pose) -> Vector:
     x, y, z = (round(value, 6) + 0.0 for value in compose(frame, Pose(position_m=at)).position_m)
     if not all(math.isfinite(value) and abs(value) <= REACH_M for value in (x, y, z)):
         raise errors.BadRequest(
-            f"in the map frame that is ({x:g}, {y:g}, {z:g}), and coordinates go up to {REACH_M:,.0f} m"
+            f"the position is ({x:g}, {y:g}, {z:g}) in the map frame;"
+            f" coordinates are limited to {REACH_M:,.0f} m"
         )
     return x, y, z

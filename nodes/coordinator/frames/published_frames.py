@@ -1,4 +1,4 @@
-"""The frames that others publish, newest wins. Knows no wire and no clock."""
+"""The newest pose of each frame that clients publish. Independent of Zenoh and clocks."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from semmap.schemas.entities import Pose
 from semmap.schemas.frames import LONGEST_NAME, MAP, FramePose
 
 _LATE_NS = 10_000_000_000
-"""A pose that is older than the one before by less came late; by more, somebody's clock was set."""
+"""An older stamp is a late message if it is within this time; otherwise the sender's clock was set."""
 _TOLD_S = 60.0
-"""How long it is told that something was ignored, or that a frame is stale."""
+"""How long a problem is reported."""
 _FORGOTTEN_S = 600.0
-"""What has been silent for so long is no frame any more."""
+"""A frame without messages for this time is removed."""
 MOST = 10_000
 _MOST_IGNORED = 50
 
 
 class _Received(NamedTuple):
-    said: FramePose
+    message: FramePose
     pose: Pose
     stamp_ns: int
     received_s: float
@@ -37,13 +37,13 @@ class PublishedFrames:
     """Owned by the coordinator's thread. Times (`now_s`) are of one monotonic clock [s]."""
 
     def __init__(self, stale_s: float) -> None:
-        """What has not been said again for `stale_s` is stale, unless it is fixed."""
+        """A frame is stale after `stale_s` without a message, unless it is fixed."""
         self._stale_s = stale_s
         self._received: dict[str, _Received] = {}
         self._ignored: dict[str, _Ignored] = {}
 
     def __iter__(self) -> Iterator[str]:
-        """The names of the frames."""
+        """Iterate over the names of the frames."""
         return iter(self._received)
 
     def take(
@@ -53,25 +53,25 @@ class PublishedFrames:
         taken: Container[str],
         now_s: float,
     ) -> None:
-        """A frame was published; `read()` gives it with its stamp [ns], or None where it was taken away.
+        """Store a published frame; `read()` returns it with its stamp [ns], or None if it was deleted.
 
-        It is ignored, and `problems` says why, if `read` raises BadRequest, if the map's frame or an entity
-        (one of `taken`) is called so, and if it would be in itself.
+        The frame is ignored, and `problems` reports the reason, in three cases: `read` raises BadRequest, the
+        name is that of the map frame or an entity (one of `taken`), or the frame would be in a cycle.
         """
         try:
-            said = read()
-            if said is None:
+            message = read()
+            if message is None:
                 self._received.pop(name, None)
                 return
-            self._require_possible(name, said[0].parent, taken)
-            pose, stamp_ns = said[0].require_pose(), said[1]
+            self._require_possible(name, message[0].parent, taken)
+            pose, stamp_ns = message[0].require_pose(), message[1]
         except (errors.Refused, errors.BadRequest) as error:
             self._ignore(name, error.text, now_s)
             return
         known = self._received.get(name)
         if known is not None and 0 < known.stamp_ns - stamp_ns < _LATE_NS:
             return
-        self._received[name] = _Received(said[0], pose, stamp_ns, now_s)
+        self._received[name] = _Received(message[0], pose, stamp_ns, now_s)
 
     def _require_possible(self, name: str, parent: str, taken: Container[str]) -> None:
         if name == MAP:
@@ -80,17 +80,17 @@ class PublishedFrames:
             raise errors.Refused(f"a frame's name has 1 to {LONGEST_NAME} characters")
         if name in taken:
             raise errors.Refused(
-                f"an entity is called so; to publish where that is: semmap track {name}, and its poses on"
+                f"the name belongs to an entity; to publish its pose: semmap track {name}, then publish on"
                 f" semmap/live/{name}"
             )
         if name not in self._received and len(self._received) >= MOST:
-            raise errors.Refused(f"there are {MOST:,} frames already")
-        passed, above = [name], parent
+            raise errors.Refused(f"limit of {MOST:,} frames reached")
+        visited, above = [name], parent
         while above in self._received and above != name:
-            passed.append(above)
-            above = self._received[above].said.parent
+            visited.append(above)
+            above = self._received[above].message.parent
         if above == name:
-            raise errors.Refused(describe_cycle([*passed, name]))
+            raise errors.Refused(describe_cycle([*visited, name]))
 
     def _ignore(self, name: str, reason: str, now_s: float) -> None:
         count = self._ignored.pop(name, _Ignored("", 0, 0.0)).times + 1
@@ -99,27 +99,31 @@ class PublishedFrames:
         self._ignored[name] = _Ignored(reason, count, now_s)
 
     def forget(self, now_s: float) -> None:
-        """What has been silent for long is gone."""
+        """Remove the frames that have been silent for long."""
         gone = [
-            n for n, h in self._received.items() if not h.said.fixed and now_s - h.received_s > _FORGOTTEN_S
+            n
+            for n, h in self._received.items()
+            if not h.message.fixed and now_s - h.received_s > _FORGOTTEN_S
         ]
         for name in gone:
             del self._received[name]
 
     def link(self, name: str, now_s: float) -> Link | None:
-        """Where a frame is in its parent; None for one that nobody publishes."""
+        """Return the link of a frame to its parent; None for an unknown frame."""
         known = self._received.get(name)
         if known is None:
             return None
         age_s = max(0.0, now_s - known.received_s)
-        if known.said.fixed:
-            return Link(known.said.parent, known.pose, "stream")
+        if known.message.fixed:
+            return Link(known.message.parent, known.pose, "stream")
         if age_s <= self._stale_s:
-            return Link(known.said.parent, known.pose, "stream", age_s)
-        return Link(known.said.parent, known.pose, "stream", age_s, stale=True, problem=_stale(name, age_s))
+            return Link(known.message.parent, known.pose, "stream", age_s)
+        return Link(
+            known.message.parent, known.pose, "stream", age_s, stale=True, problem=_stale(name, age_s)
+        )
 
     def problems(self, now_s: float) -> Iterator[str]:
-        """What is amiss, one sentence each."""
+        """Yield the problems, one sentence each."""
         for name in sorted(self._received):
             link = self.link(name, now_s)
             if link is not None and link.stale and (link.age_s or 0.0) - self._stale_s < _TOLD_S:
@@ -131,6 +135,4 @@ class PublishedFrames:
 
 
 def _stale(name: str, age_s: float) -> str:
-    return (
-        f"the frame {name} is stale: nothing has come on {keys.frame_key(name)} for {wording.duration(age_s)}"
-    )
+    return f"the frame {name} is stale: no message on {keys.frame_key(name)} for {wording.duration(age_s)}"

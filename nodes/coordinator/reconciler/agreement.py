@@ -1,4 +1,4 @@
-"""Find what map and scene differ in, and describe it. Pure functions."""
+"""Finds and describes the differences of map and scene. Pure functions."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from semmap.schemas.scenes import Body
 
 
 class Agreement(NamedTuple):
-    """Whether map and scene are the same, and what they differ in, one sentence each."""
+    """Whether map and scene agree, and their differences, one sentence each."""
 
     holds: bool | None
-    """None where there is nothing to compare: no simulator runs, or the map is updated by perception only."""
+    """None if there is nothing to compare: no simulator runs, or only perception updates the map."""
     pending: tuple[str, ...] = ()
-    """Changes that the reconciler has yet to make, to the scene or to the map."""
+    """Actions that the reconciler has not completed yet."""
     displaced: tuple[str, ...] = ()
-    """Bodies that are away from their committed pose, or whose joints are."""
+    """Bodies that differ from their committed pose or joint positions."""
 
 
 def find_displaced(
@@ -29,14 +29,15 @@ def find_displaced(
     bodies: Mapping[str, Body],
     truth: Truth,
     thresholds: Thresholds,
-    unsaid: Container[str] = (),
+    without_state: Container[str] = (),
 ) -> tuple[str, ...]:
-    """Return the names of the bodies that are farther from their committed state than the thresholds.
+    """Return the names of the bodies that differ from their committed state by more than the thresholds.
 
-    It does not matter whether a body moves or stands, nor whether it has a live pose. An attached body is
-    where its holder takes it, and a part of a robot is named only if the robot is not. Where the map is
-    updated by perception only, just the robots of the simulator have a body to compare. The joints of
-    `unsaid` bodies do not count: the ontology of the map has no property for them.
+    It does not matter whether a body moves, or has a live pose. An attached body is placed by its holder, and
+    a part of a robot is named only if the robot is not.
+
+    If only perception updates the map, just the robots of the simulator are compared. The joints of
+    `without_state` bodies are ignored, because the ontology has no property for them.
     """
     found = [
         name
@@ -45,15 +46,15 @@ def find_displaced(
         and (truth != "perceived" or entity.tracked == "sim")
         and (
             _is_elsewhere(entity, body, thresholds)
-            or (body.joints and name not in unsaid and joints_differ(entity, body, thresholds))
+            or (body.joints and name not in without_state and joints_differ(entity, body, thresholds))
         )
     ]
-    all_of_them = {*found}
-    return tuple(name for name in sorted(found) if not _goes_with_a_whole(bodies[name], bodies, all_of_them))
+    all_found = {*found}
+    return tuple(name for name in sorted(found) if not _goes_with_a_whole(bodies[name], bodies, all_found))
 
 
 def describe_displaced(entity: Entity, body: Body, thresholds: Thresholds) -> str:
-    """Return how far a body is from its committed state, and whether it moves or stands there."""
+    """Return how far a body is from its committed state, and whether it moves."""
     moving = not body.resting
     if entity.pose is not None and _is_elsewhere(entity, body, thresholds):
         return describe_distance(entity.name, entity.pose, body.pose, thresholds, moving=moving)
@@ -73,18 +74,21 @@ def _does(moving: bool) -> str:
 
 
 def describe_pending(wanted: Actions, known: Container[str]) -> tuple[str, ...]:
-    """Return what the reconciler has yet to do, a sentence each.
+    """Return the remaining actions of the reconciler, one sentence each.
 
-    `known` names the bodies that it cannot make entities, or of whose joints the map cannot speak.
+    `known` names bodies that cannot become entities, or whose joints the map cannot store.
     """
     spawned = [order.name for order in wanted.spawn]
     adopted = [body.name for body in wanted.adopt if body.name not in known]
     return (
         *_each(spawned, "has no body yet"),
-        *_each((name for name in wanted.delete if name not in spawned), "has a body that is still to go"),
-        *_each((order.name for order in wanted.place), "is still to be placed at its committed pose"),
-        *_each((order.name for order in wanted.joints), "has joints that are still to move as committed"),
-        *_each((order.name for order in wanted.grips), "is still to be attached or detached as committed"),
+        *_each((name for name in wanted.delete if name not in spawned), "has a body that is not removed yet"),
+        *_each((order.name for order in wanted.place), "is not at its committed pose yet"),
+        *_each(
+            (order.name for order in wanted.joints),
+            "has joints that are not at their committed positions yet",
+        ),
+        *_each((order.name for order in wanted.grips), "is not attached or detached as committed yet"),
         *_each((order.name for order in wanted.follow), "has a new pose that is not committed yet"),
         *_each(
             (name for name in wanted.opened if name not in known),

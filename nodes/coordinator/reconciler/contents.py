@@ -1,4 +1,4 @@
-"""What drawers and doors move along: the bodies inside a thing with joints, by its box."""
+"""Finds the bodies inside a body with joints, which its drawers and doors move along."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _MARGIN_M = 0.02
 
 
 def find_contents(whole: Body, bodies: Iterable[Body]) -> list[str]:
-    """The loose bodies in the box around a thing, as far as its drawers go; by name."""
+    """Return the names of the loose bodies in the box around a body, including its open drawers."""
     x, y, z = whole.pose.position_m
     half = [side / 2.0 + _MARGIN_M + _travel(whole) for side in whole.size_m[:2]]
     far = math.hypot(half[0], half[1], whole.size_m[2])
@@ -30,6 +30,6 @@ def find_contents(whole: Body, bodies: Iterable[Body]) -> list[str]:
 
 
 def _travel(whole: Body) -> float:
-    """How far the longest of its drawers goes [m]."""
+    """Return the range of its longest drawer [m]."""
     ways = [abs(j.open_end - j.closed) for j in whole.joints if j.kind == "slide" and j.closed is not None]
     return max(ways, default=0.0)

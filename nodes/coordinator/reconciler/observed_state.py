@@ -1,4 +1,4 @@
-"""Where things have come to be, as a change of the map that takes its turn among the others."""
+"""Observed states of bodies, as a change of the map that is scheduled like a command."""
 
 from __future__ import annotations
 
@@ -25,26 +25,27 @@ from semmap.schemas.joints import (
 
 _DIGITS = 3
 _STAYED = 0.005
-"""A joint that is so near to where it was has not moved [rad, m]."""
+"""A joint that moved less than this has not changed [rad, m]."""
 
 
 class ObservedState(NamedTuple):
-    """The map is to take over where bodies rest (several, if a hand carried them), and how joints stand."""
+    """Poses of bodies at rest (several if moved together), joint positions and attachments to commit."""
 
     poses: Mapping[str, Pose]
     """By name; map frame, metres."""
     after: Mapping[str, tuple[int, int, int]]
-    """By name, the commits that pose, joints and grip of the entity were from when looked at; -1 for none.
+    """By name, the commits of pose, joints and attachment when they were compared; -1 for none.
 
-    An entity of which they are from others by now stays as it is."""
+    Entities that were changed since are not committed.
+    """
     joints: Mapping[str, tuple[Joint, ...]] = MappingProxyType({})
-    """By name, the joints of a body as they stand."""
+    """By name, the joints of a body."""
 
     source: Source = "scene"
     grips: Mapping[str, tuple[str, Pose | None]] = MappingProxyType({})
-    """By name, what holds a body, and where in the frame of that; "" for nothing."""
+    """By name, the holder of a body ("" for none) and the pose in the holder's frame."""
     reason: str = ""
-    """Why the map takes them over; without one they came to rest, or a hand put them there."""
+    """The reason of the commit; by default the bodies came to rest or were moved manually."""
 
     @classmethod
     def of(
@@ -56,17 +57,17 @@ class ObservedState(NamedTuple):
         reason: str = "",
         grips: Mapping[str, tuple[str, Pose | None]] = MappingProxyType({}),
     ) -> ObservedState:
-        """These entities are at `poses`, `joints` stand as they do, and `grips` hold what they hold."""
+        """Create it from the observed poses, joints and attachments of these entities."""
         after = {name: commits_of(entities[name]) for name in {**poses, **joints, **grips}}
         return cls(poses, after, joints, source, grips, reason)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The entities that it is about, those first whose joints took others along."""
+        """The entities it is about, first those whose joints moved others."""
         return tuple({**self.joints, **self.poses, **self.grips})
 
     def edits(self, entities: Mapping[str, Entity]) -> list[Edit]:
-        """What is to change of the entities that nobody has moved, opened or removed meanwhile."""
+        """Return the edits of the entities that were not changed or removed since."""
         return [
             self._edit(name)
             for name in self.names
@@ -86,7 +87,7 @@ class ObservedState(NamedTuple):
 
 
 def joint_statements(joints: tuple[Joint, ...]) -> tuple[Statement, ...]:
-    """What a map states of how joints stand."""
+    """Return the statements about joint positions."""
     switches = tuple(joint for joint in joints if joint.switches)
     others = tuple(joint for joint in joints if not joint.switches)
     found = []
@@ -102,7 +103,7 @@ def joint_statements(joints: tuple[Joint, ...]) -> tuple[Statement, ...]:
 
 
 def commits_of(entity: Entity) -> tuple[int, int, int]:
-    """The commits that an entity's pose, its joints and its grip are from; -1 for what it has not."""
+    """Return the commits of an entity's pose, joints and attachment; -1 for each that it does not have."""
     joints, grip = entity.joints_said, entity.grip_provenance
     return (
         -1 if entity.pose is None else entity.pose_provenance.commit,
@@ -114,15 +115,15 @@ def commits_of(entity: Entity) -> tuple[int, int, int]:
 def describe_joint_change(
     joints: tuple[Joint, ...], before: Mapping[str, object] = MappingProxyType({})
 ) -> str:
-    """What has become of a thing whose joints came to stand so: `was closed`, `was switched on`.
+    """Return in words what changed of joints: `was closed`, `was switched on`.
 
-    `before` is what the map stated of it until now: only of what is new something is told.
+    `before` has the previous statements of the map; only changes are described.
     """
     was = wanted(joints, before)
     moved = [j for j in joints if abs(j.position - was.get(j.name, j.initial)) > _STAYED]
-    told = moved or joints
-    switched = [joint for joint in told if joint.switches]
-    others = tuple(joint for joint in told if not joint.switches)
+    described = moved or joints
+    switched = [joint for joint in described if joint.switches]
+    others = tuple(joint for joint in described if not joint.switches)
     share = openness(joints)
     words = []
     if others and share is None:

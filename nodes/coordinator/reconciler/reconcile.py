@@ -1,18 +1,20 @@
-"""The reconciler: the actions that bring map and scene into agreement. A pure function, level-triggered.
+"""Compares map and scene, and returns the actions that bring them into agreement. A pure function.
 
-It looks only at how things are, never at how they came to be, so it also mends what was missed while any
-node was away. Who changed last wins: a body carries the number of the commit whose pose it was last ordered
-to take, an entity that of the commit which last changed its pose. If the map's is later, and did not itself
-come from the scene, the body is ordered there; otherwise a body that rests elsewhere was moved, and the map
-follows. The same goes for joints, and for what holds a body, by the commits that concern these; what is held
-is where its holder takes it, and neither is put anywhere nor followed.
+It is level-triggered: it looks only at the current states, so it also corrects what was missed while a node
+was away.
 
-If only perception updates the map (`perceived`), nothing is to be done: an entity without a body is a belief,
-a body without an entity has not been seen yet, and a pose that differs will be seen. Only a robot of the
-simulator becomes an entity, and what is tracked from there is followed, all the same. What is tracked from a
-stream never follows its body. Whatever the truth is, a robot of a simulator that has just begun is put where
-the map says that it last stood. If the map is `replayed`, every pose of it is an order, also those that came
-from the scene, and the map follows nothing.
+The last change wins. A body has the number of the commit whose pose it was last ordered to take, and an
+entity that of the commit which last changed its pose. If the map's number is higher, and its pose did not
+come from the scene, the body is placed. Otherwise a body that rests elsewhere was moved, and the map follows.
+The same rule applies to joints and attachments with their own commit numbers. An attached body is placed by
+its holder only.
+
+If only perception updates the map (`perceived`), entities need no bodies, and differences are left to
+perception. Only robots of the simulator become entities, and entities tracked from the simulator are
+followed. An entity that is tracked from a stream never follows its body.
+
+A robot of a new simulator is placed at its last committed pose. If the map is `replayed`, every pose is an
+order, also those that came from the scene, and the map follows nothing.
 """
 
 from __future__ import annotations
@@ -43,25 +45,25 @@ _EXACT = Thresholds(distance_m=0.001, angle_rad=0.002, share=0.001)
 
 
 class Actions(NamedTuple):
-    """What must be done: to the scene (`delete` before `spawn`), and to the map."""
+    """The actions: for the scene (`delete` before `spawn`), and for the map."""
 
     delete: tuple[str, ...] = ()
     spawn: tuple[BodyOrder, ...] = ()
     place: tuple[Placement, ...] = ()
     follow: tuple[Placement, ...] = ()
-    """Poses that the map takes over from the scene."""
+    """Poses that the map commits from the scene."""
     joints: tuple[JointOrder, ...] = ()
-    """Joints that the scene moves to where the map says."""
+    """Joints that the scene moves to their committed positions."""
     opened: tuple[str, ...] = ()
-    """Bodies of which the map takes over how their joints stand."""
+    """Bodies whose joint positions the map commits."""
     adopt: tuple[Body, ...] = ()
     """Bodies that become entities."""
     missing: tuple[str, ...] = ()
-    """Entities that the scene should have and does not; nothing is done about them."""
+    """Entities without the body that the scene should have; no action is taken."""
     grips: tuple[GripOrder, ...] = ()
-    """Bodies that are to be held, or let go, as the map says."""
+    """Bodies that are attached or detached as the map says."""
     gripped: tuple[str, ...] = ()
-    """Bodies of which the map takes over who holds them."""
+    """Bodies whose attachment the map commits."""
 
 
 def reconcile(
@@ -72,10 +74,10 @@ def reconcile(
     failed: Mapping[str, int] | None = None,
     there: Container[str] | None = None,
 ) -> Actions:
-    """The actions that bring map and scene together; none when they agree.
+    """Return the actions that bring map and scene into agreement; none if they agree.
 
-    `failed` names the entities whose body could not be made, with the commit of which it was tried: it is
-    not tried again before the entity changes.
+    `failed` maps entities whose body could not be created to the commit of the attempt. They are not tried
+    again before the entity changes.
     """
     if truth == "perceived":
         tracked = (e for e in entities.values() if e.tracked == "sim" and e.name in bodies)
@@ -130,9 +132,9 @@ def reconcile(
             elif not replayed and _is_attached_differently(entity, body, thresholds):
                 gripped.append(name)
             if holder_of(entity) or (body.held_by and name in gripped):
-                pass  # where it is follows from what holds it
+                pass  # its pose follows from its holder
             elif _must_restore(entity, body) and body.part_of:
-                pass  # it goes where the robot goes
+                pass  # it moves with the robot
             elif (
                 _must_restore(entity, body)
                 or _ordered_since(entity, body)
@@ -166,7 +168,7 @@ def reconcile(
 
 
 def body_order(entity: Entity, pose: Pose) -> BodyOrder:
-    """The body that an entity wants."""
+    """Return the order for the body of an entity."""
     return BodyOrder(
         name=entity.name,
         class_=entity.class_,
@@ -175,73 +177,73 @@ def body_order(entity: Entity, pose: Pose) -> BodyOrder:
         size_m=entity.size_m,
         fixed=entity.fixed,
         properties={
-            name: said
+            name: stated
             for name in STANDING
-            if isinstance(said := entity.properties.get(name), (bool, int, float, str))
+            if isinstance(stated := entity.properties.get(name), (bool, int, float, str))
         },
         commit=latest_commit(entity),
     )
 
 
 def _placement(entity: Entity) -> Placement:
-    """A body is put where the map says that the entity stands."""
+    """Return the placement of a body at the committed pose of its entity."""
     if entity.pose is None:
         raise errors.InternalError(f"{entity.name} has no pose")
     return Placement(name=entity.name, pose=entity.pose, commit=entity.pose_provenance.commit)
 
 
 def _must_restore(entity: Entity, body: Body) -> bool:
-    """Is it a robot, or a part of one, that has yet to be put where it stood when the simulator ended?"""
+    """Return whether a robot, or a part of one, has to be restored to its last pose after a restart."""
     return body.robot and body.commit < 0 and entity.pose is not None
 
 
 def joint_order(entity: Entity, body: Body) -> JointOrder:
-    """The positions that an entity wants of the joints of its body; none where they rest and suit it.
+    """Return the order for the joints of a body; it is empty if they rest at their committed positions.
 
-    What suits it and moves may be on its way to somewhere else, by an earlier order. A word is done to the
-    letter: the thresholds are for what a hand leaves.
+    A moving joint may be on its way to an earlier target, so it is always ordered. The target is exact: the
+    thresholds apply only to manual changes.
     """
-    said = entity.joints_said
+    stated = entity.joints_said
     suits = body.resting and not joints_differ(entity, body, _EXACT)
     return JointOrder(
         name=entity.name,
         positions={} if suits else wanted(body.joints, entity.properties),
-        commit=said.commit if said is not None else entity.provenance.commit,
+        commit=stated.commit if stated is not None else entity.provenance.commit,
     )
 
 
 def grip_order(entity: Entity) -> GripOrder:
-    """What an entity wants its body to be held by: another body, or none."""
-    said = entity.grip_provenance or entity.provenance
-    return GripOrder(name=entity.name, holder=holder_of(entity), grip=grip_of(entity), commit=said.commit)
+    """Return the order to attach or detach the body of an entity."""
+    stated = entity.grip_provenance or entity.provenance
+    return GripOrder(name=entity.name, holder=holder_of(entity), grip=grip_of(entity), commit=stated.commit)
 
 
 def _grip_ordered_since(entity: Entity, body: Body, *, any_source: bool = False) -> bool:
-    """Has the map said since what holds it? So it has where nobody has told the body yet."""
-    said = entity.grip_provenance
-    if said is None:
+    """Return whether the map changed the attachment after the body, which may not have had any order yet."""
+    stated = entity.grip_provenance
+    if stated is None:
         return False
     if body.grip_commit < 0:
         return bool(holder_of(entity))
-    return (any_source or said.source != "scene") and said.commit > body.grip_commit
+    return (any_source or stated.source != "scene") and stated.commit > body.grip_commit
 
 
 def _is_attached_differently(entity: Entity, body: Body, thresholds: Thresholds) -> bool:
-    """Is a body held by something else than the map says, or otherwise?"""
+    """Return whether the attachment of a body differs from that in the map."""
     if body.held_by != holder_of(entity):
         return True
     if body.grip is None:
         return False
-    said = grip_of(entity)
+    stated = grip_of(entity)
     return (
-        said is None
-        or distance_m(said, body.grip) > thresholds.distance_m
-        or angle_rad(said, body.grip) > thresholds.angle_rad
+        stated is None
+        or distance_m(stated, body.grip) > thresholds.distance_m
+        or angle_rad(stated, body.grip) > thresholds.angle_rad
     )
 
 
 def latest_commit(entity: Entity) -> int:
-    """The commit that last changed anything which concerns the body."""
+    """Return the last commit that changed anything about the body."""
     joints = entity.joints_said
     latest = max(entity.pose_provenance.commit, entity.shape_provenance.commit)
     return latest if joints is None else max(latest, joints.commit)
@@ -257,16 +259,16 @@ def joints_differ_from_model(body: Body, thresholds: Thresholds) -> bool:
     return bool(body.joints) and _joints_differ_from({}, body, thresholds)
 
 
-def _joints_differ_from(said: Mapping[str, object], body: Body, thresholds: Thresholds) -> bool:
-    roughly_open = IS_OPEN in said and said.keys().isdisjoint((OPENNESS, JOINT_POSITIONS))
-    roughly_on = IS_SWITCHED_ON in said and SWITCH_POSITIONS not in said
+def _joints_differ_from(stated: Mapping[str, object], body: Body, thresholds: Thresholds) -> bool:
+    roughly_open = IS_OPEN in stated and stated.keys().isdisjoint((OPENNESS, JOINT_POSITIONS))
+    roughly_on = IS_SWITCHED_ON in stated and SWITCH_POSITIONS not in stated
     share, on = openness(body.joints), is_on(body.joints)
-    if roughly_open and share is not None and (share > OPEN_FROM) != said[IS_OPEN]:
+    if roughly_open and share is not None and (share > OPEN_FROM) != stated[IS_OPEN]:
         return True
-    if roughly_on and on is not None and on != said[IS_SWITCHED_ON]:
+    if roughly_on and on is not None and on != stated[IS_SWITCHED_ON]:
         return True
     exact = [joint for joint in body.joints if not (roughly_on if joint.switches else roughly_open)]
-    goals = wanted(exact, said)
+    goals = wanted(exact, stated)
     return any(
         joint.name in goals and abs(joint.position - goals[joint.name]) > _tolerance(joint, thresholds)
         for joint in exact
@@ -274,16 +276,18 @@ def _joints_differ_from(said: Mapping[str, object], body: Body, thresholds: Thre
 
 
 def _tolerance(joint: Joint, thresholds: Thresholds) -> float:
-    """How far a joint may be from where the map says [rad, m]."""
+    """Return the tolerance of a joint [rad, m]."""
     if joint.has_ends:
         return thresholds.share * abs(joint.open_end - joint.position_at(0.0))
     return thresholds.distance_m if joint.kind == "slide" else thresholds.angle_rad
 
 
 def _joints_ordered_since(entity: Entity, body: Body, *, any_source: bool = False) -> bool:
-    """Has the map said since how they are to stand: by anybody but the scene, or by `whoever`?"""
-    said = entity.joints_said
-    return said is not None and (any_source or said.source != "scene") and said.commit > body.joint_commit
+    """Return whether the map changed the joints after the body; `any_source` includes the scene."""
+    stated = entity.joints_said
+    return (
+        stated is not None and (any_source or stated.source != "scene") and stated.commit > body.joint_commit
+    )
 
 
 def _reshaped(entity: Entity, body: Body) -> bool:
@@ -291,7 +295,7 @@ def _reshaped(entity: Entity, body: Body) -> bool:
 
 
 def _comes_with(entity: Entity, body: Body, coming: Set[int]) -> bool:
-    """Does one commit put it elsewhere and bring others? All are set down together, what carries first."""
+    """Return whether one commit moves an entity and adds others; all are then placed together."""
     return body.entity and _ordered_since(entity, body) and entity.pose_provenance.commit in coming
 
 

@@ -1,4 +1,4 @@
-"""Waits until the contents of a thing, or the parts of a robot, rest; with an end. It reads no clock."""
+"""Limits the waits for contents, or for parts of a robot, to come to rest. Reads no clock."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 from semmap.schemas.scenes import Body
 
 CALM_S: Final = 2.0
-"""Simulated time for which the map waits: whether a body rests is judged in simulated time, too."""
+"""The longest wait, in simulated time, because rest is also judged in simulated time."""
 
 
 class _Wait(NamedTuple):
@@ -17,7 +17,7 @@ class _Wait(NamedTuple):
 
 
 class RestWaits:
-    """Since when things have been waited for, each by the name of the whole [s of simulated time]."""
+    """The start of each wait [s of simulated time], by the name of the whole."""
 
     def __init__(self) -> None:
         self._waits: dict[str, _Wait] = {}

@@ -1,4 +1,4 @@
-"""Batches in which bodies are ordered from the simulator."""
+"""Splits orders for new bodies into batches."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ _USUAL_AREA_M2 = 0.1
 
 
 def split_orders(orders: Sequence[BodyOrder]) -> Iterator[tuple[BodyOrder, ...]]:
-    """The orders in batches, what is wide first, so that a large map appears bit by bit.
+    """Yield the orders in batches, wide bodies first, so that a large map appears step by step.
 
-    Each doubles what is there: for each the simulator compiles everything anew. Within a batch it sees to it
-    itself that supports come before what stands on them.
+    Each batch doubles the scene, because the simulator recompiles the whole model for each. Within a batch
+    the simulator places supports before the objects on them.
     """
     if len(orders) > BATCH:
         orders = sorted(orders, key=lambda order: -_area_m2(order))

@@ -1,4 +1,4 @@
-"""Attaching and detaching: changes of the map that the scene follows, and of the scene where that owns it."""
+"""Attach and detach: changes of the map that the scene follows, or of the scene if that is the truth."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from semmap.schemas.scenes import Grip, GripOrder, Gripped
 
 
 class AttachCommands:
-    """Executes `attach` and `detach`; the coordinator's thread owns it."""
+    """Executes `attach` and `detach`. Owned by the coordinator's thread."""
 
     def __init__(
         self,
@@ -31,7 +31,7 @@ class AttachCommands:
         ask: AskSim,
         ask_map: AskSim,
     ) -> None:
-        """`change` changes the map in its turn, `ask` asks the simulator, and `ask_map` the knowledge base.
+        """`change` changes the map, `ask` calls the simulator, and `ask_map` the knowledge base.
 
         None of them waits.
         """
@@ -43,7 +43,7 @@ class AttachCommands:
         self._ask_map = ask_map
 
     def attach(self, command: c.Attach) -> Future[Changed]:
-        """Have an entity held. Raises Refused where it cannot be."""
+        """Attach an entity. Raises Refused if that is not possible."""
         require_carry(command)
         view = self._dispatcher.map
         entity, holder = (
@@ -68,23 +68,23 @@ class AttachCommands:
         return and_then(self._ask_map(LoadOf(name=entity.name, leave=command.leave)), with_load)
 
     def detach(self, command: c.Detach) -> Future[Changed]:
-        """Let go of what something holds, and of what was taken with it."""
+        """Detach an entity, and what was attached together with it."""
         view = self._dispatcher.map
         entity = view.entity(command.name)
         along = attachment_rules.find_attached_with(entity, view.held)
         return self._attach_in_scene(command, tuple(GripOrder(name=name) for name in (entity.name, *along)))
 
     def _must_change_scene_first(self, command: c.Attach | c.Detach, concerned: Iterable[str]) -> bool:
-        """Whether it is done in the scene first, because the map follows that."""
+        """Return whether the scene is changed first, because the map follows it."""
         return not command.dry_run and self._truth != "map" and self._scene.bodies.keys() >= set(concerned)
 
     def _attach_in_scene(
         self, command: c.Attach | c.Detach, orders: tuple[GripOrder, ...]
     ) -> Future[Changed]:
-        """First in the scene, if that does not follow the map, and then in the map."""
+        """Change the scene first if it does not follow the map, then the map."""
         if self._truth == "replayed":
             raise errors.Refused(
-                "this scene is a replay of the past, and nothing in it can be taken or let go"
+                "this scene is a replay of the past; nothing in it can be attached or detached"
             )
         concerned = {name for order in orders for name in (order.name, order.holder or order.name)}
         if not self._must_change_scene_first(command, concerned):

@@ -1,6 +1,6 @@
-"""Orders to bodies that the map has yet to follow: replies that wait for the commit, and what undo stops.
+"""Orders to bodies whose result is not committed yet: waiting replies, and orders that undo can stop.
 
-An order (`move`, `open`, `close`, `drive`) is under way until its body rests and the map has followed.
+An order (`move`, `open`, `close`, `drive`) is pending until its body rests and the map has followed.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ Order = Move | Open | Close | Drive
 Answer = Moved | errors.SemmapError
 
 WAIT_S = 30.0
-"""So long a reply waits for a body to rest: what rolls or swings on is committed later."""
-PAUSED = "time is paused: the map follows when it runs again (semmap pause --off)"
+"""Longest wait of a reply for a body to rest; a body that rolls on is committed later."""
+PAUSED = "time is paused: the map is updated when it runs again (semmap pause --off)"
 _DOING = {"move": "the move of", "open": "opening", "close": "closing", "drive": "the drive of"}
 
 
@@ -45,37 +45,37 @@ class Timed(Protocol):
 
 @dataclass
 class PendingOrder:
-    """An order that the simulator has carried out, or is carrying out."""
+    """An order that the simulator has executed or is executing."""
 
     command: Order
     names: frozenset[str]
-    """The body and what is carried with it."""
+    """The body and its carried contents."""
     run: str
-    """Which simulator has the order."""
+    """The id of the simulator's process that has the order."""
     before: int | None
-    """The commit that the pose is from when the order came; None for what is not in the map."""
+    """The commit of the pose before the order; None for a body that is not in the map."""
     immediate: Moved
-    """The reply to those who do not wait."""
+    """The immediate reply."""
     tell: Callable[[Body], str]
-    """The reply to those who wait, given the body at rest."""
+    """Returns the text of the final reply from the body at rest."""
     until_s: float
     reply: Future[Moved] | None = None
-    """For those who wait."""
+    """The waiting reply, if any."""
     after_ns: int | None = None
-    """Earlier poses do not count; None while a course is driven, whose end the simulator reports."""
+    """Earlier poses are ignored. None during a drive, whose end the simulator reports."""
     commit: int | None = None
 
     @property
     def name(self) -> str:
-        """The body that the order is about."""
+        """The body of the order."""
         return self.command.name
 
 
 class Completion:
-    """Owned by the coordinator's thread, which calls `answer_waiting` whenever scene or map have changed."""
+    """Owned by the coordinator's thread, which calls `answer_waiting` when scene or map have changed."""
 
     def __init__(self, truth: Truth, dispatcher: CommandDispatcher, reconciler: Reconciler) -> None:
-        """Nothing is under way."""
+        """Start without pending orders."""
         self._truth = truth
         self._dispatcher = dispatcher
         self._reconciler = reconciler
@@ -91,9 +91,9 @@ class Completion:
         done: Timed | None,
         load: Collection[str] = (),
     ) -> Moved | Future[Moved]:
-        """Reply to an order once the map has followed, or at once if nobody waits or time is paused.
+        """Reply to an order when the map has followed, or immediately if time is paused or no wait is wanted.
 
-        `done` is the simulator's reply, None while a course is driven: `arrive` follows then.
+        `done` is the simulator's reply. It is None during a drive, for which `arrive` is called later.
         """
         order = self._register(command, immediate, tell, load)
         if done is not None:
@@ -106,7 +106,7 @@ class Completion:
         return order.reply
 
     def arrive(self, command: Drive, text: str, done: Timed) -> None:
-        """Note that a course has ended: `text` says how, and the reply waits for the commit."""
+        """Note that a drive has ended; the reply waits for the commit and has the text `text`."""
         if (order := self._find(command)) is None:
             return
         order.after_ns, order.until_s = done.stamp_ns, time.monotonic() + WAIT_S
@@ -116,7 +116,7 @@ class Completion:
             self._answer(order, _paused(order.immediate))
 
     def fail(self, command: Drive, error: errors.SemmapError, done: Timed | None = None) -> None:
-        """Answer an order that the simulator did not carry out; with `done` the body may have moved."""
+        """Fail an order that the simulator did not execute; with `done`, the body may have moved."""
         if (order := self._find(command)) is None:
             return
         self._answer(order, error)
@@ -126,7 +126,7 @@ class Completion:
             self._end(order)
 
     def watch(self, change: Callable[[C], Future[Changed]]) -> Callable[[C], Future[Changed]]:
-        """Return `change`, such that the commits by which the map follows a body are noticed."""
+        """Wrap `change` to notice the commits by which the map follows a body."""
 
         def watched(wanted: C) -> Future[Changed]:
             made = change(wanted)
@@ -138,7 +138,7 @@ class Completion:
         return watched
 
     def answer_waiting(self) -> None:
-        """Answer those whose body rests and whose map has followed; forget what has ended."""
+        """Reply to the orders whose body rests and whose map has followed, and remove ended orders."""
         for order in [*self._pending]:
             if (answer := self._judge(order)) is None:
                 continue
@@ -146,23 +146,23 @@ class Completion:
             self._end(order)
 
     def pause(self) -> None:
-        """Answer those who wait for what does not happen while time stands still."""
+        """Reply to orders that cannot complete while time is paused."""
         self._paused = True
         for order in self._pending:
-            if order.after_ns is not None:  # the simulator itself answers those who wait for a course
+            if order.after_ns is not None:  # the simulator itself replies to drives
                 self._answer(order, _paused(order.immediate))
 
     def resume(self) -> None:
-        """Give all that is under way as long as ever from now on."""
+        """Renew the deadlines of all orders when time runs again."""
         self._paused = False
         self._dispatcher.manual_moves.renew()
         for order in self._pending:
             order.until_s = time.monotonic() + WAIT_S
 
     def stop(self, command: Undo, halt: Callable[[str], Future[Pose]]) -> Future[Changed] | None:
-        """Stop the newest order that has yet to be committed; None if an undo is about commits.
+        """Stop the newest order that is not committed yet; None if the undo is about commits.
 
-        `halt(name)` ends a robot's course. Bodies go back to where the map has them.
+        `halt(name)` stops a drive. Other bodies return to their committed state.
         """
         if command.id and self._stopped is not None and self._stopped[0] == command.id:
             again: Future[Changed] = SingleThreadFuture()
@@ -177,10 +177,10 @@ class Completion:
         self._end(order)
         self._dispatcher.manual_moves.forget(order.names)
         if isinstance(order.command, Move):
-            text, returned = f"{what}: it goes back to where the map has it", self._reconciler.return_bodies
+            text, returned = f"{what}: it returns to its committed pose", self._reconciler.return_bodies
         else:
             text, returned = (
-                f"{what}: its joints go back to where the map has them",
+                f"{what}: its joints return to their committed positions",
                 self._reconciler.return_joints,
             )
         return then(returned(order.names), lambda _: self._note(command, order, text))
@@ -192,7 +192,7 @@ class Completion:
         return changed
 
     def _newest(self, command: Undo) -> PendingOrder | None:
-        """The newest order that this undo may stop: what is being committed is undone by a commit."""
+        """Return the newest order that this undo may stop; one that is being committed is not among them."""
         for order in reversed(self._pending):
             is_lesser = command.source in LESSER and order.command.source not in LESSER
             is_known = order.commit is not None or self._reconciler.is_following(order.names)
@@ -230,7 +230,7 @@ class Completion:
         return next((order for order in self._pending if order.command is command), None)
 
     def _is_about(self, order: PendingOrder, observed: ObservedState) -> bool:
-        """Is it this order that the map follows? Poses from before it are not its own."""
+        """Return whether an observed change is the result of this order; older poses are not."""
         is_newer = order.after_ns is not None and self._reconciler.scene.stamp_ns >= order.after_ns
         return is_newer and not order.names.isdisjoint(observed.names)
 
@@ -244,7 +244,7 @@ class Completion:
                 self._answer(order, type(error)(text, explanation=error.explanation))
 
     def _judge(self, order: PendingOrder) -> Answer | None:
-        """The answer to an order as things are; None as long as it has to be waited for."""
+        """Return the reply to an order in the current state; None while it has to wait."""
         if order.after_ns is None:
             return None
         scene, name = self._reconciler.scene, order.name
@@ -261,8 +261,8 @@ class Completion:
             notes = () if order.commit is not None else (self._why_none(order, entity),)
             return Moved(name=name, text=order.tell(body), commit=order.commit, notes=notes)
         if is_late:
-            moving = f"no commit yet: {name} is still moving; the map follows when it rests"
-            held_up = f"no commit yet: {name} rests, and the map has still to follow"
+            moving = f"no commit yet: {name} is still moving; the map is updated when it rests"
+            held_up = f"no commit yet: {name} rests, but the map is not updated yet"
             notes = () if order.commit is not None else (held_up if is_new and body.resting else moving,)
             return structs.replace(order.immediate, commit=order.commit, notes=notes)
         return None
@@ -272,12 +272,12 @@ class Completion:
         if entity is None:
             return f"no commit: {name} is not in the map"
         if entity.tracked == "stream":
-            return f"no commit: the map has {name} where its live poses are"
+            return f"no commit: the pose of {name} in the map comes from its live poses"
         if self._truth == "perceived" and entity.tracked != "sim":
             return "no commit: the map is updated by perception only"
         if (since := _posed_by(entity)) != order.before:
             return f"no commit: commit {since} has changed the position of {name} since"
-        return f"no commit: {name} rests where the map has it"
+        return f"no commit: {name} rests at its committed pose"
 
     def _answer(self, order: PendingOrder, answer: Answer) -> None:
         reply, order.reply = order.reply, None
@@ -289,7 +289,7 @@ class Completion:
             reply.set_result(answer)
 
     def _end(self, order: PendingOrder) -> None:
-        """What rests is no longer in the hand; what moves on still is, and so are reasons for its commit."""
+        """Remove an order. A body that still moves keeps its attribution for the later commit."""
         if order in self._pending:
             self._pending.remove(order)
         body = self._reconciler.scene.bodies.get(order.name)

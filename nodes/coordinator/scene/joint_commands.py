@@ -1,4 +1,4 @@
-"""JointCommands and closing by hand: joints are set moving, and replies may wait until they stand."""
+"""Commands that open and close: they move joints, and replies may wait until the joints rest."""
 
 from __future__ import annotations
 
@@ -16,30 +16,30 @@ from semmap.schemas.replies import Moved
 from semmap.schemas.scenes import Body, JointOrder, JointsMoving, MoveJoints
 
 _THERE = 0.02
-"""Of its way: so near to where it was sent, a joint has arrived."""
+"""Fraction of the range: a joint this close to its target has arrived."""
 
 
 class JointCommands:
-    """Executes `open` and `close`; the coordinator's thread owns it."""
+    """Executes `open` and `close`. Owned by the coordinator's thread."""
 
     def __init__(
         self, dispatcher: CommandDispatcher, reconciler: Reconciler, completion: Completion, ask: AskSim
     ) -> None:
-        """`ask(call)` asks the simulator, without waiting."""
+        """`ask(call)` sends a request to the simulator and does not wait."""
         self._dispatcher = dispatcher
         self._reconciler = reconciler
         self._completion = completion
         self._ask = ask
 
     def move(self, command: c.Open | c.Close) -> Future[Moved]:
-        """Set the joints of a body moving. Raises Refused for what has none; NoAnswer without a simulator."""
+        """Move the joints of a body. Raises Refused if it has none; NoAnswer without a simulator."""
         body = self._reconciler.scene.bodies.get(command.name)
         if body is None:
             entity = self._dispatcher.map.entity(command.name)
             state = self._reconciler.body_state(entity)
             if not self._reconciler.scene.known:
                 raise errors.NoAnswer(
-                    f"no simulator is running; to state it: semmap set {entity.name} isOpen"
+                    f"no simulator is running; to change only the map: semmap set {entity.name} isOpen"
                     f" {_is_open(command)}"
                 )
             raise errors.Refused(
@@ -72,12 +72,12 @@ def _is_open(command: c.Open | c.Close) -> str:
 
 
 def _moves(command: c.Open | c.Close, joint: Joint) -> bool:
-    """Does a command move this joint? Switches it does only by name."""
+    """Return whether a command moves this joint; switches are moved only by name."""
     return joint.name == command.joint if command.joint else joint.opens
 
 
 def _require_joints(command: c.Open | c.Close, body: Body) -> None:
-    """Raises Refused where nothing opens."""
+    """Raise Refused if no joint opens anything."""
     opening = [joint.name for joint in body.joints if joint.opens]
     switches = [joint.name for joint in body.joints if joint.switches]
     if not opening and command.joint not in switches:
@@ -101,7 +101,7 @@ def _on_its_way(command: c.Open | c.Close, switch: str) -> str:
 
 
 def _arrived(command: c.Open | c.Close, body: Body) -> str:
-    """How the joints stand that were moved; and which did not get there."""
+    """Return the positions of the moved joints, and which of them did not reach their target."""
     moved = [joint for joint in body.joints if _moves(command, joint)]
     text = f"{body.name}: {', '.join(map(in_words, moved))}"
     short = [joint.name for joint in moved if abs((joint.share or 0.0) - _share(command)) > _THERE]

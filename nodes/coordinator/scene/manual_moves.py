@@ -1,4 +1,4 @@
-"""Manual moves: the new pose of such a body is attributed to the client that moved it."""
+"""Manual moves: attributes the new pose of a body to the client that moved it."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from semmap.schemas.commands import Close, Drive, Move, Open
 from semmap.schemas.errors import NoAnswer
 
 _RESTS_WITHIN_S = 60.0
-"""Longer than a reply waits for rest; what rests and is not followed is forgotten before."""
+"""Longer than a reply waits for rest. Later changes are not attributed to the move."""
 _DONE = {"move": "moved", "open": "opened", "close": "closed"}
 
 
 class Attribution(NamedTuple):
-    """On whose behalf a body was moved, and why. Without a verb it was nobody: physics did it."""
+    """Who moved a body, and why. Without a verb, it moved by physics alone."""
 
     verb: str
     agent: str
     reason: str
     group: frozenset[str] = frozenset()
-    """The bodies that it carried together; the map follows all of them at once."""
+    """The bodies that were moved together; their poses are committed together."""
 
 
 class ManualMoves:
-    """The bodies that hands let go of and whose resting place the map has not taken over yet."""
+    """The moved bodies whose new poses are not committed yet."""
 
     def __init__(self) -> None:
         self._released: dict[str, tuple[Attribution, float]] = {}
@@ -36,52 +36,54 @@ class ManualMoves:
     def register(
         self, command: Move | Open | Close | Drive, load: Collection[str] = (), reason: str = ""
     ) -> None:
-        """A hand let go of a body, and of what it carried along with it; `reason` where none is given."""
+        """Register the move of a body and its contents; `reason` is used if the command has none."""
         group = frozenset((command.name, *load)) if load else frozenset[str]()
         if isinstance(command, Drive):
             reason, until_s = command.reason or f"{command.name} was driven", math.inf
         else:
             reason = command.reason or reason or f"{command.name} was {_DONE[command.VERB]} by hand"
             until_s = time.monotonic() + _RESTS_WITHIN_S
-        cause = Attribution(command.VERB, command.agent, reason, group)
+        attribution = Attribution(command.VERB, command.agent, reason, group)
         for name in (command.name, *load):
-            self._released[name] = (cause, until_s)
+            self._released[name] = (attribution, until_s)
 
     def renew(self) -> None:
-        """Simulated time runs again: what was let go has as long as ever to come to rest."""
+        """Renew the deadlines when simulated time runs again."""
         until_s = time.monotonic() + _RESTS_WITHIN_S
-        self._released = {n: (cause, max(until_s, was_s)) for n, (cause, was_s) in self._released.items()}
+        self._released = {
+            n: (attribution, max(until_s, was_s)) for n, (attribution, was_s) in self._released.items()
+        }
 
     def forget(self, names: Collection[str]) -> None:
-        """These bodies rest where the map has them: what moves them next is not what moved them last."""
+        """Forget the moves of bodies whose poses are committed; later changes have another attribution."""
         for name in names:
             self._released.pop(name, None)
 
     def group_of(self, name: str) -> frozenset[str]:
-        """Who was carried together with a body and is still to be followed with it, itself among them."""
-        cause, until_s = self._released.get(name, (None, 0.0))
-        if cause is None or time.monotonic() > until_s:
+        """Return the bodies moved together with a body, itself included, that are not committed yet."""
+        attribution, until_s = self._released.get(name, (None, 0.0))
+        if attribution is None or time.monotonic() > until_s:
             return frozenset()
-        return frozenset(n for n in cause.group if self._released.get(n, (None, 0.0))[0] is cause)
+        return frozenset(n for n in attribution.group if self._released.get(n, (None, 0.0))[0] is attribution)
 
     @contextmanager
     def attribution_of(self, *names: str) -> Iterator[Attribution]:
-        """The cause because of which a body rests where it does, or several do that it carried together.
+        """Yield the attribution of the new pose of a body, or of several that were moved together.
 
-        It is forgotten when the map has accepted or refused the new place, and kept for the next attempt when
-        the map did not answer (NoAnswer).
+        It is forgotten when the map has accepted or rejected the pose. It is kept for the next attempt if the
+        map did not respond (NoAnswer).
         """
         moved = next((name for name in names if name in self._released), names[0])
-        cause, until_s = self._released.pop(moved, (None, 0.0))
-        if cause is None or time.monotonic() > until_s:
+        attribution, until_s = self._released.pop(moved, (None, 0.0))
+        if attribution is None or time.monotonic() > until_s:
             yield Attribution("", "", f"{wording.few(names)} came to rest")
             return
-        for name in cause.group:
-            if self._released.get(name, (None, 0.0))[0] is cause:
+        for name in attribution.group:
+            if self._released.get(name, (None, 0.0))[0] is attribution:
                 del self._released[name]
         try:
-            yield cause
+            yield attribution
         except NoAnswer:
-            for name in cause.group or names:
-                self._released.setdefault(name, (cause, time.monotonic() + _RESTS_WITHIN_S))
+            for name in attribution.group or names:
+                self._released.setdefault(name, (attribution, time.monotonic() + _RESTS_WITHIN_S))
             raise

@@ -1,4 +1,4 @@
-"""Commands to the scene: move, pause, step, reset, picture."""
+"""Commands to the scene: move, drive, pause, step, reset, picture."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _LIFTED_M = 0.02
 
 
 class SceneCommands:
-    """Passes them on to the simulator. Raises NoAnswer when none runs."""
+    """Forwards commands to the simulator. Raises NoAnswer if none is running."""
 
     def __init__(
         self,
@@ -48,7 +48,7 @@ class SceneCommands:
         ask: AskSim,
         ask_map: AskSim,
     ) -> None:
-        """`ask(call)` asks the simulator, `ask_map(call)` the knowledge base, without waiting."""
+        """`ask(call)` calls the simulator, `ask_map(call)` the knowledge base. Neither waits."""
         self._truth = truth
         self._dispatcher = dispatcher
         self._reconciler = reconciler
@@ -57,10 +57,10 @@ class SceneCommands:
         self._ask_map = ask_map
 
     def move(self, command: c.Move) -> Future[Moved]:
-        """Take a body and put it elsewhere, as a hand would; with what it bears, if that is wanted."""
+        """Move a body manually, with its contents if wanted."""
         require_carry(command)
         if self._truth == "replayed":
-            raise errors.Refused("this scene is a replay of the past, and nothing in it can be moved by hand")
+            raise errors.Refused("this scene is a replay of the past; nothing in it can be moved")
         body = self._reconciler.scene.bodies.get(command.name)
         if body is None:
             state = self._reconciler.body_state(self._dispatcher.map.entity(command.name))
@@ -104,9 +104,9 @@ class SceneCommands:
         return and_then(self._ask(order), moved)
 
     def drive(self, command: c.Drive) -> Future[Moved]:
-        """Drive a robot's base. Raises Refused for what cannot drive, and where it gets no further."""
+        """Drive a robot's base. Raises Refused if it cannot drive or is blocked."""
         if bool(command.to) is command.stop:
-            raise errors.BadRequest("say where to drive (--to X Y), or --stop")
+            raise errors.BadRequest("missing target; use --to X Y, or --stop")
         if command.name not in self._reconciler.scene.bodies and self._reconciler.scene.known:
             state = self._reconciler.body_state(self._dispatcher.map.entity(command.name))
             raise errors.Refused(f"{command.name} has no body to drive: {state.detail or state.status}")
@@ -119,7 +119,7 @@ class SceneCommands:
         return self._reconciler.when_placed(command.name, lambda: begin(command, order))
 
     def _drive(self, command: c.Drive, order: DriveBase) -> Future[Moved]:
-        """Reply when the course has begun, or when the robot has stopped."""
+        """Reply when the drive has begun, or when the robot has stopped."""
 
         def driven(reply: Driven) -> Moved | Future[Moved]:
             self._dispatcher.manual_moves.register(command)
@@ -129,7 +129,7 @@ class SceneCommands:
         return and_then(self._ask_scene(order), driven)
 
     def _drive_there(self, command: c.Drive, order: DriveBase) -> Future[Moved]:
-        """Reply when the course has ended and the map has followed."""
+        """Reply when the drive has ended and the map has followed."""
         asked = self._ask_scene(order)
         self._dispatcher.manual_moves.register(command)
         immediate = Moved(name=command.name, text=f"{command.name} is on its way")
@@ -162,7 +162,7 @@ class SceneCommands:
         return change(command) if stopped is None else stopped
 
     def pause(self, command: c.Pause) -> Future[Done]:
-        """Stop or start time."""
+        """Pause or resume simulated time."""
 
         def paused(done: Done) -> Done:
             if command.off:
@@ -174,20 +174,20 @@ class SceneCommands:
         return then(self._ask_scene(command), paused)
 
     def step(self, command: c.StepOnce) -> Future[Done]:
-        """Let a little time pass."""
+        """Advance simulated time by one step."""
         return self._ask_scene(command)
 
     def reset(self, command: c.Reset) -> Future[Done]:
-        """Put every body back to where the map says, or, when the map only perceives, to where it began."""
+        """Put every body back to its committed pose or, with `perceived`, to its initial pose."""
         if self._truth == "perceived":
             return self._ask_scene(command)
         return then(
             self._reconciler.place_all(),
-            lambda reply: Done(text=f"put back where the map says: {wording.bodies(len(reply.bodies))}"),
+            lambda reply: Done(text=f"put back to committed poses: {wording.bodies(len(reply.bodies))}"),
         )
 
     def render(self, command: c.TakePicture) -> Future[Picture]:
-        """What a camera sees."""
+        """Render the image of a camera."""
         if command.camera and command.place:
             raise errors.BadRequest("give either a camera or a place")
         query = PictureQuery(
@@ -200,7 +200,7 @@ class SceneCommands:
         return self._ask_scene(query)
 
     def _box_of(self, name: str) -> tuple[Vector, Vector]:
-        """Lowest and highest corner of a place. Raises UnknownName; Refused for what is no place."""
+        """Return the lowest and highest corner of a place. Raises UnknownName, or Refused for an object."""
         entity = self._dispatcher.map.entity(name)
         if not entity.place or entity.pose is None or entity.size_m is None:
             raise errors.Refused(f"{entity.name} is not a place with a position and a size")
@@ -217,11 +217,11 @@ class SceneCommands:
 
 
 def _describe_drive(driven: Driven) -> str:
-    """What has become of a course. Raises Refused where it did not lead there."""
+    """Return the result of a drive. Raises Refused if it did not reach its target."""
     x, y, _ = driven.pose.position_m
     where = f"({x:.2f}, {y:.2f})"
     if driven.outcome == "blocked":
-        raise errors.Refused(f"{driven.name} gets no further than {where}: something is in its way")
+        raise errors.Refused(f"{driven.name} is blocked at {where} by an obstacle")
     if driven.outcome == "fallen":
         raise errors.Refused(f"{driven.name} {wording.fallen(driven.name, driven.pose)}")
     said = {"driving": "is on its way from", "there": "is at", "stopped": "stopped at"}[driven.outcome]
@@ -229,13 +229,13 @@ def _describe_drive(driven: Driven) -> str:
 
 
 def _describe_rest(body: Body) -> str:
-    """Where a body has come to rest."""
+    """Return where a body has come to rest."""
     where = "({:g}, {:g}, {:g})".format(*(round(c, 3) + 0.0 for c in body.pose.position_m))
     return f"moved {body.name} to {where}" + (f", where it {describe_ghost(body)}" if body.ghost else "")
 
 
 def _describe_release(command: c.Move, body: Body) -> str:
-    """Where the hand let go: where it was told to, or above, where there is room."""
+    """Return where a body was released: at the given position, or above it where there is room."""
     (x, y, z), room_z_m = command.at, body.pose.position_m[2]
     if body.ghost:
         return f"put {body.name} at ({x:g}, {y:g}, {z:g}), where it {describe_ghost(body)}"

@@ -1,4 +1,4 @@
-"""Plans and ways: the knowledge base works them out, once the simulator has told where the walls are."""
+"""Floor plans and routes: the knowledge base computes them with the walls of the simulated world."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from semmap.schemas.plans import Outline, Plan, WallsQuery, Way
 
 R = TypeVar("R")
 Walls = tuple[Outline, ...] | None
-"""None where nobody knows them."""
+"""None if they are unknown."""
 
 
 class WallQueries:
-    """Passes questions on with the walls of the simulated world."""
+    """Forwards queries to the knowledge base with the walls of the simulated world."""
 
     def __init__(self, reconciler: Reconciler, ask: AskSim, ask_map: AskSim) -> None:
-        """`ask(call)` asks the simulator, `ask_map(call)` the knowledge base, without waiting."""
+        """`ask(call)` calls the simulator, `ask_map(call)` the knowledge base. Neither waits."""
         self._reconciler = reconciler
         self._ask = ask
         self._ask_map = ask_map
 
     def plan(self, command: c.PlanFloor) -> Future[Plan]:
-        """The plan of the map."""
+        """Return the floor plan of the map."""
         return self._with_walls(lambda walls: PlanOf(as_of=command.as_of, walls=walls))
 
     def route(self, command: c.FindWay) -> Future[Way]:
-        """A way through the map."""
+        """Return a route through the map."""
         return self._with_walls(
             lambda walls: WayOf(
                 from_=command.from_,
@@ -55,7 +55,7 @@ class WallQueries:
 
 
 def _walls(found: Future[tuple[Outline, ...]]) -> Walls:
-    """None where the simulator has gone meanwhile."""
+    """Return the walls; None if the simulator has ended in the meantime."""
     try:
         return found.result()
     except errors.NoAnswer:

@@ -51,16 +51,16 @@ def test_positions_among_words_are_in_the_frame_and_names_stay():
 @pytest.mark.parametrize(
     ("command", "said"),
     [
-        (Add(class_="Cup", frame="f"), "--frame goes with --at"),
-        (Update(name="c", ref="x", frame="f"), "--frame goes with --at"),
+        (Add(class_="Cup", frame="f"), "--frame requires --at"),
+        (Update(name="c", ref="x", frame="f"), "--frame requires --at"),
         (
             Add(class_="Room", at=(0.0, 0.0, 0.0), extent="POLYGON ((0 0, 1 0, 1 1, 0 0))", frame="f"),
             "an extent",
         ),
-        (Drive(name="r", stop=True, frame="f"), "--frame goes with --to"),
+        (Drive(name="r", stop=True, frame="f"), "--frame requires --to"),
         (Get(name="c", as_of=3, frame="f"), "either --frame or --as-of"),
         (List(as_of=3, frame="f"), "either --frame or --as-of"),
-        (List(format="legacy", frame="f"), "leave --frame out"),
+        (List(format="legacy", frame="f"), "remove --frame"),
     ],
 )
 def test_what_makes_no_sense_in_a_frame(command, said):
@@ -69,5 +69,5 @@ def test_what_makes_no_sense_in_a_frame(command, said):
 
 
 def test_beyond_reach_is_said():
-    with pytest.raises(errors.BadRequest, match="coordinates go up to 10,000 m"):
+    with pytest.raises(errors.BadRequest, match="coordinates are limited to 10,000 m"):
         convert_to_map(Move(name="c", at=(9_999.0, 0.0, 0.0), frame="f"), Pose(position_m=(500.0, 0.0, 0.0)))

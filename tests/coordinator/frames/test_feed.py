@@ -79,7 +79,7 @@ def test_a_stale_frame_is_refused_and_told(system):
         client.publish_frame("beacon", "map", at=(1.0, 1.0, 0.0))
         until(lambda: "beacon" in [f.name for f in client.frames()], "the frame")
         until(lambda: client.frames("beacon")[-1].stale, "that it is stale")
-        with pytest.raises(errors.Refused, match="the frame beacon is stale: nothing has come on"):
+        with pytest.raises(errors.Refused, match="the frame beacon is stale: no message on"):
             client.add("Cup", at=(1.0, 0.0, 0.0), frame="beacon")
         assert any("beacon is stale" in problem for problem in client.status().problems)
 
@@ -96,7 +96,7 @@ def test_cycles_and_unknown_frames_are_refused_in_words(system):
             "that it is a cycle",
         )
         assert client.get("fridge1", frame="dock").pose is not None
-        with pytest.raises(errors.UnknownName, match=r"nobody publishes a frame 'dok'.*did you mean dock"):
+        with pytest.raises(errors.UnknownName, match=r"unknown frame 'dok'.*did you mean dock"):
             client.get("fridge1", frame="dok")
         with pytest.raises(errors.BadRequest, match="say how far from there"):
             client.list(near="1,2,0")

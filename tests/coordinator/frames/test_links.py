@@ -43,7 +43,7 @@ def test_an_entity_is_where_the_map_says():
 def test_an_entity_without_a_position_has_a_problem():
     link = links(one("chair1", None)).link("chair1")
     assert (link.parent, link.pose, link.source) == ("map", None, "map")
-    assert link.problem == "chair1 has no position, so nothing can be told from there"
+    assert link.problem == "chair1 has no position, so it cannot be used as a frame"
 
 
 def test_what_is_tracked_is_where_it_was_last_seen():
@@ -57,7 +57,7 @@ def test_a_stale_pose_is_told():
     link = links(
         one("robot1", at(1.0), tracked="stream"), live={"robot1": lives(at(3.0), stale=True, age_s=30.0)}
     ).link("robot1")
-    problem = "the live pose of robot1 is stale: nothing has come for 30 s"
+    problem = "the live pose of robot1 is stale: none received for 30 s"
     assert link == Link("map", at(3.0), "stream", 30.0, stale=True, problem=problem)
 
 
@@ -65,7 +65,7 @@ def test_a_stale_pose_is_told():
 def test_what_is_tracked_and_was_never_seen_is_stale_where_the_map_says(tracked):
     link = links(one("robot1", at(1.0), tracked=tracked)).link("robot1")
     assert (link.pose, link.source, link.age_s, link.stale) == (at(1.0), tracked, None, True)
-    assert link.problem.endswith("where it is now is not known: no live pose of it has come yet")
+    assert link.problem.endswith("its current pose is unknown: no live pose has been received yet")
 
 
 def test_a_robot_is_where_its_body_is_and_a_chair_where_the_map_says():

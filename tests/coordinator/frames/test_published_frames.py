@@ -27,7 +27,7 @@ def test_silence_is_stale_told_for_a_minute_and_forgotten_in_the_end():
     assert not published.link("lidar", 1.9).stale
     link = published.link("lidar", 12.0)
     assert link.stale
-    assert "stale: nothing has come on semmap/frame/lidar for 12 s" in link.problem
+    assert "stale: no message on semmap/frame/lidar for 12 s" in link.problem
     assert list(published.problems(12.0)) == [link.problem]
     assert not list(published.problems(70.0))
     published.forget(700.0)
@@ -46,8 +46,8 @@ def test_a_cycle_is_ignored_and_what_was_there_stays():
     assert published.link("a", 0.0).parent == "map"
     assert "d" not in list(published)
     assert list(published.problems(1.0)) == [
-        "semmap/frame/a: ignored (2 times): frames are in one another in a cycle: a in c in b in a",
-        "semmap/frame/d: ignored: frames are in one another in a cycle: d in d",
+        "semmap/frame/a: ignored (2 times): the frames form a cycle: a in c in b in a",
+        "semmap/frame/d: ignored: the frames form a cycle: d in d",
     ]
     say(published, "b", "map")  # a frame may go elsewhere
     say(published, "a", "c")

@@ -97,7 +97,7 @@ def test_a_part_may_be_written_with_a_slash():
 
 
 def test_an_unknown_frame_is_named_with_those_near():
-    with pytest.raises(errors.UnknownName, match=r"nobody publishes a frame 'robot1/lidr'.*robot1/lidar"):
+    with pytest.raises(errors.UnknownName, match=r"unknown frame 'robot1/lidr'.*robot1/lidar"):
         tree_of(ROBOT).resolve("robot1/lidr")
     assert tree_of(ROBOT).is_missing("robot1/lidr")
 
@@ -105,15 +105,13 @@ def test_an_unknown_frame_is_named_with_those_near():
 def test_a_parent_that_is_missing_is_named():
     tree = tree_of({"lidar": Link("robt1", at(1.0), "stream"), **ROBOT})
     assert tree.is_missing("lidar")
-    with pytest.raises(
-        errors.Refused, match=r"lidar is in the frame 'robt1', which nobody publishes.*robot1"
-    ):
+    with pytest.raises(errors.Refused, match=r"lidar is in the unknown frame 'robt1'.*robot1"):
         tree.map_pose("lidar")
 
 
 def test_a_cycle_is_told_and_not_followed():
     tree = tree_of({"a": Link("b", at(1.0), "stream"), "b": Link("a", at(1.0), "stream")})
-    with pytest.raises(errors.Refused, match="in a cycle: a in b in a"):
+    with pytest.raises(errors.Refused, match="form a cycle: a in b in a"):
         tree.map_pose("a")
     assert not tree.is_missing("a")
     told = {frame.name: frame for frame in tree.frames()}

@@ -84,7 +84,7 @@ def test_it_is_committed_on_its_way_if_that_is_wanted():
             reasons.append(due.reason)
             entities = tracked(pose=due.pose)
             poses.note_commit("robot1", now_s, refused=False)
-    assert reasons == ["robot1 is on its way"] * 4
+    assert reasons == ["robot1 is moving"] * 4
 
 
 def test_a_stream_that_ends_leaves_it_where_it_was_and_is_said(poses):
@@ -93,10 +93,8 @@ def test_a_stream_that_ends_leaves_it_where_it_was_and_is_said(poses):
     assert poses.live("robot1", 30.0).stale
     assert poses.current(30.0) == {}
     (due,) = poses.due(tracked(), 30.0)
-    assert (due.pose, due.reason) == (last, "robot1: its live poses stopped coming")
-    assert list(poses.problems(tracked(), 30.0)) == [
-        "robot1: its live pose is stale: nothing has come for 28 s"
-    ]
+    assert (due.pose, due.reason) == (last, "robot1: no more live poses received")
+    assert list(poses.problems(tracked(), 30.0)) == ["robot1: its live pose is stale: none received for 28 s"]
 
 
 def test_a_refused_commit_is_tried_again_after_a_while_only(poses):
@@ -160,10 +158,10 @@ def test_many_wrong_names_are_not_all_remembered(poses):
 
 
 def test_tracked_and_nothing_heard_is_said(poses):
-    assert "no live pose has come yet; publish them on semmap/live/robot1" in next(
+    assert "no live pose has been received yet; publish poses on semmap/live/robot1" in next(
         poses.problems(tracked(), 0.0)
     )
-    assert "the simulator has no body of it" in next(poses.problems(tracked(source="sim"), 0.0))
+    assert "it has no body in the simulator" in next(poses.problems(tracked(source="sim"), 0.0))
 
 
 def test_what_is_not_tracked_any_more_is_forgotten(poses):

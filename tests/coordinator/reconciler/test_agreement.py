@@ -91,7 +91,7 @@ def test_what_is_still_to_be_done_is_described_once_for_each_entity():
         "cup1 has a new pose that is not committed yet",
     )
     gone = look([], [body("chair1", at(0.0))])
-    assert describe_pending(gone, ()) == ("chair1 has a body that is still to go",)
+    assert describe_pending(gone, ()) == ("chair1 has a body that is not removed yet",)
 
 
 def test_a_scene_body_that_cannot_become_an_entity_is_not_waited_for():

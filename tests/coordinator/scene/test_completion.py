@@ -135,7 +135,7 @@ def test_a_body_that_rests_where_the_map_has_it_makes_no_commit(world):
     world.poses(11, resting=True, followed=True)
     assert (reply.result().commit, reply.result().notes) == (
         None,
-        ("no commit: cup1 rests where the map has it",),
+        ("no commit: cup1 rests at its committed pose",),
     )
 
 
@@ -151,7 +151,7 @@ def test_a_body_that_rolls_on_is_not_waited_for_for_ever(world):
     world.now_s = WAIT_S + 1.0
     world.poses(11, resting=False)
     assert reply.result().text == RELEASED.text
-    assert reply.result().notes == ("no commit yet: cup1 is still moving; the map follows when it rests",)
+    assert reply.result().notes == ("no commit yet: cup1 is still moving; the map is updated when it rests",)
 
 
 def test_a_place_that_the_map_rejects_is_an_error(world):
@@ -190,7 +190,7 @@ def test_an_undo_stops_the_move_and_who_waits_is_told(world):
     undo = Undo(id="u1")
     stopped = world.completion.stop(undo, None).result()
     assert (stopped.commit, stopped.names) == (None, ("cup1",))
-    assert stopped.text == "stopped the move of cup1: it goes back to where the map has it"
+    assert stopped.text == "stopped the move of cup1: it returns to its committed pose"
     assert world.returned == [{"cup1"}]
     with pytest.raises(errors.Refused, match="stopped the move of cup1: an undo came before"):
         reply.result()
@@ -232,7 +232,7 @@ def test_a_course_is_waited_for_to_its_end_and_then_for_the_commit(world):
 def test_a_course_that_is_refused_is_an_error(world):
     drive = Drive(name="cup1", to=((5.0, 2.0),), wait=True)
     reply = world.completion.begin(drive, RELEASED, lambda _: "", None)
-    world.completion.fail(drive, errors.Refused("cup1 gets no further"))
-    with pytest.raises(errors.Refused, match="gets no further"):
+    world.completion.fail(drive, errors.Refused("cup1 is blocked at (1, 2)"))
+    with pytest.raises(errors.Refused, match="is blocked at"):
         reply.result()
     assert world.completion.stop(Undo(), None) is None

@@ -119,7 +119,7 @@ def test_open_moves_joints_to_the_share_that_was_asked_for_and_close_to_none(
 )
 def test_without_a_simulator_the_statement_to_make_instead_is_given(opening, reconciler, command, statement):
     reconciler.scene.forget()
-    with pytest.raises(errors.NoAnswer, match=f"to state it: semmap set thing1 {statement}$"):
+    with pytest.raises(errors.NoAnswer, match=f"to change only the map: semmap set thing1 {statement}$"):
         opening.move(command)
 
 
