@@ -1,4 +1,4 @@
-"""The only code that knows Zenoh: open a session, ask, serve, publish, follow."""
+"""The only package that imports Zenoh: sessions, queries, queryables, publishers and subscribers."""
 
 from semmap.nodes.bus import zenoh_config
 from semmap.nodes.bus.fragmentation import FRAGMENT_BYTES, MESSAGE_BYTES, PUBLICATION_BYTES

@@ -1,7 +1,7 @@
-"""Presence of nodes; queries to a node are cancelled when it goes away.
+"""Presence of nodes by Zenoh's liveliness tokens; queries to a node are cancelled when it goes away.
 
-Zenoh (1.10.2) ends the questions that a peer has when it goes. One that was sent within the few milliseconds
-until that is noticed nobody has, and it waits for its time-out.
+Zenoh (1.10.2) ends the queries to a peer that goes away. A query that is sent in the few milliseconds before
+this is noticed reaches no node, and waits for its time-out.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ _LOOKS: Final = 6
 
 
 class LivelinessMonitor:
-    """Of the nodes that serve, as one session sees them: what hangs on one is cancelled when that is cut.
+    """The nodes that serve, as one session sees them; cancels queries to nodes that go away.
 
-    It costs a question some microseconds. Any thread may use it.
+    Costs some microseconds for each query. Any thread may use it.
     """
 
     def __init__(self, session: zenoh.Session) -> None:
@@ -34,18 +34,18 @@ class LivelinessMonitor:
         session.liveliness().declare_subscriber(keys.live_key("*"), self._on_change, history=True)
 
     def is_there(self, node: str) -> bool:
-        """Is a process of this node ready?"""
+        """Return whether a process of this node is ready."""
         return any(keys.live_node(key) == node for key in tuple(self._there))
 
     def has_seen(self, nodes: tuple[str, ...]) -> bool:
-        """Has a process of any of these nodes been ready since this session began?"""
+        """Return whether a process of any of these nodes has been ready since this session began."""
         return not self._instances.keys().isdisjoint(nodes)
 
-    def look(self, nodes: tuple[str, ...]) -> None:
+    def wait_until_known(self, nodes: tuple[str, ...]) -> None:
         """Wait until it is known which of these nodes are there, if none has been seen yet.
 
-        In a session's first moments a reply may be here before the news of who is there. It is asked several
-        times, since Zenoh (1.10.2) now and then says that nobody is. Not for a thread of Zenoh's.
+        In the first moments of a session, a reply may arrive before the liveliness tokens. The query is
+        repeated, because Zenoh (1.10.2) sometimes returns no token. Must not be called on a thread of Zenoh.
         """
         for _ in range(_LOOKS):
             if self.has_seen(nodes):
@@ -54,20 +54,20 @@ class LivelinessMonitor:
                 if reply.ok is not None:
                     self._know(str(reply.ok.key_expr))
 
-    def vouch(self, nodes: tuple[str, ...], reply: zenoh.Reply) -> bool:
-        """Is the reply by one of these nodes? Of whom none is ready, nobody can tell."""
+    def is_from(self, nodes: tuple[str, ...], reply: zenoh.Reply) -> bool:
+        """Return whether a reply is from one of these nodes; True if none of them is ready."""
         ready = {instance for node in nodes for instance in self._instances.get(node, ())}
         replier = reply.replier_id if ready else None
         return replier is None or str(replier.zid) in ready
 
-    def is_news(self, key: str) -> bool:
-        """Is it the first time that somebody else was found to answer on this key?"""
+    def is_first_foreign_reply(self, key: str) -> bool:
+        """Return whether this is the first foreign reply on this key."""
         known = key in self._foreign_replies
         self._foreign_replies.add(key)
         return not known
 
-    def of(self, nodes: tuple[str, ...]) -> zenoh.CancellationToken:
-        """For questions, from now on, that any of these nodes may answer."""
+    def token_for(self, nodes: tuple[str, ...]) -> zenoh.CancellationToken:
+        """Return the cancellation token for new queries that any of these nodes may answer."""
         return self._tokens.get(nodes) or self._tokens.setdefault(nodes, zenoh.CancellationToken())
 
     def _know(self, key: str) -> None:
@@ -89,17 +89,18 @@ class LivelinessMonitor:
 
 
 def declare_presence(session: zenoh.Session, node: str) -> Any:
-    """Let this session be seen as a ready `node`, for as long as it lives and keeps what is returned.
+    """Declare this session as a ready `node`, as long as the returned token is kept.
 
-    The token bears the session's id, which replies bear too, so that others can tell whose they are.
+    The token contains the id of the session, which is also in its replies, so that clients can attribute
+    them.
     """
     return session.liveliness().declare_token(keys.live_key(node, str(session.info.zid())))
 
 
 def find_robots(session: zenoh.Session) -> dict[str, frozenset[str]]:
-    """The robots that can be reached, by name, and which of their nodes are there.
+    """Return the reachable robots by name, with their running nodes.
 
-    The session has no namespace. A system without one is a robot without a name: "".
+    The session must have no namespace. A system without a namespace is a robot without a name: "".
     """
     found: dict[str, set[str]] = {}
     for pattern, name_of in ((keys.robots_live(), keys.live_robot), (keys.live_key("*"), lambda _: "")):
@@ -113,33 +114,33 @@ def find_robots(session: zenoh.Session) -> dict[str, frozenset[str]]:
 def follow_robots(session: zenoh.Session, node: str, receive: Callable[[str, str, bool], None]) -> Any:
     """Call `receive(robot, instance, there)` whenever a process of this node of a robot appears or goes.
 
-    It has been called for those that are there already when this returns; later it is called on a thread of
-    Zenoh's. The session has no namespace. The subscriber is returned.
+    When this function returns, `receive` has been called for the present processes. Later it is called on a
+    thread of Zenoh. The session must have no namespace. Returns the subscriber.
     """
     pattern = keys.robots_live(node)
-    told: set[str] = set()
-    news = threading.Condition()
+    reported: set[str] = set()
+    changed = threading.Condition()
 
     def on_change(sample: zenoh.Sample) -> None:
         key = str(sample.key_expr)
         receive(keys.live_robot(key), keys.last_chunk(key), sample.kind != zenoh.SampleKind.DELETE)
-        with news:
-            told.add(key)
-            news.notify_all()
+        with changed:
+            reported.add(key)
+            changed.notify_all()
 
-    # asked for first: beside a new subscriber, Zenoh (1.10.2) now and then answers that nobody is there
+    # queried first: next to a new subscriber, Zenoh (1.10.2) sometimes returns no token
     replies = list(session.liveliness().get(pattern, timeout=_ROBOTS_S))
     there = {str(reply.ok.key_expr) for reply in replies if reply.ok is not None}
     subscriber = session.liveliness().declare_subscriber(pattern, on_change, history=True)
-    with news:
-        news.wait_for(lambda: there <= told, _ROBOTS_S)  # one that has gone on_wait is not told of
+    with changed:
+        changed.wait_for(lambda: there <= reported, _ROBOTS_S)  # one that has gone is not reported
     return subscriber
 
 
 def follow_presence(session: zenoh.Session, node: str, receive: Callable[[bool], None]) -> Any:
     """Call `receive(there)` whenever the first process of a node appears or the last one is gone.
 
-    It is called on a thread of Zenoh's, at first when one is there already. The subscriber is returned.
+    It is called on a thread of Zenoh, initially if a process is already there. Returns the subscriber.
     """
     there: set[str] = set()
 

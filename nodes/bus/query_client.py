@@ -1,10 +1,13 @@
-"""Queries: ask and wait for the reply, or have it handed over later.
+"""Queries: send one and wait for the reply, or receive it in a callback.
 
-What was learnt by measuring (Zenoh 1.10.2): a `get` that finds nobody comes back empty at once, so an empty
-answer is asked again until patience ends, and never read as an answer; a time-out comes as an error reply
-that is not ours. The callback of a `get` is given a thread of its own unless it is declared direct, which
-takes longer than the whole round trip; and replies wait for the end of the query unless they need not be
-consolidated.
+Observed with Zenoh 1.10.2:
+
+- A `get` without a queryable returns immediately and empty. An empty result is therefore repeated until the
+  patience ends.
+- A time-out arrives as an error reply that is not ours.
+- The callback of a `get` runs on a thread of its own unless it is declared direct. Starting the thread takes
+  longer than the whole round trip.
+- Replies wait for the end of the query unless consolidation is off.
 """
 
 from __future__ import annotations
@@ -28,13 +31,13 @@ from semmap.schemas.replies import Done
 log = logging.getLogger(__name__)
 
 TIMEOUT_S = 30.0
-_HAD_IT_S = 0.1
-"""A question that ends without an answer after so long was with somebody, who has gone meanwhile."""
+_WAS_RECEIVED_S = 0.1
+"""A query that ends without a reply after this time had reached a node, which has gone since."""
 
 BUSY_S = 60.0
-"""Seconds for which one who is told to come again does so."""
+"""Seconds for which a query to a busy node is repeated."""
 _SLOWER: Final = 1.5
-"""How much longer one who was sent away again waits than the last time."""
+"""Factor by which each pause is longer than the last."""
 _LONGEST_S: Final = 5.0
 
 _TIME_IS_UP = b"Timeout"
@@ -43,32 +46,32 @@ _AS_THEY_COME = zenoh.ConsolidationMode.NONE
 
 
 _ROUND_S: Final = 60.0
-"""Zenoh (1.10.2) keeps a kilobyte of every question until its time-out, long after it was answered. So what
-is quick as a rule has this time-out, and is asked a second time with all the time that it may take."""
+"""Time-out of the first query: Zenoh (1.10.2) keeps a kilobyte for every query until its time-out, even after
+the reply. A query that is usually quick is therefore repeated once with the full time-out."""
 
 
 class TimedOut(errors.NoAnswer):
-    """Who was asked has not answered in the time that was given for it."""
+    """The node has not replied within the time-out."""
 
 
 def first_round_s(message: Any, timeout_s: float) -> float:
-    """The time-out [s] of the first question when the answer may take `timeout_s`; raises TimedOut then."""
+    """Return the time-out [s] of the first query; it raises TimedOut if `timeout_s` is longer."""
     return min(timeout_s, _ROUND_S) if getattr(message, "is_quick", False) else timeout_s
 
 
 class ForeignReply(errors.NoAnswer):
-    """Only somebody has answered who is not one of the nodes that serve the key."""
+    """Only a program has answered that is not one of the nodes that serve the key."""
 
 
 class BusyBackoff:
-    """With those who are busy: when to come again, later each time and never all at once."""
+    """The pauses between queries to a busy node: increasing, and randomized."""
 
     def __init__(self) -> None:
         self._until_s = time.monotonic() + BUSY_S
         self._times = 0
 
     def pause_s(self, busy: errors.Busy) -> float:
-        """After how long [s] to ask again. Raises `busy` when it has taken too long."""
+        """Return the pause [s] before the next query. Raises `busy` when the time is up."""
         if time.monotonic() > self._until_s:
             raise busy
         wanted_s = min((busy.again_s or 1.0) * _SLOWER**self._times, _LONGEST_S)
@@ -77,14 +80,14 @@ class BusyBackoff:
 
 
 class Encoded(Struct, frozen=True):
-    """A message as it came: to be decoded, or passed on."""
+    """An encoded message, to be decoded or forwarded."""
 
     payload: zenoh.ZBytes | bytearray
     encoding: zenoh.Encoding
     kind: Any
 
     def decode(self) -> Any:
-        """The message, of type `kind`. Raises BadRequest."""
+        """Return the message, of type `kind`. Raises BadRequest."""
         payload = self.payload
         return codec.decode(payload if isinstance(payload, bytearray) else payload.to_bytes(), self.kind)
 
@@ -104,16 +107,16 @@ def ask(
 ) -> Any:
     """Send `message` to `prefix/verb` and return the reply, of type `kind`.
 
-    `meanwhile` is called again and again while the answer takes its time. `prefer_complete`: whoever serves just
-    this verb is asked, and those who serve all verbs of the prefix only if there is no such one. With
-    `liveliness`, those of this session, the question ends, and is asked again, when who was asked is gone; and
-    a reply counts only if it is by a node that serves the key: where another program has answered, everybody
-    who serves the key is asked.
+    - `on_wait` is called repeatedly while waiting.
+    - `prefer_complete` first queries a node that serves only this command, then those that serve all commands
+      of the prefix.
+    - With `liveliness`, the query is repeated when the node goes away. Only replies of nodes that serve the
+      key count: after a foreign reply, all queryables of the key are queried.
 
-    Who answers that it is busy is asked again, for a minute.
+    A busy node is queried again for a minute.
 
-    Raises the error of the reply; ForeignReply when nobody else has answered; NoAnswer when nobody serves the
-    key for `patience_s` or the one that does takes longer than `timeout_s`.
+    Raises the error of the reply; ForeignReply if only foreign programs have answered; NoAnswer if no node
+    serves the key for `patience_s`, or if the reply takes longer than `timeout_s`.
     """
     how = (timeout_s, patience_s, on_wait, prefer_complete, liveliness)
     try:
@@ -153,28 +156,28 @@ def _ask(
     while True:
         asked_at_s = time.monotonic()
         replies: Any = ()
-        if (last := _sent_ahead(session, key, payload, encoding, liveliness)) is not None:
+        if (last := _send_leading_fragments(session, key, payload, encoding, liveliness)) is not None:
             replies = _get(
                 session,
                 key,
-                liveliness.of(servers) if liveliness else None,
+                liveliness.token_for(servers) if liveliness else None,
                 encoding=encoding,
                 timeout=round_s,
                 target=target,
                 **last,
             )
-        gathered = fragmentation.ReplyAssembler()
+        assembler = fragmentation.ReplyAssembler()
         try:
             for reply in replies if on_wait is None or last is None else _polled(replies, on_wait):
                 if liveliness is not None:
-                    liveliness.look(servers)
-                if liveliness is None or liveliness.vouch(servers, reply) or _is_late(reply):
-                    if (whole := read_reply(key, reply, kind, round_s, gathered)) is not None:
+                    liveliness.wait_until_known(servers)
+                if liveliness is None or liveliness.is_from(servers, reply) or _is_late(reply):
+                    if (whole := read_reply(key, reply, kind, round_s, assembler)) is not None:
                         return whole.decode()
                     continue
                 if not foreign:
                     foreign, deadline_s = True, time.monotonic() + patience_s
-                    if liveliness.is_news(key):
+                    if liveliness.is_first_foreign_reply(key):
                         log.warning("%s", _foreign(key, servers))
                 target = zenoh.QueryTarget.ALL
         except TimedOut:
@@ -183,7 +186,7 @@ def _ask(
             round_s = timeout_s
             continue
         took_s = (now_s := time.monotonic()) - asked_at_s
-        if took_s > _HAD_IT_S and (liveliness is None or liveliness.has_seen(servers)):
+        if took_s > _WAS_RECEIVED_S and (liveliness is None or liveliness.has_seen(servers)):
             deadline_s = now_s + patience_s
         if prefer_complete:
             prefer_complete = False
@@ -192,13 +195,13 @@ def _ask(
         if now_s > deadline_s and foreign:
             raise ForeignReply(_foreign(key, servers))
         if now_s > deadline_s:
-            _nobody(key)
+            _raise_no_answer(key)
         if on_wait is not None:
             on_wait()
         time.sleep(0.01)
 
 
-def _sent_ahead(
+def _send_leading_fragments(
     session: zenoh.Session,
     key: str,
     payload: bytes,
@@ -206,9 +209,9 @@ def _sent_ahead(
     liveliness: LivelinessMonitor | None,
     source: zenoh.SourceInfo | None = None,
 ) -> dict[str, Any] | None:
-    """What is left to be sent as the question itself: of a large payload, the last piece.
+    """Send all fragments of a large payload but the last; return the options for the final query.
 
-    None if nobody has taken the others. Raises the error that a piece is answered with.
+    Returns None if no node has accepted them. Raises the error of a reply to a fragment.
     """
     if len(payload) <= fragmentation.FRAGMENT_BYTES:
         return {"payload": payload}
@@ -217,9 +220,9 @@ def _sent_ahead(
         sent = {"payload": content, "attachment": codec.encode(piece)}
         if piece.is_last:
             return sent
-        lifeline = liveliness.of(servers) if liveliness else None
+        lifeline = liveliness.token_for(servers) if liveliness else None
         for reply in _get(session, key, lifeline, source, encoding=encoding, timeout=TIMEOUT_S, **sent):
-            if liveliness is None or liveliness.vouch(servers, reply):
+            if liveliness is None or liveliness.is_from(servers, reply):
                 read_reply(key, reply, Done, TIMEOUT_S)
                 break
         else:
@@ -234,7 +237,7 @@ def _get(
     source: zenoh.SourceInfo | None = None,
     **options: Any,
 ) -> Any:
-    """The replies as they come; none if the lifeline has just been cut. `source`: in whose name."""
+    """Return the replies as they arrive; none if the node has just gone. `source` is the original client."""
     source = source or zenoh.SourceInfo(session.id, 0)
     try:
         return session.get(
@@ -250,7 +253,7 @@ def _polled(replies: Any, on_wait: Callable[[], None]) -> Iterator[zenoh.Reply]:
     while True:
         try:
             reply = replies.try_recv()
-        except zenoh.ZError:  # there will be no more
+        except zenoh.ZError:  # no more replies
             return
         if reply is not None:
             yield reply
@@ -272,19 +275,21 @@ def ask_later(
     ask_all: bool = False,
     source: Any = None,
 ) -> None:
-    """Like `ask`, without waiting: `answer` is given a function that returns the reply or raises its error.
+    """Send a query without waiting; `answer` receives a function that returns the reply or raises its error.
 
-    `everybody` who serves the key is asked, as one should after a ForeignReply. `source` is that of a request
-    in whose name it is asked. `answer` is called once, on the thread with which Zenoh receives everything, so
-    it should only queue. One who is busy is not asked again: `Patience` tells when to.
+    `ask_all` queries all queryables of the key, as is needed after a ForeignReply. `source` identifies the
+    client of a forwarded request.
+
+    `answer` is called once on Zenoh's receiving thread, so it must only queue. Busy nodes are not queried
+    again: use `BusyBackoff`.
     """
     key = f"{prefix}/{verb}"
     waiting, servers = [answer], keys.servers(prefix, verb)
     foreign: list[zenoh.Reply] = []
-    gathered = fragmentation.ReplyAssembler()
+    assembler = fragmentation.ReplyAssembler()
 
     def on_reply(reply: zenoh.Reply) -> None:
-        if liveliness is not None and not liveliness.vouch(servers, reply) and not _is_late(reply):
+        if liveliness is not None and not liveliness.is_from(servers, reply) and not _is_late(reply):
             foreign.append(reply)
         elif not waiting:
             return
@@ -295,7 +300,7 @@ def ask_later(
 
     def on_piece(reply: zenoh.Reply) -> None:
         try:
-            whole = read_reply(key, reply, kind, timeout_s, gathered)
+            whole = read_reply(key, reply, kind, timeout_s, assembler)
         except errors.SemmapError as error:
             waiting.pop()(partial(_raise, error))
         else:
@@ -305,7 +310,7 @@ def ask_later(
     def refuse() -> NoReturn:
         if foreign:
             raise ForeignReply(_foreign(key, servers))
-        _nobody(key)
+        _raise_no_answer(key)
 
     def on_end() -> None:
         if waiting:
@@ -314,14 +319,14 @@ def ask_later(
     handler = zenoh.handlers.Callback(on_reply, on_end, indirect=False)
     payload, encoding = codec.encode(message), codec.encoding_of(message)
     try:
-        last = _sent_ahead(session, key, payload, encoding, liveliness, source)
+        last = _send_leading_fragments(session, key, payload, encoding, liveliness, source)
     except errors.SemmapError as error:
         answer(partial(_raise, error))
         return
     if last is None:
         on_end()
         return
-    lifeline = liveliness.of(servers) if liveliness else None
+    lifeline = liveliness.token_for(servers) if liveliness else None
     target = zenoh.QueryTarget.ALL if ask_all else zenoh.QueryTarget.BEST_MATCHING
     _get(
         session,
@@ -341,10 +346,10 @@ def _raise(error: errors.SemmapError) -> NoReturn:
 
 
 def read_whole(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Encoded:
-    """The message of a reply that came in one, of type `kind`; raises the error that it carries."""
+    """Return the message of a reply in one part, of type `kind`. Raises the error of the reply."""
     whole = read_reply(key, reply, kind, timeout_s)
     if whole is None:
-        raise errors.InternalError(f"{key} replied with a piece of a message")
+        raise errors.InternalError(f"{key} replied with a fragment of a message")
     return whole
 
 
@@ -353,16 +358,16 @@ def read_reply(
     reply: zenoh.Reply,
     kind: Any,
     timeout_s: float,
-    gathered: fragmentation.ReplyAssembler | None = None,
+    assembler: fragmentation.ReplyAssembler | None = None,
 ) -> Encoded | None:
-    """The message of a reply, of type `kind`; None for a piece after which others come.
+    """Return the message of a reply, of type `kind`; None for a fragment before the last.
 
-    Raises the error that it carries.
+    Raises the error of the reply.
     """
     if (sample := reply.ok) is not None:
-        if gathered is None or (piece := fragmentation.fragment_of(sample.attachment)) is None:
+        if assembler is None or (piece := fragmentation.fragment_of(sample.attachment)) is None:
             return Encoded(sample.payload, sample.encoding, kind)
-        whole = gathered.take(piece, sample.payload)
+        whole = assembler.take(piece, sample.payload)
         return None if whole is None else Encoded(whole, sample.encoding, kind)
     error = reply.err
     if error is None:
@@ -373,7 +378,7 @@ def read_reply(
 
 
 def _is_late(reply: zenoh.Reply) -> bool:
-    """Is it no answer, but Zenoh's word that time has run out? It may come as its next neighbour's."""
+    """Return whether a reply is Zenoh's time-out, which may arrive in the name of a neighbour."""
     error = reply.err
     if error is None or str(error.encoding) == _ERROR_ENCODING:
         return False
@@ -382,19 +387,19 @@ def _is_late(reply: zenoh.Reply) -> bool:
 
 def _foreign(key: str, servers: tuple[str, ...]) -> str:
     return (
-        f"a program that is not {errors.enumerated(servers)} answers on {key}; its answers are ignored"
-        " (semmap up --secure keeps strangers out)"
+        f"a program that is not {errors.enumerated(servers)} answers on {key}; its replies are ignored"
+        " (to admit only certified programs: semmap up --secure)"
     )
 
 
-def _nobody(key: str) -> NoReturn:
+def _raise_no_answer(key: str) -> NoReturn:
     node = keys.SERVED_BY.get(keys.served(key.rpartition("/")[0]))
     if name := keys.asked_as(key):
         raise errors.NoAnswer(
-            f"no answer on {key}: not permitted, or not there: {name}'s certificate may have been revoked,"
-            f" or {node} is not running, or is starting"
+            f"no response on {key}: {name} is not permitted (certificate revoked?),"
+            f" or {node} is not running or still starting; see: semmap status"
         )
     why = f"{node} is not running" if node else "no node serves it"
     raise errors.NoAnswer(
-        f"no answer on {key}: {why}, or is starting (see: semmap status), or this client lacks permission"
+        f"no response on {key}: {why} or still starting, or this client lacks permission; see: semmap status"
     )

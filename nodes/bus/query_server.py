@@ -1,4 +1,4 @@
-"""Requests, answered either as queries or as puts that are acknowledged."""
+"""Requests, received as queries or as puts; puts are acknowledged by a publication."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from semmap.schemas.replies import Ack, Document, Done
 
 _JSON = "application/json"
 _ACKS = 20_000
-"""Acknowledgements that wait to be published; then the next put is read when there are fewer."""
+"""Largest number of acknowledgements to publish; then puts are read only as these are sent."""
 _LOOK_S = 0.5
-"""How often one who waits for room looks for itself, in seconds."""
+"""Interval [s] of polling while waiting for room."""
 
 
 def _send_nowhere(message: Any, ok: bool) -> None:
-    """Of a request that nobody waits for an answer to."""
+    """Discard the reply to a request without a client."""
 
 
 class Request(Struct, frozen=True):
-    """A request as it came: from a query, or from a put that is answered on `semmap/ack`.
+    """A request from a query, or from a put that is answered on `semmap/ack`.
 
-    `plain`: the reply may be a message that is `Encoded` already. `who` asks, by the key; whether that is
-    proof is for those to say who serve `semmap/as/*/cmd`. `source` is the session, as Zenoh says that, to be
-    passed on.
+    With `plain`, the reply may be `Encoded`. `who` is the client by the key; whether that is certified is
+    decided by those who serve `semmap/as/*/cmd`. `source` is the session as reported by Zenoh, for
+    forwarding.
     """
 
     verb: str
@@ -48,33 +48,33 @@ class Request(Struct, frozen=True):
 
     @property
     def asker(self) -> str:
-        """Tells askers apart: `who`, or the id of the session, or nothing of those who do not say."""
+        """Identifies the client: `who`, the id of the session, or "" if it is unknown."""
         return self.who or ("" if self.source is None else str(self.source.source_id.zid))
 
     def read(self, kind: Any) -> Any:
-        """The message, of type `kind`. Raises BadRequest."""
+        """Return the message, of type `kind`. Raises BadRequest."""
         if len(self.payload) > (most := largest(kind)):
             raise fragmentation.too_large(len(self.payload), most)
         parameters = {k: v for k, v in self.parameters.items() if (k, v) != ("format", "json")}
         if self.payload:
             if parameters:
-                raise errors.BadRequest("give the fields either in the message or as parameters, not both")
+                raise errors.BadRequest("fields must be either in the message or in the parameters, not both")
             return codec.decode(self.payload, kind)
         return codec.from_text(parameters, kind)
 
     def reply(self, message: Any) -> None:
-        """Answer it."""
+        """Reply with a message."""
         self.send(message, True)
 
     def refuse(self, error: errors.SemmapError) -> None:
-        """Answer it with an error."""
+        """Reply with an error."""
         self.send(errors.to_message(error), False)
 
 
 def _request_of_query(
     prefix: str, query: zenoh.Query, arrivals: fragmentation.RequestAssembler, most: Most
 ) -> Request | None:
-    """None for a piece after which others come. Raises what the query is to be refused with."""
+    """Return the request; None for a fragment before the last. Raises the error to reply with."""
     asked = str(query.key_expr)
     verb, who = keys.last_chunk(asked), keys.asked_as(asked) if prefix == keys.commands_as() else ""
     sent = query.payload
@@ -118,7 +118,7 @@ def _request_of_query(
 
 
 def _nothing_to_do() -> None:
-    """Of a message that came in one."""
+    """Do nothing: a message in one part needs no release."""
 
 
 def _reply_key(prefix: str, asked: str, verb: str, who: str) -> str:
@@ -127,8 +127,8 @@ def _reply_key(prefix: str, asked: str, verb: str, who: str) -> str:
 
 def _too_long(size: int) -> errors.Refused:
     return errors.Refused(
-        f"the reply has {size >> 20:,} MB, and one in JSON may have {fragmentation.FRAGMENT_BYTES >> 20}; ask for less, or"
-        " with semmap's client, which takes it in pieces"
+        f"the reply has {size >> 20:,} MB; the limit for JSON is {fragmentation.FRAGMENT_BYTES >> 20} MB;"
+        " request less, or use semmap's client, which receives fragments"
     )
 
 
@@ -141,10 +141,10 @@ def _refuse(query: zenoh.Query, error: errors.SemmapError, *, as_json: bool) -> 
 
 
 Most = Callable[[str], int]
-"""Of a verb: how many bytes a request may have."""
+"""Returns the largest size of a request of a command [bytes]."""
 
 
-def _whole(_: str) -> int:
+def _request_limit(_: str) -> int:
     return fragmentation.REQUEST_BYTES
 
 
@@ -154,20 +154,20 @@ def serve(
     receive: Callable[[Request], None],
     *,
     verb: str = "*",
-    most: Most = _whole,
+    most: Most = _request_limit,
 ) -> None:
-    """Queries on `prefix/<verb>` go to `receive`, on a thread of Zenoh's, so it should only queue them.
+    """Pass queries on `prefix/<verb>` to `receive`, on a thread of Zenoh, so it must only queue them.
 
-    One that is not answered counts as not having come here: another who serves the key may answer it. Who
-    serves a single verb is `complete` (Zenoh's word) for its key, so that it can be asked alone. A request
-    that comes in pieces may have `most(verb)` bytes.
+    A query without a reply counts as not received, so another queryable of the key may answer it. A queryable
+    of a single verb is `complete` (Zenoh's term) for its key, so it can be queried alone. A fragmented
+    request may have `most(verb)` bytes.
     """
     arrivals = fragmentation.RequestAssembler()
 
     def on_query(query: zenoh.Query) -> None:
         try:
             request = _request_of_query(prefix, query, arrivals, most)
-        except Exception as error:  # one that raises here would never be answered
+        except Exception as error:  # otherwise the query would never be answered
             with query:
                 _refuse(query, _as_ours(error), as_json=False)
             return
@@ -182,7 +182,7 @@ def serve(
 
 
 _TAKEN = Done(text="go on")
-"""The answer to a piece after which others come."""
+"""The reply to a fragment before the last."""
 
 
 def _as_ours(error: Exception) -> errors.SemmapError:
@@ -192,22 +192,22 @@ def _as_ours(error: Exception) -> errors.SemmapError:
 
 
 def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request], None]) -> None:
-    """Puts on `prefix` and `prefix/<verb>` go to `receive`; what is replied is published on `semmap/ack`."""
+    """Pass puts on `prefix` and `prefix/<verb>` to `receive`; replies are published on `semmap/ack`."""
     acks = _Acks(session)
 
     def on_put(sample: zenoh.Sample) -> None:
         acks.wait_for_room()
         key, payload = str(sample.key_expr), sample.payload.to_bytes()
-        said = _envelope(payload)
-        verb = keys.last_chunk(key) if key != prefix else str(said.verb)
+        envelope = _envelope(payload)
+        verb = keys.last_chunk(key) if key != prefix else str(envelope.verb)
         encode = codec.encode_json if codec.looks_like_json(payload) else codec.encode
 
         def send(message: Any, ok: bool) -> None:
             reply, error = (message, None) if ok else (None, message)
-            ack = encode(Ack(id=str(said.id), verb=verb, ok=ok, reply=reply, error=error))
+            ack = encode(Ack(id=str(envelope.id), verb=verb, ok=ok, reply=reply, error=error))
             if len(ack) > fragmentation.FRAGMENT_BYTES:
                 long = errors.to_message(_too_long(len(ack)))
-                ack = encode(Ack(id=str(said.id), verb=verb, ok=False, reply=None, error=long))
+                ack = encode(Ack(id=str(envelope.id), verb=verb, ok=False, reply=None, error=long))
             acks.put(ack)
 
         if len(payload) > fragmentation.MESSAGE_BYTES:
@@ -221,8 +221,8 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
 class _Acks:
     """Publishes acknowledgements in order, on a thread of its own.
 
-    A slow follower holds up this thread and, once `_ACKS` of them wait, the puts that come in; never the
-    thread that owns a node's state.
+    A slow subscriber delays this thread and, once `_ACKS` of them wait, the incoming puts. It never delays
+    the thread that owns a node's state.
     """
 
     def __init__(self, session: zenoh.Session) -> None:
@@ -234,7 +234,7 @@ class _Acks:
         threading.Thread(target=self._publish, name="acks", daemon=True).start()
 
     def put(self, ack: bytes) -> None:
-        """Publish it soon. Any thread may call this; it never waits."""
+        """Publish an acknowledgement soon. Any thread may call this; it never waits."""
         if self._has_ended:
             return
         self._waiting.put(ack)
@@ -244,15 +244,15 @@ class _Acks:
     def wait_for_room(self) -> None:
         """Return when fewer than half of `_ACKS` wait, or none will be published any more.
 
-        It looks for itself now and then. The queue may have drained between the two lines of `put` that find
-        it full and say so, and then nobody would say otherwise.
+        It also polls: the queue may have drained between the two lines of `put` that find it full and clear
+        the event, and then no other thread would set it.
         """
         while not self._has_room.wait(_LOOK_S):
             if self._has_ended or self._waiting.qsize() < _ACKS // 2:
                 self._has_room.set()
 
     def end(self) -> None:
-        """Publish no more, after those that wait."""
+        """Stop after the waiting acknowledgements."""
         self._waiting.put(None)
 
     def _publish(self) -> None:
@@ -260,7 +260,7 @@ class _Acks:
             while (ack := self._waiting.get()) is not None:
                 if self._waiting.qsize() < _ACKS // 2:
                     self._has_room.set()
-                with contextlib.suppress(zenoh.ZError):  # the session is closed; the rest goes nowhere, too
+                with contextlib.suppress(zenoh.ZError):  # the session is closed; the rest is dropped
                     self._publisher.put(ack)
         finally:
             self._has_ended = True
@@ -268,7 +268,7 @@ class _Acks:
 
 
 class _Envelope(Struct):
-    """What can be read of a message before its type is known; nothing else of it is looked at."""
+    """The fields of a message that are read before its type is known."""
 
     verb: str | int | float | bool | None = ""
     id: str | int | float | bool | None = ""
@@ -276,7 +276,7 @@ class _Envelope(Struct):
 
 def _envelope(payload: bytes) -> _Envelope:
     try:
-        said: _Envelope = codec.decode(payload, _Envelope)
-        return said
+        envelope: _Envelope = codec.decode(payload, _Envelope)
+        return envelope
     except errors.BadRequest:
         return _Envelope()

@@ -178,7 +178,8 @@ def _check_grip(order: GripOrder, there: Mapping[str, BodyRecord]) -> None:
         raise ModelError(f"{order.name} cannot be attached to itself")
     if order.name in chain(order.holder, there):
         raise ModelError(
-            f"{order.holder} is attached to {order.name} or part of it, so {order.name} cannot be attached to it"
+            f"{order.holder} is attached to {order.name} or part of it,"
+            f" so {order.name} cannot be attached to it"
         )
     if record.anchored or record.fixed:
         where = f"held by {record.part_of or 'its joint'}" if record.anchored else "fixed"

@@ -80,7 +80,7 @@ def test_without_the_nodes_own_it_is_told(three):
     liveliness = bus.LivelinessMonitor(client)
     token = bus.declare_presence(node, "kb_node")
     until(lambda: liveliness.is_there("kb_node"), "the token is seen")
-    with pytest.raises(bus.ForeignReply, match="its answers are ignored"):
+    with pytest.raises(bus.ForeignReply, match="its replies are ignored"):
         bus.ask(client, keys.BRIDGE, "get", *ASKED, liveliness=liveliness, patience_s=0.3)
     del token
 

@@ -23,7 +23,7 @@ def test_who_has_a_token_is_there(pair, lifelines_and_token):
     liveliness, token = lifelines_and_token
     assert not liveliness.is_there("coordinator")
     newer = pair[0].liveliness().declare_token(keys.live_key("kb_node", "8"))
-    cut = liveliness.of(("kb_node",))
+    cut = liveliness.token_for(("kb_node",))
     token.undeclare()
     until(lambda: cut.is_cancelled, "the older one is gone")
     assert liveliness.is_there("kb_node")
@@ -55,10 +55,10 @@ def test_the_robots_that_are_there_are_told_of_before_it_goes_on(pair):
 
 def test_all_that_hangs_on_a_node_is_cancelled_when_it_goes(lifelines_and_token):
     liveliness, token = lifelines_and_token
-    old = [liveliness.of(("kb_node",)), liveliness.of(("kb_node", "coordinator"))]
-    others = liveliness.of(("coordinator",))
-    assert liveliness.of(("kb_node",)) is old[0]
+    old = [liveliness.token_for(("kb_node",)), liveliness.of(("kb_node", "coordinator"))]
+    others = liveliness.token_for(("coordinator",))
+    assert liveliness.token_for(("kb_node",)) is old[0]
     token.undeclare()
     until(lambda: all(lifeline.is_cancelled for lifeline in old), "the liveliness are cut")
     assert not others.is_cancelled
-    assert not liveliness.of(("kb_node",)).is_cancelled
+    assert not liveliness.token_for(("kb_node",)).is_cancelled

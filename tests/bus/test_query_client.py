@@ -198,7 +198,7 @@ def test_ask_later_tells_that_the_node_went(pair):
 def test_who_asks_on_a_lifeline_that_was_just_cut_is_told_so(pair):
     _, client = pair
     liveliness = bus.LivelinessMonitor(client)
-    liveliness.of(("kb_node",)).cancel()
+    liveliness.token_for(("kb_node",)).cancel()
     answers: queue.SimpleQueue = queue.SimpleQueue()
     bus.ask_later(client, keys.BRIDGE, "get", *ASKED, answers.put, liveliness=liveliness)
     with pytest.raises(errors.NoAnswer):

@@ -35,15 +35,15 @@ def test_what_it_says_holds_in_a_session(file):
         ("{ connect: {endpoints: ['tcp/10.0.0.1:1']} }", "sets connect/endpoints.*use --connect"),
         ("{ transprt: 1 }", "unknown field `transprt`"),
         ("{", "not a Zenoh configuration"),
-        ("{ transport: {link: {tls: {listen_certificate: '/none.pem'}}} }", "no such file"),
+        ("{ transport: {link: {tls: {listen_certificate: '/none.pem'}}} }", "does not exist"),
         ("{ access_control: {rules: [], policies: [{rules: ['r'], subjects: ['s']}]} }", "not enabled"),
         (
             "{ access_control: {enabled: true, rules: [], policies: [{rules: ['r'], subjects: []}]} }",
-            "names r, which is not among the rules",
+            "uses r, which is not defined in rules",
         ),
         (
             "{ access_control: {enabled: true, policies: [{rules: [], subjects: ['s']}]} }",
-            "names s, which is not among the subjects",
+            "uses s, which is not defined in subjects",
         ),
     ],
 )
@@ -61,7 +61,7 @@ def test_what_would_not_do_what_it_says_is_told(file, text, told):
 )
 def test_what_is_made_from_the_keys_cannot_be_set_beside_them(file, text):
     bus.zenoh_config.require_sound(file(text), secure=False)
-    with pytest.raises(errors.BadFile, match="which --secure makes"):
+    with pytest.raises(errors.BadFile, match="which --secure creates"):
         bus.zenoh_config.require_sound(file(text), secure=True)
 
 

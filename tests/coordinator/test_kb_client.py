@@ -55,7 +55,7 @@ def test_a_change_waits_for_the_knowledge_base_and_nothing_stands_still_meanwhil
 def test_it_is_told_who_is_missing(network, how, monkeypatch):
     monkeypatch.setattr(bus, "RESTART_S", 0.2)
     answer = getattr(network[0], how)(TRANSACTION)
-    with pytest.raises(errors.NoAnswer, match="kb_node is not running, or is starting"):
+    with pytest.raises(errors.NoAnswer, match="kb_node is not running or still starting"):
         answer.result(PATIENCE_S)
 
 

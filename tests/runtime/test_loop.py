@@ -261,7 +261,7 @@ def test_a_reply_of_another_in_json(network):
     ("prefix", "verb", "error", "said"),
     [
         (PREFIX, "fly", errors.UnknownVerb, "unknown verb 'fly'"),
-        ("semmap/nobody", "get", errors.NoAnswer, "no answer on semmap/nobody/get: no node serves it"),
+        ("semmap/nobody", "get", errors.NoAnswer, "no response on semmap/nobody/get: no node serves it"),
     ],
 )
 def test_so_is_an_error(network, monkeypatch, prefix, verb, error, said):

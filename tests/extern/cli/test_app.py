@@ -218,7 +218,7 @@ def test_watch_shows_what_happens(system):
 def test_no_system_is_no_answer(system, monkeypatch):
     system_elsewhere = "tcp/127.0.0.1:9"
     said = system.cli("list", "--connect", system_elsewhere, status=3)
-    assert "no system answers at tcp/127.0.0.1:9" in said
+    assert "no response from tcp/127.0.0.1:9" in said
 
 
 def test_a_verb_that_only_asks_imports_nothing_heavy():
