@@ -1,4 +1,4 @@
-"""What many decoded entities have in common, kept once: a message says it again for each of them."""
+"""Interns the common parts of decoded entities, because each message repeats them."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from msgspec.structs import force_setattr as _set
 from semmap.schemas.entities import IDENTITY, Entity, Provenance
 
 _MOST: Final = 10_000
-"""Texts, or provenances, remembered; then it begins anew."""
+"""Largest number of stored texts, or provenances; then the store is cleared."""
 
 
 class EntityInterner:
-    """Classes, words and provenance of entities: equal ones become one object. Halves a map's memory."""
+    """Shares equal classes, texts and provenance between entities; halves the memory of a map."""
 
     def __init__(self) -> None:
         self._kinds: dict[tuple[str, tuple[str, ...], str], tuple[str, tuple[str, ...], str]] = {}
@@ -21,10 +21,10 @@ class EntityInterner:
         self._provenances: dict[int, Provenance] = {}
 
     def entity(self, entity: Entity) -> Entity:
-        """The same entity, which now shares its parts with others.
+        """Make an entity share its parts with others, and return it.
 
-        It is changed in place, to equal parts: making a copy takes several times as long. So it must have
-        been decoded just now, and nobody else may look at it on another thread meanwhile.
+        The entity is changed in place, because a copy takes several times as long. It must have been decoded
+        just before, and no other thread may use it in the meantime.
         """
         kind = (entity.class_, entity.types, entity.model)
         shared = self._kinds.setdefault(kind, kind)
@@ -40,7 +40,7 @@ class EntityInterner:
             _set(entity, "preferred_reference", self._text(reference))
         whole, pose_s = self._provenance(entity.provenance), entity.pose_provenance
         shape_s, reference_s, seq = entity.shape_provenance, entity.reference_provenance, whole.commit
-        of = self._provenance  # one commit has said all of most entities
+        of = self._provenance  # most entities come from a single commit
         _set(entity, "provenance", whole)
         _set(entity, "pose_provenance", whole if pose_s.commit == seq else of(pose_s))
         _set(entity, "shape_provenance", whole if shape_s.commit == seq else of(shape_s))
@@ -58,8 +58,8 @@ class EntityInterner:
             self._texts.clear()
         return self._texts.setdefault(text, text)
 
-    def _provenance(self, said: Provenance) -> Provenance:
-        """A commit has one provenance, so its number tells."""
+    def _provenance(self, provenance: Provenance) -> Provenance:
+        """Return the shared provenance; the commit number identifies it."""
         if len(self._provenances) > _MOST:
             self._provenances.clear()
-        return self._provenances.setdefault(said.commit, said)
+        return self._provenances.setdefault(provenance.commit, provenance)

@@ -1,7 +1,7 @@
-"""Following the map: the one way in which nodes keep a replica of it up to date.
+"""Keeps a node's replica of the map up to date.
 
-Subscribe first, then fetch; whatever is missed, abridged or doubted after a restart of the knowledge base is
-fetched again.
+It subscribes first and fetches a snapshot afterwards. It fetches again after missed or abridged commits, and
+after a restart of the knowledge base that puts the replica in doubt.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from semmap.schemas.health import Health
 
 _LOOK_S = 0.2
 _BEHIND_S = 3.0
-"""A knowledge base that is behind the replica for so long never made what the replica is ahead by."""
+"""If the knowledge base is behind the replica for this time, it never made the replica's last commits."""
 
 C = TypeVar("C", Commit, Effects)
 
 
 class SnapshotLoaded(NamedTuple):
-    """A replica was begun anew: the commit it was at before (-1: none), that of the snapshot, the classes."""
+    """A replica was loaded from a snapshot: its commit before (-1: none), the new commit, and the classes."""
 
     before: int
     seq: int
@@ -36,7 +36,7 @@ class SnapshotLoaded(NamedTuple):
 
 
 class Follower(Generic[C]):
-    """Keeps a replica fresh. Owned by the node's thread, as the replica is."""
+    """Keeps a replica up to date. Owned by the node's thread, like the replica."""
 
     def __init__(
         self,
@@ -50,11 +50,11 @@ class Follower(Generic[C]):
     ) -> None:
         """Follow `topic`, which publishes commits in full or their effects.
 
-        The class table is asked for at `classes_at`: of the knowledge base, or, by who may not ask that, as a
-        command.
+        The class table is requested at `classes_at`: from the knowledge base or, for clients without access
+        to it, as a command.
 
-        `on_commit(commit, known)` is called after each commit; `known`: the replica is at it or beyond.
-        `on_snapshot(what)` is called after each snapshot that the replica has begun with.
+        `on_commit(commit, known)` is called after each commit; `known` means that the replica includes it.
+        `on_snapshot(loaded)` is called after the replica was loaded from a snapshot.
         """
         self._node = node
         self._replica: MapReplica[C] = replica
@@ -65,13 +65,13 @@ class Follower(Generic[C]):
         self._begun_ns = 0
         self._kb_started_ns = 0
         self._ahead: tuple[int, float] | None = None
-        """A commit that the replica has and the knowledge base had not, and since when."""
-        self._there = -1
-        """The last commit, as of the knowledge base's last beat but one."""
+        """A commit of the replica that the knowledge base did not have, and since when."""
+        self._previous = -1
+        """The last commit, as of the knowledge base's last heartbeat but one."""
         node.describe("waiting for the knowledge base")
         node.follow(topic, self._on_commit)
         node.follow(keys.HEALTH, self._on_health)
-        node.every(_LOOK_S, self._look)
+        node.every(_LOOK_S, self._check)
 
     def _on_commit(self, commit: C) -> None:
         known = self._replica.take(commit)
@@ -80,11 +80,11 @@ class Follower(Generic[C]):
             self._fetch()
 
     def _on_health(self, health: Health) -> None:
-        """Another process of the knowledge base may know another map, or less of the same."""
+        """Doubt the replica after a restart of the knowledge base, which may have another map."""
         if health.node != "kb_node":
             return
         if health.started_ns == self._kb_started_ns:
-            self._notice(health.commit)
+            self._fetch_if_missed(health.commit)
             self._compare(health)
             return
         is_another = self._kb_started_ns or health.started_ns > self._begun_ns
@@ -94,7 +94,7 @@ class Follower(Generic[C]):
             self._fetch()
 
     def _compare(self, health: Health) -> None:
-        """What the knowledge base says of its last commit, with what was heard of it."""
+        """Compare the last commit of the knowledge base with that of the replica."""
         replica = self._replica
         if health.commit is None or replica.seq < 0:
             return
@@ -106,22 +106,22 @@ class Follower(Generic[C]):
             self._ahead = None
             replica.doubt()
 
-    def _notice(self, commit: int | None) -> None:
-        """What the knowledge base had at its last beat and is not here by now has been missed.
+    def _fetch_if_missed(self, commit: int | None) -> None:
+        """Fetch the map if a commit of an earlier heartbeat has not arrived.
 
-        Unless somebody is fetching it just now, which takes several beats of a large map.
+        Not while it is being fetched, which takes several heartbeats for a large map.
         """
-        missed = 0 <= self._replica.seq < self._there and not self._replica.is_being_fetched
-        self._there = -1 if commit is None else commit
+        missed = 0 <= self._replica.seq < self._previous and not self._replica.is_being_fetched
+        self._previous = -1 if commit is None else commit
         if missed:
             self._fetch()
 
-    def _look(self) -> None:
+    def _check(self) -> None:
         if not self._replica.is_current and not self._replica.is_being_fetched:
             self._fetch()
 
     def _fetch(self) -> None:
-        """Ask for the class table, then for a snapshot page by page; it is asked again after a failure."""
+        """Request the class table, then a snapshot page by page; it is repeated after a failure."""
         if self._fetching:
             return
         self._fetching = True
@@ -134,7 +134,7 @@ class Follower(Generic[C]):
 
         def on_page(page: Snapshot) -> None:
             if page.more:
-                self._ask(pages.after(page), on_page)  # made while this one is taken
+                self._ask(pages.after(page), on_page)  # prepared while this one is processed
             pages.take(page)
             if page.more:
                 return
@@ -143,9 +143,9 @@ class Follower(Generic[C]):
 
         self._ask(Classes(), on_classes, at=self._classes_at)
 
-    def _give_up(self) -> None:
+    def _abort(self) -> None:
         self._fetching = False
-        self._replica.give_up_pages()
+        self._replica.cancel_pages()
 
     def _begin(self, snapshot: Snapshot, classes: tuple[ClassInfo, ...]) -> None:
         before = self._replica.seq
@@ -158,9 +158,9 @@ class Follower(Generic[C]):
             try:
                 take(done.result())
             except errors.NoAnswer:
-                self._give_up()
+                self._abort()
             except Exception as error:
-                self._give_up()
+                self._abort()
                 self._node.report(f"cannot follow the map: {type(error).__name__}: {error}")
 
         self._node.ask_later(at, call).add_done_callback(on_done)

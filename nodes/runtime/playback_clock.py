@@ -1,4 +1,4 @@
-"""The rhythm in which commits of the past come again."""
+"""Timing of a playback of past commits."""
 
 from __future__ import annotations
 
@@ -10,35 +10,35 @@ from typing import Final
 from semmap.schemas.errors import BadRequest
 
 LONGEST_S: Final = 3.0
-"""How long one waits for the next commit at most: nobody watches a night pass."""
+"""Longest wait for the next commit; longer pauses are shortened."""
 
 
 def require_speed(speed: float) -> float:
-    """`speed` if it is one: 1 is as it was, 10 ten times as fast. Raises BadRequest."""
+    """Return `speed` if it is valid: 1 is real time, 10 ten times as fast. Raises BadRequest."""
     if not math.isfinite(speed) or speed <= 0.0:
         raise BadRequest(
-            f"the speed must be greater than 0, not {speed:g}: 1 is as it was, 10 is ten times that"
+            f"the speed must be greater than 0, not {speed:g}; 1 is real time, 10 is ten times as fast"
         )
     return speed
 
 
 def require_longest(longest_s: float) -> float:
-    """`longest_s` if one can wait for so long. Raises BadRequest."""
+    """Return `longest_s` if it is valid. Raises BadRequest."""
     if not math.isfinite(longest_s) or longest_s < 0.0:
         raise BadRequest(f"the longest wait must be 0 seconds or more, not {longest_s:g}")
     return longest_s
 
 
 def wait_s(before_ns: int, after_ns: int, *, speed: float = 1.0, longest_s: float = LONGEST_S) -> float:
-    """Seconds from one commit to the next, by their stamps [ns since 1970].
+    """Return the seconds from one commit to the next, by their stamps [ns since 1970].
 
-    Where the clock was set back meanwhile there is no wait.
+    If the clock was set back in between, there is no wait.
     """
     return max(0.0, min((after_ns - before_ns) / 1e9 / speed, longest_s))
 
 
 def waits_s(stamps_ns: Iterable[int], *, speed: float = 1.0, longest_s: float = LONGEST_S) -> Iterator[float]:
-    """The waits between commits with these stamps: one fewer than there are commits."""
+    """Yield the waits between commits with these stamps: one fewer than the stamps."""
     return (wait_s(*pair, speed=speed, longest_s=longest_s) for pair in pairwise(stamps_ns))
 
 
@@ -50,10 +50,10 @@ def next_position(
     longest_s: float = LONGEST_S,
     least_s: float = 0.0,
 ) -> tuple[int, float]:
-    """Where to be next when one shows the commits one after another, and in how many seconds.
+    """Return the next commit to show, and the seconds until then.
 
-    That is the next commit or, where many come within `least_s` seconds, the last of those: who draws them
-    need not draw faster. `at` and what is returned are places in `stamps_ns`; at the end one stays there.
+    This is the next commit or, if many come within `least_s` seconds, the last of those, so that fewer frames
+    have to be drawn. `at` and the result are indices of `stamps_ns`; the last index is its own successor.
     """
     waited_s, place = 0.0, at
     while place + 1 < len(stamps_ns):

@@ -57,7 +57,7 @@ def test_a_lesson_is_passed_on_with_its_class_as_the_tbox_has_it(shown):
     [
         (Learn(class_="Cupp", entity="cup1"), errors.UnknownClass, "did you mean Cup.*load --tbox FILE"),
         (Learn(class_="Kitchen", entity="cup1"), errors.UnknownClass, "is a class of places"),
-        (Learn(class_="Pose", entity="cup1"), errors.UnknownClass, "not a class of things in space"),
+        (Learn(class_="Pose", entity="cup1"), errors.UnknownClass, "not a spatial class"),
         (Learn(class_="Cup", entity="cup2"), errors.UnknownName, "no entity is named 'cup2'"),
         (Learn(class_="Cup"), errors.BadRequest, "give either an entity"),
         (Learn(class_="Cup", entity="cup1", views=(VIEW,)), errors.BadRequest, "give either an entity"),

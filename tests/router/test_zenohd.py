@@ -69,7 +69,7 @@ def test_a_router_by_the_printed_file_admits_whom_ours_would(folder, printed):
 def test_a_printed_file_is_for_certificates_only(folder, capsys):
     words = ["keys", "zenohd", "--dir", str(folder), "--connect", "tcp/10.0.0.1:7447"]
     assert execute(words) == 2
-    assert "endpoints of TLS only" in capsys.readouterr().err
+    assert "is not a plain TLS endpoint" in capsys.readouterr().err
 
 
 def test_what_is_routed_for_a_robot_bears_its_name(printed):

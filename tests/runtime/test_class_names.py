@@ -53,7 +53,7 @@ def test_a_name_wins_over_a_label():
 
 def test_a_label_of_several_is_refused_with_the_candidates():
     names = ClassNames([info("Cup", italian="tazza"), info("Mug", italian="Tazza")])
-    with pytest.raises(UnknownClass, match="'tazza' is ambiguous: Cup or Mug; say which class"):
+    with pytest.raises(UnknownClass, match="'tazza' is ambiguous: Cup or Mug; use one of these names"):
         names.find("tazza")
 
 
@@ -71,7 +71,7 @@ def twins() -> ClassNames:
 @pytest.mark.parametrize("word", ["Color", "color"])
 def test_a_name_of_several_classes_is_refused_with_the_candidates(word):
     with pytest.raises(
-        UnknownClass, match=f"'{word}' is ambiguous: dul:Color or soma:Color; say which class"
+        UnknownClass, match=f"'{word}' is ambiguous: dul:Color or soma:Color; use one of these names"
     ):
         twins().find(word)
 
@@ -83,7 +83,7 @@ def test_a_prefix_or_an_iri_says_which(word):
 
 def test_without_classes_of_things_in_space_it_is_said_what_to_do():
     names = ClassNames([info("Pizza", spatial=False)])
-    with pytest.raises(UnknownClass, match=r"nothing can be placed: .* --spatial-root CLASS"):
+    with pytest.raises(UnknownClass, match=r"does not define .* --spatial-root CLASS"):
         names.spatial("Pizza")
 
 
@@ -105,5 +105,5 @@ def test_an_unknown_class_is_told_with_the_nearest():
 
 
 def test_nothing_can_be_of_an_abstract_class():
-    with pytest.raises(UnknownClass, match="is not a class of things in space"):
+    with pytest.raises(UnknownClass, match="is not a spatial class"):
         NAMES.spatial("Color")

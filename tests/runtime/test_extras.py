@@ -100,7 +100,9 @@ def test_what_is_missing_is_said_with_how_to_install_it(without):
     without("mujoco", "rerun")
     with pytest.raises(errors.BadRequest) as caught:
         extras.require("semmap replay", "record")
-    assert caught.value.text == "semmap replay needs more than is installed: pip install 'semmap[record]'"
+    assert (
+        caught.value.text == "semmap replay: missing optional packages; install: pip install 'semmap[record]'"
+    )
     assert caught.value.exit_status == 2
 
 
@@ -109,8 +111,8 @@ def test_up_says_how_to_do_without(without):
     with pytest.raises(errors.BadRequest) as caught:
         extras.require_nodes((*NODES[:3], "recorder"))
     assert caught.value.text == (
-        "semmap up needs more than is installed: pip install 'semmap[sim,record]',"
-        " or go without: semmap up --no-sim --no-record"
+        "semmap up: missing optional packages; install: pip install 'semmap[sim,record]',"
+        " or start without: semmap up --no-sim --no-record"
     )
     extras.require_nodes(("coordinator", "kb_node"))
 
@@ -179,4 +181,4 @@ def test_what_was_named_cannot_be_done_without(without):
     without("mujoco")
     with pytest.raises(errors.BadRequest) as caught:
         extras.require_nodes(("sim_node",), named=True)
-    assert caught.value.text == "semmap up needs more than is installed: pip install 'semmap[sim]'"
+    assert caught.value.text == "semmap up: missing optional packages; install: pip install 'semmap[sim]'"

@@ -34,7 +34,7 @@ def test_too_much_is_refused():
     until(lambda: len(pool._queue) == 0, "that is in hand")
     for _ in range(64):
         pool.submit(held.wait, 10)
-    with pytest.raises(errors.Busy, match="64 questions that take long wait already"):
+    with pytest.raises(errors.Busy, match="64 long requests are waiting"):
         pool.submit(held.wait, 10)
     held.set()
     pool.close()

@@ -260,7 +260,7 @@ def test_a_reply_of_another_in_json(network):
 @pytest.mark.parametrize(
     ("prefix", "verb", "error", "said"),
     [
-        (PREFIX, "fly", errors.UnknownVerb, "unknown verb 'fly'"),
+        (PREFIX, "fly", errors.UnknownVerb, "unknown command 'fly'"),
         ("semmap/nobody", "get", errors.NoAnswer, "no response on semmap/nobody/get: no node serves it"),
     ],
 )
@@ -365,7 +365,7 @@ def test_what_finds_the_queue_full_is_refused_at_once_and_the_rest_is_done(netwo
     name, read = got.get(timeout=PATIENCE_S)
     assert name == "too late"
     with pytest.raises(
-        errors.Busy, match=r"^test_node is busy: 3 requests wait already; try again in "
+        errors.Busy, match=r"^test_node is busy: 3 requests are waiting; try again in "
     ) as busy:
         read()
     assert busy.value.again_s > 0.0

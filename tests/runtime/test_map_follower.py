@@ -181,6 +181,6 @@ def test_a_follower_leaves_pages_to_whoever_fetches_them_already(both):
         until(lambda number=number: beats.count(2) == number, "the beat is heard")
     assert kb.asked == asked
     kb.snapshot = Snapshot(seq=2, entities=(entity("sink1"),))
-    follower.map.give_up_pages()
+    follower.map.cancel_pages()
     until(lambda: follower.map.is_current, "a snapshot came")
     assert set(follower.map.entities) == {"sink1"}

@@ -124,7 +124,7 @@ def test_a_replica_says_whether_its_pages_are_on_their_way():
     view = begun()
     pages = view.begin_pages()
     assert view.is_being_fetched
-    view.give_up_pages()
+    view.cancel_pages()
     assert not view.is_being_fetched
     pages = view.begin_pages()
     pages.take(Snapshot(seq=2, entities=()))

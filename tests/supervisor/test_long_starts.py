@@ -42,21 +42,21 @@ def test_seeding_tells_for_how_long_it_has_taken(tmp_path, monkeypatch):
 def test_it_is_said_what_world_is_compiled(tmp_path):
     settings = of(tmp_path, "/there/big.xml")
     assert up._describe_seeding(settings, 12.3).endswith(
-        "compiling the world big.xml, and reading the map (12 s)"
+        "compiling the world big.xml and loading the map (12 s)"
     )
     settings = of(tmp_path)
-    assert up._describe_seeding(settings, 12.3).split(maxsplit=1)[1] == "reading the map (12 s)"
+    assert up._describe_seeding(settings, 12.3).split(maxsplit=1)[1] == "loading the map (12 s)"
 
 
 def test_a_node_that_starts_says_now_and_then_what_it_does(tmp_path, monkeypatch):
     said: list[str] = []
     foreground = up._Foreground(Supervisor(tmp_path), of(tmp_path), None, None, said.append)
     foreground._watchdog.run_as({"sim_node": os.getpid()})
-    foreground._hear(starting("compiling the world big.xml"))
+    foreground._on_health(starting("compiling the world big.xml"))
     assert not said
     monkeypatch.setattr(up, "SILENT_S", 0.0)
-    foreground._hear(starting(""))
-    foreground._hear(starting("compiling the world big.xml"))
+    foreground._on_health(starting(""))
+    foreground._on_health(starting("compiling the world big.xml"))
     assert [line.split(maxsplit=1)[1] for line in said] == ["compiling the world big.xml (0 s)"]
 
 

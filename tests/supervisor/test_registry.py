@@ -69,5 +69,5 @@ def test_a_file_that_cannot_be_understood_is_begun_anew(tmp_path, folder, conten
 
 def test_a_registry_that_cannot_be_written_says_so(folder):
     folder.write_text("in the way")
-    with pytest.raises(errors.Refused, match="cannot be listed"), entered(folder):
+    with pytest.raises(errors.Refused, match="cannot write the list"), entered(folder):
         pass

@@ -78,7 +78,9 @@ def test_settings_survive_the_file_and_are_checked():
 
 def test_perception_does_not_look_at_what_the_map_says_itself():
     for truth in ("map", "scene"):
-        with pytest.raises(ValueError, match=f"--truth {truth} .* add --truth perceived, or --camera-hz 0"):
+        with pytest.raises(
+            ValueError, match=f"--truth {truth} .* add --truth perceived, or use other cameras"
+        ):
             settings(perception=True, truth=truth, camera_hz=5.0)
         assert settings(perception=True, truth=truth).perception  # frames of other cameras
     assert settings(perception=True, truth="perceived", camera_hz=5.0).perception

@@ -181,7 +181,7 @@ def test_a_model_file_of_no_class_is_told(tmp_path):
     words = ("--models", models, "--abox", "none", "--no-record")
     with running(tmp_path / "data", *words) as system:
         (line,) = [line for line in system.said if line.startswith("models ")]
-    assert "ignored, because no class has a model of that name: chiar.obj (did you mean chair" in line
+    assert "ignored, because no class has a model with this name: chiar.obj (did you mean chair" in line
 
 
 def test_one_system_a_data_folder_that_is_stopped_by_the_endpoint_it_listens_on(tmp_path):

@@ -87,7 +87,7 @@ def reload_map(view: MapView) -> KbCoroutine[None]:
         while not pages.are_complete:
             pages.take((yield from ask(pages.query)))
     except BaseException:
-        view.give_up_pages()
+        view.cancel_pages()
         raise
     view.begin(pages.snapshot)
     heap.trim()

@@ -44,7 +44,7 @@ _REFERENCE = "SELECT ?text { :cup4 dm:hasPreferredReference/dm:lexicalReference 
 
 BAD = [
     (("add", "Chiar"), 2, "did you mean Chair"),
-    (("add", "Color"), 2, "is not a class of things in space"),
+    (("add", "Color"), 2, "is not a spatial class"),
     (("add", "Chair", "chair1"), 1, "taken"),
     (("add", "Chair", "my chair"), 2, "valid name"),
     (("add", "Chair", "1chair"), 2, "valid name"),
@@ -62,7 +62,7 @@ BAD = [
     (("add",), 2, "CLASS"),
     (("update", "chair7", "--ref", "x"), 1, "did you mean chair1"),
     (("update", "chair1", "--class", "Chiar"), 2, "did you mean Chair"),
-    (("update", "chair1", "--class", "Color"), 2, "is not a class of things in space"),
+    (("update", "chair1", "--class", "Color"), 2, "is not a spatial class"),
     (("remove", "chair7"), 1, "no entity is named"),
     (("remove", "chair1", "chair7"), 1, "no entity is named"),
     (("get", "chair7"), 1, "did you mean chair1"),

@@ -75,8 +75,11 @@ def test_a_part_whose_map_is_elsewhere_remembers_its_world(data):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["up", "--only", "brain"], "there is no node 'brain'; --only takes any of kb, coordinator, sim,"),
-        (["up", "--only", ","], "--only takes the names of nodes: "),
+        (
+            ["up", "--only", "brain"],
+            "--only: unknown node 'brain'; use a comma-separated list of kb, coordinator, sim,",
+        ),
+        (["up", "--only", ","], "--only requires names of nodes: "),
         (["up", "--only", "sim", "--no-sim"], "--only names the nodes to run; leave out --no-sim"),
         (["up", "--only", "sim", "--perception"], "leave out --perception"),
         (["node", "sim_node", "--only", "sim"], "semmap node runs one node; --only is for semmap up"),
