@@ -71,7 +71,7 @@ class RosNode:
         self._numbers = itertools.count(1)
         self._space = f"{_SPACE}/{domain}/{session.zid()}/0"
         self._kept: list[object] = []
-        """Zenoh ends what nobody holds."""
+        """Declarations end when no reference to them is left."""
         self._kept.append(session.liveliness().declare_token(f"{self._space}/0/NN/%/%/{name}"))
 
     def publish(self, topic: RosTopic) -> RosPublisher:
