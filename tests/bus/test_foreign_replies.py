@@ -1,4 +1,4 @@
-"""A program that serves a key of a node's, and is not that node."""
+"""A program that serves the key of a node without being that node."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ASKED = (commands.Get(name="x"), replies.Done)
 
 @pytest.fixture
 def three():
-    """A node, a thief and a client; the thief is preferred, because it is nearer."""
+    """A node, a foreign program and a client; the foreign program is preferred, because it is nearer."""
     endpoint = free_endpoint()
     with (
         bus.open_session(bus.Network(mode="peer", listen=(endpoint,), connect=())) as thief,
@@ -39,7 +39,7 @@ def three():
 
 
 def ready(node, client):
-    """The node serves, too, and its token is seen."""
+    """The node also serves, and its token is seen."""
     bus.serve(node, keys.BRIDGE, answer(lambda _: replies.Done(text="true")))
     liveliness = bus.LivelinessMonitor(client)
     token = bus.declare_presence(node, "kb_node")
@@ -47,12 +47,12 @@ def ready(node, client):
     return liveliness, token
 
 
-def test_its_reply_is_passed_over_for_the_nodes_own(three, caplog):
+def test_a_foreign_reply_is_ignored_if_the_node_replies(three, caplog):
     node, client, stolen = three
     liveliness, _token = ready(node, client)
     said = "a program that is not kb_node answers on semmap/bridge/get"
     with caplog.at_level(logging.WARNING):
-        for _ in range(300):  # who comes first is not said
+        for _ in range(300):  # the order of the replies is not defined
             assert bus.ask(client, keys.BRIDGE, "get", *ASKED, liveliness=liveliness).text == "true"
             if said in caplog.text:
                 break
@@ -60,7 +60,7 @@ def test_its_reply_is_passed_over_for_the_nodes_own(three, caplog):
     assert caplog.text.count(said) <= 1
 
 
-def test_it_is_passed_over_before_the_news_of_the_node_has_come(three):
+def test_a_foreign_reply_is_ignored_before_the_token_of_the_node_arrives(three):
     node, client, stolen = three
     bus.serve(node, keys.BRIDGE, answer(lambda _: replies.Done(text="true")))
     _token = bus.declare_presence(node, "kb_node")
@@ -75,7 +75,7 @@ def test_it_is_passed_over_before_the_news_of_the_node_has_come(three):
     assert stolen
 
 
-def test_without_the_nodes_own_it_is_told(three):
+def test_without_a_reply_of_the_node_a_foreign_reply_is_an_error(three):
     node, client, _ = three
     liveliness = bus.LivelinessMonitor(client)
     token = bus.declare_presence(node, "kb_node")
@@ -85,7 +85,7 @@ def test_without_the_nodes_own_it_is_told(three):
     del token
 
 
-def test_who_asks_without_waiting_is_told_and_can_ask_everybody(three):
+def test_ask_later_reports_a_foreign_reply_and_can_query_all(three):
     node, client, _ = three
     liveliness = bus.LivelinessMonitor(client)
     token = bus.declare_presence(node, "kb_node")
@@ -114,7 +114,7 @@ def test_who_asks_without_waiting_is_told_and_can_ask_everybody(three):
     del token
 
 
-def test_while_no_node_is_ready_nobody_can_tell(three):
+def test_foreign_replies_are_accepted_while_no_node_is_ready(three):
     _, client, stolen = three
     liveliness = bus.LivelinessMonitor(client)
     reply = until(lambda: bus.ask(client, keys.BRIDGE, "get", *ASKED, liveliness=liveliness), "a reply")
@@ -123,7 +123,7 @@ def test_while_no_node_is_ready_nobody_can_tell(three):
 
 @pytest.fixture
 def slow():
-    """A node that does not answer, and a client of it that is connected to somebody else."""
+    """A node that does not reply, and a client that is connected to another node."""
     endpoint = free_endpoint()
     with (
         bus.open_session(bus.Network(mode="peer", listen=(endpoint,), connect=())),
@@ -140,10 +140,10 @@ def slow():
 
 
 _OFTEN = 150
-"""Of some ten times that time runs out, one is told by the neighbour before it is noticed here."""
+"""In one of about ten time-outs, the neighbour reports it before the client notices."""
 
 
-def test_a_node_that_is_late_is_no_stranger(slow, caplog):
+def test_a_late_node_is_not_foreign(slow, caplog):
     client, liveliness = slow
     for _ in range(_OFTEN):
         with pytest.raises(bus.TimedOut, match="did not answer within"):
@@ -151,7 +151,7 @@ def test_a_node_that_is_late_is_no_stranger(slow, caplog):
     assert "a program that is not kb_node" not in caplog.text
 
 
-def test_nor_is_one_who_is_asked_without_waiting(slow):
+def test_a_late_node_is_not_foreign_with_ask_later(slow):
     client, liveliness = slow
     answers = queue.SimpleQueue()
     for _ in range(_OFTEN):

@@ -1,4 +1,4 @@
-"""What is larger than a message travels in pieces, and is bounded."""
+"""Large messages are sent in fragments, and their size is limited."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.waiting import until_followed
 
 @pytest.fixture
 def small(monkeypatch):
-    """Pieces of a kilobyte."""
+    """Fragments of a kilobyte."""
     monkeypatch.setattr(fragmentation, "FRAGMENT_BYTES", 1000)
 
 
@@ -31,14 +31,14 @@ def echoed(request):
 
 
 @pytest.mark.parametrize("size", [256, 1024, 10_240, 102_400])
-def test_a_large_question_and_a_large_answer_arrive_whole(pair, small, size):
+def test_a_large_request_and_a_large_reply_arrive_complete(pair, small, size):
     server, client = pair
     bus.serve(server, PREFIX, answer(echoed))
     reply = bus.ask(client, PREFIX, "load", load(size), replies.Document)
     assert reply.content == load(size).content
 
 
-def test_so_they_do_without_waiting(pair, small):
+def test_large_messages_arrive_complete_with_ask_later(pair, small):
     server, client = pair
     bus.serve(server, PREFIX, answer(echoed))
     got = queue.SimpleQueue()
@@ -46,7 +46,7 @@ def test_so_they_do_without_waiting(pair, small):
     assert got.get(timeout=PATIENCE_S)().decode().content == load(10_240).content
 
 
-def test_a_large_error_comes_to_who_asked_in_pieces(pair, small):
+def test_a_large_error_arrives_in_fragments(pair, small):
     server, client = pair
 
     def refuse(request):
@@ -57,7 +57,7 @@ def test_a_large_error_comes_to_who_asked_in_pieces(pair, small):
         bus.ask(client, PREFIX, "load", load(10_240), replies.Document)
 
 
-def test_real_pieces_go_through_a_session_that_takes_no_larger_message(pair):
+def test_fragments_pass_a_session_with_a_size_limit(pair):
     server, client = pair
     bus.serve(server, PREFIX, answer(echoed))
     large = load(40 << 20)
@@ -78,7 +78,7 @@ def test_a_message_larger_than_a_session_takes_does_not_arrive(pair):
     assert came.get(timeout=PATIENCE_S) == bus.PUBLICATION_BYTES
 
 
-def test_a_request_of_a_small_kind_is_refused_when_it_is_large(pair):
+def test_a_large_request_of_a_small_kind_is_rejected(pair):
     server, client = pair
     bus.serve(server, PREFIX, answer(lambda request: request.read(commands.Get)))
     with pytest.raises(
@@ -87,14 +87,14 @@ def test_a_request_of_a_small_kind_is_refused_when_it_is_large(pair):
         bus.ask(client, PREFIX, "get", commands.Get(name="x" * (2 << 20)), replies.Document)
 
 
-def test_nor_is_it_put_together(pair, small):
+def test_a_large_request_of_a_small_kind_is_not_assembled(pair, small):
     server, client = pair
     bus.serve(server, PREFIX, answer(echoed), most=lambda verb: 5000)
     with pytest.raises(errors.BadRequest, match="one of this kind may have up to"):
         bus.ask(client, PREFIX, "load", load(10_240), replies.Document)
 
 
-def test_several_at_once_are_kept_apart(pair, small):
+def test_concurrent_messages_are_not_mixed(pair, small):
     server, client = pair
     bus.serve(server, PREFIX, answer(echoed))
     with ThreadPoolExecutor(8) as pool:
@@ -110,7 +110,7 @@ def test_json_is_not_cut(pair, small):
     assert "one in JSON may have" in reply.err.payload.to_bytes().decode()
 
 
-def test_a_strange_attachment_is_answered(pair):
+def test_an_invalid_attachment_gets_an_error(pair):
     server, client = pair
     bus.serve(server, PREFIX, answer(echoed))
     (reply,) = client.get(f"{PREFIX}/load", payload=b"x", attachment=b"strange")
@@ -121,7 +121,7 @@ def piece(number, count=4, of="a"):
     return fragmentation.Fragment(of=of, number=number, count=count)
 
 
-def test_pieces_are_counted_until_they_are_done_with():
+def test_fragments_are_counted_until_the_request_is_done():
     arrivals = fragmentation.RequestAssembler(most=100)
     for number in range(3):
         assert arrivals.take(piece(number), b"x" * 20, 1000) is None
@@ -133,7 +133,7 @@ def test_pieces_are_counted_until_they_are_done_with():
 
 
 @pytest.mark.parametrize("numbers", [[1], [0, 2], [0, 1, 1]])
-def test_what_is_missing_has_to_be_sent_again(numbers):
+def test_after_a_missing_fragment_the_message_is_sent_again(numbers):
     arrivals = fragmentation.RequestAssembler()
     *before, last = numbers
     for number in before:
@@ -142,7 +142,7 @@ def test_what_is_missing_has_to_be_sent_again(numbers):
         arrivals.take(piece(last), b"x", 1000)
 
 
-def test_what_does_not_go_on_is_given_up(monkeypatch):
+def test_an_incomplete_message_is_dropped_after_a_time_out(monkeypatch):
     arrivals = fragmentation.RequestAssembler(most=100)
     arrivals.take(piece(0), b"x" * 80, 1000)
     with pytest.raises(errors.Busy):
@@ -151,7 +151,7 @@ def test_what_does_not_go_on_is_given_up(monkeypatch):
     assert arrivals.take(piece(0, of="b"), b"x" * 80, 1000) is None
 
 
-def test_no_more_than_a_few_are_put_together_at_a_time():
+def test_the_number_of_messages_in_assembly_is_limited():
     arrivals = fragmentation.RequestAssembler()
     for number in range(16):
         arrivals.take(piece(0, of=str(number)), b"x", 1000)
@@ -159,7 +159,7 @@ def test_no_more_than_a_few_are_put_together_at_a_time():
         arrivals.take(piece(0, of="one more"), b"x", 1000)
 
 
-def test_a_question_that_was_not_cut_is_refused_in_words(pair):
+def test_a_large_unfragmented_request_is_rejected(pair):
     server, client = pair
     bus.serve(server, PREFIX, answer(echoed))
     (reply,) = client.get(f"{PREFIX}/load", payload=bytes(bus.MESSAGE_BYTES + 1))

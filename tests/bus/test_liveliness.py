@@ -1,4 +1,4 @@
-"""Who is there, and that what hangs on who is gone is cancelled."""
+"""Presence of nodes, and cancellation of queries to nodes that are gone."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def lifelines_and_token(pair):
     return liveliness, token
 
 
-def test_who_has_a_token_is_there(pair, lifelines_and_token):
+def test_a_node_with_a_token_is_there(pair, lifelines_and_token):
     liveliness, token = lifelines_and_token
     assert not liveliness.is_there("coordinator")
     newer = pair[0].liveliness().declare_token(keys.live_key("kb_node", "8"))
@@ -31,13 +31,13 @@ def test_who_has_a_token_is_there(pair, lifelines_and_token):
     until(lambda: not liveliness.is_there("kb_node"), "both are gone")
 
 
-def test_the_robots_that_are_there_are_told_of_before_it_goes_on(pair):
+def test_present_robots_are_reported_before_it_returns(pair):
     server, client = pair
     names = ("arm1", "arm2")
     tokens = [server.liveliness().declare_token(f"{name}/{keys.live_key('kb_node', '7')}") for name in names]
     until(lambda: set(names) <= set(bus.find_robots(client)), "they are seen")
     there = bus.Network(connect=(f"{client.info.links()[0].dst}",))
-    for _ in range(20):  # news are now and then as quick as that by themselves
+    for _ in range(20):  # publications are sometimes as fast without it
         told = []
         with bus.open_session(there) as newcomer:
             _follower = bus.follow_robots(newcomer, "kb_node", lambda *said, told=told: told.append(said))
@@ -53,7 +53,7 @@ def test_the_robots_that_are_there_are_told_of_before_it_goes_on(pair):
     later.undeclare()
 
 
-def test_all_that_hangs_on_a_node_is_cancelled_when_it_goes(lifelines_and_token):
+def test_queries_to_a_node_are_cancelled_when_it_goes(lifelines_and_token):
     liveliness, token = lifelines_and_token
     old = [liveliness.token_for(("kb_node",)), liveliness.of(("kb_node", "coordinator"))]
     others = liveliness.token_for(("coordinator",))

@@ -1,4 +1,4 @@
-"""Asking, between real sessions on loopback."""
+"""Queries between real sessions on loopback."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.conftest import PATIENCE_S, until
 from tests.waiting import until_served
 
 
-def test_a_question_is_answered(pair):
+def test_a_query_gets_its_reply(pair):
     server, client = pair
     bus.serve(server, PREFIX, answer(lambda request: replies.Done(text=request.read(commands.Get).name)))
     reply = bus.ask(client, PREFIX, "get", commands.Get(name="chair1"), replies.Done)
@@ -36,13 +36,13 @@ def test_an_error_reply_is_raised_with_its_code(pair):
         bus.ask(client, PREFIX, "add", commands.Get(name="x"), replies.Done)
 
 
-def test_nobody_is_no_answer(pair):
+def test_without_a_queryable_it_is_no_answer(pair):
     _, client = pair
     with pytest.raises(errors.NoAnswer, match="no node serves it"):
         bus.ask(client, PREFIX, "get", commands.Get(name="x"), replies.Done, patience_s=0.2)
 
 
-def test_one_who_does_not_answer_in_time_is_no_answer(pair):
+def test_a_late_reply_is_no_answer(pair):
     server, client = pair
     kept = []
     bus.serve(server, PREFIX, kept.append)
@@ -50,7 +50,7 @@ def test_one_who_does_not_answer_in_time_is_no_answer(pair):
         bus.ask(client, PREFIX, "get", commands.Get(name="x"), replies.Done, timeout_s=0.2)
 
 
-def test_what_is_quick_is_asked_anew_after_a_while_and_nothing_else(pair, monkeypatch):
+def test_only_quick_queries_are_repeated_after_a_time_out(pair, monkeypatch):
     server, client = pair
     monkeypatch.setattr("semmap.nodes.bus.query_client._ROUND_S", 0.3)
     asked = []
@@ -70,7 +70,7 @@ def test_what_is_quick_is_asked_anew_after_a_while_and_nothing_else(pair, monkey
     assert len(asked) == 1
 
 
-def test_questions_that_may_take_long_leave_no_memory_behind_when_they_took_a_moment(pair, monkeypatch):
+def test_queries_with_long_time_outs_leave_no_memory_when_they_were_quick(pair, monkeypatch):
     server, client = pair
     monkeypatch.setattr("semmap.nodes.bus.query_client._ROUND_S", 0.2)
     bus.serve(server, PREFIX, answer(lambda request: replies.Done(text="here")))
@@ -97,7 +97,7 @@ ASKED = (commands.Get(name="x"), replies.Done)
 
 
 def gone_when_asked(server, liveliness):
-    """One who has a question, and whose token goes without that the question ends: as if it had got lost."""
+    """A node that received a query and loses its token without ending it, as if the query were lost."""
     kept = []
     token = server.liveliness().declare_token(keys.live_key("kb_node", "1"))
     until(lambda: liveliness.is_there("kb_node"), "the token is seen")
@@ -110,7 +110,7 @@ def gone_when_asked(server, liveliness):
     return lose
 
 
-def test_a_question_that_got_lost_when_its_node_went_is_asked_again(pair):
+def test_a_query_that_was_lost_with_its_node_is_repeated(pair):
     server, client = pair
     liveliness = bus.LivelinessMonitor(client)
     lose = gone_when_asked(server, liveliness)
@@ -125,7 +125,7 @@ def test_a_question_that_got_lost_when_its_node_went_is_asked_again(pair):
     assert len(asked) == 2
 
 
-def test_so_is_one_to_a_node_that_serves_just_this_verb(pair):
+def test_a_query_to_a_node_of_a_single_verb_is_repeated(pair):
     server, client = pair
     liveliness = bus.LivelinessMonitor(client)
     bus.serve(server, keys.CMD, gone_when_asked(server, liveliness), verb="sparql")
@@ -146,7 +146,7 @@ class Clock:
         return time.monotonic() + self.ahead_s
 
 
-def test_patience_begins_when_who_had_the_question_goes(pair, monkeypatch):
+def test_patience_begins_when_the_node_with_the_query_goes(pair, monkeypatch):
     server, client = pair
     clock = Clock()
     monkeypatch.setattr(query_client, "time", clock)
@@ -159,7 +159,7 @@ def test_patience_begins_when_who_had_the_question_goes(pair, monkeypatch):
         number = next(numbers)
         if number == 0:
             kept.append(request)
-            clock.ahead_s += 2 * PATIENCE_S  # as long as that it has the question
+            clock.ahead_s += 2 * PATIENCE_S  # the node has the query for this time
             token.undeclare()
         elif number == 2:
             request.reply(replies.Done(text="back"))
@@ -170,7 +170,7 @@ def test_patience_begins_when_who_had_the_question_goes(pair, monkeypatch):
     assert bus.ask(client, keys.BRIDGE, "get", *ASKED, **how).text == "back"
 
 
-def test_a_busy_machine_is_not_taken_for_a_node_that_goes_again_and_again(pair, monkeypatch):
+def test_a_busy_machine_is_not_taken_for_a_restarting_node(pair, monkeypatch):
     _, client = pair
     asked = itertools.count()
 
@@ -184,7 +184,7 @@ def test_a_busy_machine_is_not_taken_for_a_node_that_goes_again_and_again(pair, 
         bus.ask(client, keys.BRIDGE, "get", *ASKED, patience_s=0.3, liveliness=bus.LivelinessMonitor(client))
 
 
-def test_ask_later_tells_that_the_node_went(pair):
+def test_ask_later_reports_that_the_node_went(pair):
     server, client = pair
     answers: queue.SimpleQueue = queue.SimpleQueue()
     liveliness = bus.LivelinessMonitor(client)
@@ -195,7 +195,7 @@ def test_ask_later_tells_that_the_node_went(pair):
         answers.get(timeout=PATIENCE_S)()
 
 
-def test_who_asks_on_a_lifeline_that_was_just_cut_is_told_so(pair):
+def test_a_query_with_a_cancelled_token_ends(pair):
     _, client = pair
     liveliness = bus.LivelinessMonitor(client)
     liveliness.token_for(("kb_node",)).cancel()
@@ -207,7 +207,7 @@ def test_who_asks_on_a_lifeline_that_was_just_cut_is_told_so(pair):
         bus.ask(client, keys.BRIDGE, "get", *ASKED, patience_s=0.0, liveliness=liveliness)
 
 
-def test_patience_lasts_until_somebody_serves(pair):
+def test_a_query_is_repeated_until_a_node_serves(pair):
     server, client = pair
     serve = threading.Timer(
         0.4, lambda: bus.serve(server, PREFIX, answer(lambda _: replies.Done(text="here")))
@@ -218,7 +218,7 @@ def test_patience_lasts_until_somebody_serves(pair):
     serve.join()
 
 
-def test_ask_later_answers_once_also_when_nobody_is_there(pair):
+def test_ask_later_calls_back_once_without_a_queryable(pair):
     _, client = pair
     answers: queue.SimpleQueue = queue.SimpleQueue()
     bus.ask_later(client, PREFIX, "get", commands.Get(name="x"), replies.Done, answers.put)

@@ -1,4 +1,4 @@
-"""Serving queries and puts, between real sessions on loopback."""
+"""Queries and puts between real sessions on loopback."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MANY = 500
 SLOWLY = 3000
 
 
-def test_parameters_of_a_selector_are_fields_and_format_json_answers_in_json(pair):
+def test_selector_parameters_are_fields_and_format_json_replies_in_json(pair):
     server, client = pair
     bus.serve(server, PREFIX, answer(lambda request: request.read(commands.Add)))
     (reply,) = client.get(f"{PREFIX}/add?class=Chair;at=1,2,0;alt=a|b;format=json")
@@ -30,7 +30,7 @@ def test_parameters_of_a_selector_are_fields_and_format_json_answers_in_json(pai
     assert str(reply.ok.encoding) == "application/json"
 
 
-def test_the_wire_is_plain_messagepack(pair):
+def test_messages_are_plain_messagepack(pair):
     server, client = pair
     bus.serve(server, PREFIX, answer(lambda request: request.read(commands.Get)))
     (reply,) = client.get(f"{PREFIX}/get", payload=msgpack.packb({"name": "chair1"}))
@@ -63,7 +63,7 @@ def test_a_put_is_executed_and_acknowledged(pair):
 
 
 class Gate:
-    """A publisher that lets nothing through until it is opened, and keeps what came through."""
+    """A publisher that blocks until it is opened, and stores what it published."""
 
     def __init__(self) -> None:
         self.opened = threading.Event()
@@ -93,7 +93,7 @@ def test_a_server_of_puts_does_not_wait_for_slow_readers_of_acknowledgements(pai
 
 
 class ClearedTooLate(threading.Event):
-    """Everything that waits is published between the decision to clear it and its being cleared."""
+    """An event: all waiting acknowledgements are published just before it is cleared."""
 
     def __init__(self, gate: Gate, expected: int) -> None:
         super().__init__()
@@ -101,21 +101,21 @@ class ClearedTooLate(threading.Event):
         self._gate, self._expected = gate, expected
 
     def clear(self) -> None:
-        """Clear it when the publisher has nothing more to say."""
+        """Clear it when the publisher has published all."""
         self._gate.opened.set()
         until(lambda: len(self._gate.passed) == self._expected, "all are published")
         super().clear()
 
 
 def in_time(function):
-    """Does it return? On a thread of its own, so that a test may say no."""
+    """Return whether it returns; on a thread of its own, so that a test can fail."""
     thread = threading.Thread(target=function, daemon=True)
     thread.start()
     thread.join(PATIENCE_S)
     return not thread.is_alive()
 
 
-def test_room_that_was_made_while_the_queue_was_declared_full_is_found(pair, monkeypatch):
+def test_room_made_while_the_queue_was_marked_full_is_found(pair, monkeypatch):
     monkeypatch.setattr(query_server, "_ACKS", 2)
     server, _ = pair
     acks = query_server._Acks(server)
@@ -129,7 +129,7 @@ def test_room_that_was_made_while_the_queue_was_declared_full_is_found(pair, mon
     acks.end()
 
 
-def test_nobody_waits_for_room_after_the_end(pair, monkeypatch):
+def test_there_is_no_wait_for_room_after_the_end(pair, monkeypatch):
     monkeypatch.setattr(query_server, "_ACKS", 1)
     server, _ = pair
     acks = query_server._Acks(server)
@@ -139,8 +139,8 @@ def test_nobody_waits_for_room_after_the_end(pair, monkeypatch):
     assert in_time(acks.wait_for_room)
 
 
-def test_each_put_of_a_sender_that_stays_is_answered_by_one_who_is_slow(pair):
-    """One that closed its session at once would lose most: Zenoh gives what waits half a second."""
+def test_a_slow_node_answers_each_put_of_a_sender_that_stays(pair):
+    """If the sender closed its session immediately, most would be lost: Zenoh waits only half a second."""
     server, client = pair
     acks = []
     client.declare_subscriber(keys.ACK.key, acks.append)

@@ -1,4 +1,4 @@
-"""A Zenoh configuration of one's own is taken, and what Zenoh would accept in silence is told."""
+"""A user's Zenoh configuration is used, and errors that Zenoh ignores are reported."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def file(tmp_path):
     return write
 
 
-def test_what_it_says_holds_in_a_session(file):
+def test_its_settings_apply_to_a_session(file):
     path = file("{ queries_default_timeout: 1234, /* JSON5 */ metadata: {name: 'robot'} }")
     bus.zenoh_config.require_sound(path, secure=True)
     config = bus.Network(own_config=path).as_config()
@@ -47,7 +47,7 @@ def test_what_it_says_holds_in_a_session(file):
         ),
     ],
 )
-def test_what_would_not_do_what_it_says_is_told(file, text, told):
+def test_settings_without_effect_are_rejected(file, text, told):
     with pytest.raises(errors.BadFile, match=told):
         bus.zenoh_config.require_sound(file(text), secure=False)
 
@@ -59,13 +59,13 @@ def test_what_would_not_do_what_it_says_is_told(file, text, told):
         "{transport: {link: {tls: {enable_mtls: true}}}}",
     ],
 )
-def test_what_is_made_from_the_keys_cannot_be_set_beside_them(file, text):
+def test_settings_made_from_the_keys_are_rejected_with_secure(file, text):
     bus.zenoh_config.require_sound(file(text), secure=False)
     with pytest.raises(errors.BadFile, match="which --secure creates"):
         bus.zenoh_config.require_sound(file(text), secure=True)
 
 
-def test_a_missing_file_is_told(tmp_path):
+def test_a_missing_file_is_an_error(tmp_path):
     with pytest.raises(errors.BadFile, match="there is no file"):
         bus.zenoh_config.read(str(tmp_path / "none.json5"))
 

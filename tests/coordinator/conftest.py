@@ -1,4 +1,4 @@
-"""A dispatcher before a real map, without the wire between."""
+"""A dispatcher with a real knowledge base, without Zenoh."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def dispatcher(semantic_map):
 
 
 def immediate(dispatcher):
-    """`change(change)` of a dispatcher that does it at once."""
+    """Return `change(change)` of a dispatcher, executed immediately."""
 
     def change(change):
         future = Future()

@@ -13,7 +13,7 @@ def early(monkeypatch):
     return made
 
 
-def test_what_waits_is_executed_once_there_is_a_map(early):
+def test_waiting_commands_are_executed_with_the_map(early):
     done = early.wait(lambda: "done")
     early.retry(has_map=False)
     assert not done.done()
@@ -40,7 +40,7 @@ def test_one_that_is_restarted_is_waited_for(early, monkeypatch):
     assert not done.done()
 
 
-def test_what_fails_says_why(early):
+def test_a_failure_has_a_reason(early):
     def fail():
         raise errors.Refused("no")
 

@@ -1,4 +1,4 @@
-"""What people show perception, on its way there."""
+"""Commands about exemplars."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def teaching(*, perceives=True):
 
 
 @pytest.mark.parametrize("shown", [{"entity": "cup1"}, {"views": (VIEW,)}])
-def test_a_lesson_is_passed_on_with_its_class_as_the_tbox_has_it(shown):
+def test_an_exemplar_is_forwarded_with_its_class_of_the_tbox(shown):
     relay = teaching().learn(Learn(class_="cup", **shown))
     assert (relay.prefix, relay.call) == (keys.PERCEPTION, Learn(class_="Cup", **shown))
 
@@ -63,11 +63,11 @@ def test_a_lesson_is_passed_on_with_its_class_as_the_tbox_has_it(shown):
         (Learn(class_="Cup", entity="cup1", views=(VIEW,)), errors.BadRequest, "give either an entity"),
     ],
 )
-def test_what_cannot_be_shown_is_refused(command, error, said):
+def test_an_invalid_exemplar_is_rejected(command, error, said):
     with pytest.raises(error, match=said):
         teaching().learn(command)
 
 
-def test_without_perception_it_is_told_how_to_have_it():
+def test_without_perception_the_error_has_the_next_step():
     with pytest.raises(errors.NoAnswer, match="semmap up --perception"):
         teaching(perceives=False).relay(Forget(number=1))

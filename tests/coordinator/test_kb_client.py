@@ -1,4 +1,4 @@
-"""What the coordinator asks while the knowledge base is away, and is back after a while."""
+"""Requests while the knowledge base is away, and back after a while."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def network():
 
 
 def serve(kb):
-    """Answer, but not the first time."""
+    """Reply, but not the first time."""
     asked = []
 
     def receive(request):
@@ -40,19 +40,19 @@ def serve(kb):
 
 
 @pytest.mark.parametrize("how", ["change", "change_later"])
-def test_a_change_waits_for_the_knowledge_base_and_nothing_stands_still_meanwhile(network, how, monkeypatch):
+def test_a_change_waits_for_the_knowledge_base_without_blocking(network, how, monkeypatch):
     monkeypatch.setattr(bus, "RESTART_S", PATIENCE_S)
     asked = questions_asked(monkeypatch)
     bridge, kb = network
     answer = getattr(bridge, how)(TRANSACTION)
-    until(lambda: len(asked) > 2, "it was asked for in vain")
+    until(lambda: len(asked) > 2, "it was queried without reply")
     assert not answer.done()
     serve(kb)
     assert answer.result(PATIENCE_S) == Effects.of(COMMIT)
 
 
 @pytest.mark.parametrize("how", ["change", "change_later"])
-def test_it_is_told_who_is_missing(network, how, monkeypatch):
+def test_the_missing_node_is_named(network, how, monkeypatch):
     monkeypatch.setattr(bus, "RESTART_S", 0.2)
     answer = getattr(network[0], how)(TRANSACTION)
     with pytest.raises(errors.NoAnswer, match="kb_node is not running or still starting"):

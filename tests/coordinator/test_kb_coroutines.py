@@ -1,4 +1,4 @@
-"""Talks held in step: fewer questions, and each as if it were alone."""
+"""Coroutines in step: fewer requests, and each as if it ran alone."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ def commit(name):
 
 
 def change(name):
-    """A talk as of a command with an id: was it done before? If not, the commit."""
+    """A coroutine like that of a command with an id: query the earlier result, then commit."""
     (made,) = yield MadeBy(ids=(name,))
     made = made or (yield transaction(name))
     return made.id
 
 
 class KnowledgeBase:
-    """Has done `done` before, refuses to commit `no`, and does not understand `odd`."""
+    """A knowledge base that has done `done`, rejects `no`, and does not understand `odd`."""
 
     def __init__(self):
         self.asked = []
@@ -59,12 +59,12 @@ def ask():
     return KnowledgeBase()
 
 
-def test_one_talk_asks_as_it_is_written(ask):
+def test_one_coroutine_sends_its_requests_in_order(ask):
     assert run(change("a"), ask) == "a"
     assert ask.asked == [MadeBy(ids=("a",)), transaction("a")]
 
 
-def test_what_is_asked_at_the_same_time_goes_together(ask):
+def test_concurrent_requests_are_sent_together(ask):
     assert run(gather([change("a"), change("b")]), ask) == ["a", "b"]
     assert ask.asked == [
         MadeBy(ids=("a", "b")),
@@ -76,12 +76,12 @@ def test_what_is_asked_at_the_same_time_goes_together(ask):
     ("bad", "error"),
     [("no", errors.PreconditionFailed), ("odd", errors.BadRequest)],
 )
-def test_an_error_ends_its_own_talk_only(ask, bad, error):
+def test_an_error_ends_its_own_coroutine_only(ask, bad, error):
     first, second, third = run(gather([change("a"), change(bad), change("c")]), ask)
     assert (first, type(second), third) == ("a", error, "c")
 
 
-def test_a_talk_may_go_on_after_an_error(ask):
+def test_a_coroutine_may_continue_after_an_error(ask):
     def stubborn():
         try:
             yield transaction("no")
@@ -91,7 +91,7 @@ def test_a_talk_may_go_on_after_an_error(ask):
     assert run(gather([stubborn(), change("a"), stubborn()]), ask) == ["yes", "a", "yes"]
 
 
-def test_who_was_answered_before_does_not_hold_up_the_others(ask):
+def test_a_finished_coroutine_does_not_delay_the_others(ask):
     assert run(gather([change("a"), change("done"), change("b")]), ask) == ["a", "done", "b"]
     assert ask.asked == [
         MadeBy(ids=("a", "done", "b")),
@@ -99,15 +99,15 @@ def test_who_was_answered_before_does_not_hold_up_the_others(ask):
     ]
 
 
-def test_without_an_answer_nothing_is_said_to_be_done():
-    def nobody(message):
+def test_without_a_reply_nothing_is_reported_as_done():
+    def no_node(message):
         raise errors.NoAnswer(message.VERB)
 
     with pytest.raises(errors.NoAnswer):
-        run(gather([change("a"), change("b")]), nobody)
+        run(gather([change("a"), change("b")]), no_node)
 
 
-def test_a_talk_held_later_goes_on_when_the_answer_comes(ask):
+def test_run_async_continues_when_the_reply_arrives(ask):
     asked = []
 
     def ask_later(message):
@@ -125,7 +125,7 @@ def test_a_talk_held_later_goes_on_when_the_answer_comes(ask):
     assert (first, type(second)) == ("a", errors.PreconditionFailed)
 
 
-def test_a_fault_in_a_talk_that_is_held_later_is_its_result():
+def test_an_exception_in_run_async_is_its_result():
     def broken():
         yield MadeBy(ids=())
         raise ZeroDivisionError
@@ -135,7 +135,7 @@ def test_a_fault_in_a_talk_that_is_held_later_is_its_result():
     assert isinstance(run_async(broken(), lambda *_: done).exception(), ZeroDivisionError)
 
 
-def test_what_a_dialogue_is_about_goes_when_it_ends():
+def test_the_memory_of_a_coroutine_is_freed_at_its_end():
     class File:
         """Large."""
 
@@ -160,29 +160,29 @@ def test_what_a_dialogue_is_about_goes_when_it_ends():
 
 
 @pytest.mark.parametrize("name", ["a", "done", "no", "odd"])
-def test_one_talk_alone_is_as_in_step_with_none(name):
+def test_run_single_is_like_gather(name):
     seen, expected = KnowledgeBase(), KnowledgeBase()
     (result,), (same,) = run(run_single(change(name)), seen), run(gather([change(name)]), expected)
     assert (type(result), str(result), seen.asked) == (type(same), str(same), expected.asked)
 
 
 def faulty_ask_later(message):
-    """Cannot even send."""
+    """Fail to send."""
     raise MemoryError("no memory to send")
 
 
-def test_what_cannot_be_asked_ends_the_talk_with_the_reason():
+def test_a_request_that_cannot_be_sent_ends_the_coroutine():
     assert isinstance(run_async(change("a"), faulty_ask_later).exception(), MemoryError)
 
 
-def test_an_answer_that_cannot_be_read_ends_the_talk_with_the_reason():
+def test_an_invalid_reply_ends_the_coroutine():
     future = Future()
     held = run_async(gather([change("a"), change("b")]), lambda _: future)
     future.set_exception(MemoryError("no memory to read"))
     assert isinstance(held.exception(timeout=0), MemoryError)
 
 
-def test_an_unexpected_exception_in_one_talk_leaves_the_others_alone(ask):
+def test_an_unexpected_exception_ends_its_own_coroutine_only(ask):
     def broken():
         yield MadeBy(ids=("x",))
         raise MemoryError("no memory")

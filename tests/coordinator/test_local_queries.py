@@ -1,4 +1,4 @@
-"""The size of an entity in a reply: what the map says, else what its model measures, else none."""
+"""The size of an entity in a reply: from the map, its model, or none."""
 
 from types import SimpleNamespace
 
@@ -13,7 +13,7 @@ BODY = SimpleNamespace(size_m=(0.3, 0.3, 0.3))
 
 
 def seen(entity, body=BODY):
-    """The entity as `list` and `get` tell it, with its body in the scene."""
+    """The entity as `list` and `get` return it, with its body."""
     state = BodyState(status="unknown" if body is None else "present")
     reconciler = SimpleNamespace(
         body_state=lambda _: state, scene=SimpleNamespace(bodies={} if body is None else {entity.name: body})
@@ -22,7 +22,7 @@ def seen(entity, body=BODY):
 
 
 @pytest.mark.parametrize("body", [BODY, None])
-def test_a_thing_that_nobody_measured_has_no_size(body):
+def test_an_object_without_known_size_has_none(body):
     found = seen(structs.replace(thing("probe1", (0.0, 0.0, 0.0), ""), size_m=None), body)
     assert (found.size_m, found.body.own_size) == (None, False)
     stands_in = "shown as a box of 0.3 x 0.3 x 0.3 m"

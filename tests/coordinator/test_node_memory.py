@@ -1,4 +1,4 @@
-"""What a large file leaves behind in the coordinator."""
+"""Memory that a large file leaves in the coordinator."""
 
 import gc
 import weakref
@@ -6,9 +6,9 @@ import weakref
 from semmap.nodes.coordinator import node
 
 
-def test_cycles_with_large_files_are_parted_with():
+def test_reference_cycles_with_large_files_are_freed():
     class RequestCoroutine:
-        """Refers to itself, as one that goes on by callbacks does."""
+        """Refers to itself, like a coroutine with callbacks."""
 
     coroutine = RequestCoroutine()
     coroutine.itself = coroutine

@@ -1,4 +1,4 @@
-"""What goes together, what goes at the same time, and what waits."""
+"""Which changes are grouped, which run concurrently, and which wait."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from semmap.schemas.replies import Changed
 
 
 class KnowledgeBase:
-    """Collects groups of changes; each is done when the test says so."""
+    """Collects groups of changes; the test completes them."""
 
     def __init__(self):
         self.groups: list[tuple[list[str | None], Future]] = []
@@ -47,7 +47,7 @@ def move(turns, name):
     return turns.change(Update(name=name, at=(0.0, 0.0, 0.0)))
 
 
-def test_changes_of_different_entities_go_together(kb, turns):
+def test_changes_of_different_entities_are_grouped(kb, turns):
     futures = [move(turns, name) for name in "abc"]
     assert kb.groups == []
     turns.run_ready()
@@ -56,7 +56,7 @@ def test_changes_of_different_entities_go_together(kb, turns):
     assert [future.result().text for future in futures] == ["a", "b", "c"]
 
 
-def test_changes_of_one_entity_go_one_after_the_other(kb, turns):
+def test_changes_of_one_entity_are_sequential(kb, turns):
     for name in "aba":
         move(turns, name)
     turns.run_ready()
@@ -90,7 +90,7 @@ def test_groups_are_of_a_size(kb, turns):
 
 
 @pytest.mark.parametrize("change", [Add(class_="Chair"), Add(class_="Chair", name="c")])
-def test_what_needs_a_name_or_a_place_goes_alone(kb, turns, change):
+def test_entities_without_name_or_position_are_sent_alone(kb, turns, change):
     move(turns, "a")
     turns.change(change)
     move(turns, "b")
@@ -101,7 +101,7 @@ def test_what_needs_a_name_or_a_place_goes_alone(kb, turns, change):
     assert kb.names == [["a"], [change.name], ["b"]]
 
 
-def test_everything_else_waits_for_what_came_before_and_nothing_overtakes_it(kb, turns):
+def test_all_other_commands_keep_their_order(kb, turns):
     assert turns.run_after(lambda: "at once") == "at once"
     move(turns, "a")
     later = turns.run_after(lambda: "done")
@@ -128,7 +128,7 @@ def test_an_error_is_the_result_of_its_change_and_a_fault_that_of_its_group(kb, 
 
 
 @pytest.mark.parametrize("immediate", [True, False])
-def test_an_unexpected_exception_is_told_and_frees_the_turn(immediate):
+def test_an_unexpected_exception_is_the_result_and_frees_the_queue(immediate):
     futures = []
 
     def together(changes):

@@ -1,4 +1,4 @@
-"""Connections are given up when nothing is acknowledged."""
+"""Connections end when nothing is acknowledged."""
 
 import socket
 import sys
@@ -9,7 +9,7 @@ from semmap.nodes.router.tcp_timeout import set_user_timeout
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there is no such option")
-def test_every_connection_of_the_process_is_told():
+def test_every_connection_of_the_process_gets_the_time_out():
     option = socket.TCP_USER_TIMEOUT
     with socket.create_server(("127.0.0.1", 0)) as server, socket.socket(socket.AF_UNIX) as other:
         with socket.create_connection(server.getsockname()) as one:

@@ -1,4 +1,4 @@
-"""Futures that are resolved, and gone on from."""
+"""Futures are resolved and chained."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_settling_with_a_future_waits_for_it(kind):
 def test_then_passes_results_and_errors_on(kind):
     first = kind()
     doubled = then(first, lambda x: 2 * x)
-    assert type(doubled) is kind  # one that other threads resolve is followed by one of its sort
+    assert type(doubled) is kind  # a future that other threads resolve is followed by one of the same kind
     first.set_result(21)
     assert doubled.result() == 42
     broken = then(doubled, lambda x: x / 0)

@@ -1,4 +1,4 @@
-"""A follower before a knowledge base that is played here, over real Zenoh."""
+"""A follower of a simulated knowledge base, over real Zenoh."""
 
 import msgspec
 import pytest
@@ -18,10 +18,10 @@ from tests.waiting import until_followed
 
 
 class KnowledgeBase:
-    """Serves the snapshot that it is given, and says what happens."""
+    """Serves the given snapshot, and records the requests."""
 
     def __init__(self, session):
-        self.node = Node("played", session)  # its own heart would beat between the beats that are played
+        self.node = Node("played", session)  # its own heartbeats would come between the simulated ones
         self.snapshot = Snapshot(seq=1, entities=(entity("cup1"),))
         self.asked = 0
         self._commits = bus.publisher(session, keys.COMMIT)
@@ -52,7 +52,7 @@ class KnowledgeBase:
 
 
 class Following:
-    """A node that follows, and what it was told."""
+    """A node with a follower, and its callbacks."""
 
     def __init__(self, session):
         self.node = Node("recorder", session)
@@ -92,7 +92,7 @@ def test_commits_follow_a_snapshot(both):
     assert kb.asked == 1
 
 
-def test_what_was_missed_is_fetched(both):
+def test_missed_commits_are_fetched(both):
     kb, follower = both
     kb.snapshot = Snapshot(seq=4, entities=(entity("cup4"),))
     kb.publish(commit(4, entity("cup4")))
@@ -101,7 +101,7 @@ def test_what_was_missed_is_fetched(both):
     assert (follower.snapshots[-1], follower.heard) == ((1, 4), [(4, False)])
 
 
-def test_a_snapshot_that_lacks_what_was_heard_is_asked_for_again(both):
+def test_a_snapshot_without_an_announced_commit_is_fetched_again(both):
     kb, follower = both
     kb.publish(commit(3, entity("cup3")))
     until(lambda: kb.asked > 2, "it asks again")
@@ -111,7 +111,7 @@ def test_a_snapshot_that_lacks_what_was_heard_is_asked_for_again(both):
     assert follower.map.is_current
 
 
-def test_a_knowledge_base_that_knows_less_counts(both):
+def test_a_knowledge_base_with_fewer_commits_is_followed(both):
     kb, follower = both
     kb.beat(1)
     kb.publish(commit(2, entity("cup2")))
@@ -132,7 +132,7 @@ def test_another_tbox_means_other_classes(both):
     assert follower.snapshots[-1] == (2, 2)
 
 
-def test_a_forged_commit_is_found_out_by_the_next_heartbeat(both):
+def test_a_forged_commit_is_detected_by_the_next_heartbeat(both):
     kb, follower = both
     kb.snapshot = Snapshot(seq=1, entities=(entity("cup1"),), digest="one")
     kb.beat(7, 1, "one")
@@ -154,12 +154,12 @@ def test_a_forged_commit_with_the_next_number_hides_none(both):
     assert follower.map.is_confirmed
 
 
-def test_a_commit_of_which_nothing_came_is_noticed_by_the_second_beat(both):
+def test_a_missing_commit_is_noticed_by_the_second_heartbeat(both):
     kb, follower = both
     kb.beat(0, commit=1)
     kb.snapshot = Snapshot(seq=2, entities=(entity("cup2"),))
     kb.beat(0, commit=2)
-    kb.publish(commit(1))  # comes after the beat: what is on its way has its time until the next one
+    kb.publish(commit(1))  # arrives after the heartbeat: it may arrive until the next one
     until(lambda: follower.heard == [(1, True)], "the first beat was heard")
     assert kb.asked == 1
     kb.beat(0, commit=2)
@@ -167,7 +167,7 @@ def test_a_commit_of_which_nothing_came_is_noticed_by_the_second_beat(both):
     assert kb.asked == 2
 
 
-def test_a_follower_leaves_pages_to_whoever_fetches_them_already(both):
+def test_a_follower_does_not_fetch_pages_twice(both):
     kb, follower = both
     follower.map.begin_pages()
     left_out = Extent(inserted=9, retracted=0, changed=3, removed=0)

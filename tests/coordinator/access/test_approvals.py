@@ -26,7 +26,7 @@ def asked(approvals, id="a", agent="robot", **fields):
     return approvals.submit(Submit(id=id, source="agent", agent=agent, text="add a cup", **fields))
 
 
-def test_what_is_asked_waits_and_is_listed(approvals):
+def test_a_request_waits_and_is_listed(approvals):
     made = asked(approvals, follows=("cup1 isOn table1",))
     assert (made.number, made.decision) == (1, "waiting")
     assert approvals.approve(Approve()) == (made,)
@@ -37,7 +37,7 @@ def test_the_same_id_is_the_same_request(approvals):
     assert asked(approvals, agent="another").number == 2
 
 
-def test_a_decision_is_made_once_and_told(approvals):
+def test_a_decision_is_made_once_and_reported(approvals):
     asked(approvals)
     asked(approvals, id="b")
     approvals.approve(Approve(number=1, agent="cli/ann"))
@@ -57,7 +57,7 @@ def test_only_an_operator_decides(approvals, source):
     assert asked(approvals).decision == "waiting"
 
 
-def test_nobody_decides_their_own(approvals):
+def test_no_client_decides_its_own_request(approvals):
     bob = agents.proved("bob")
     asked(approvals, agent=bob)
     with pytest.raises(errors.Refused, match="your own"):
@@ -65,14 +65,14 @@ def test_nobody_decides_their_own(approvals):
     assert approvals.approve(Approve(number=1, agent=agents.proved("ann")))[0].by == "ann"
 
 
-def test_what_nobody_decides_is_forgotten_after_an_hour(approvals, clock):
+def test_an_undecided_request_expires_after_an_hour(approvals, clock):
     asked(approvals)
     clock.now += 3_601 * 10**9
     assert approvals.approve(Approve()) == ()
     assert asked(approvals).number == 2
 
 
-def test_there_is_room_for_so_many_of_one_agent(approvals):
+def test_requests_of_one_agent_are_limited(approvals):
     for number in range(10):
         asked(approvals, id=f"{number}")
     with pytest.raises(errors.Refused, match="10 of your requests"):
@@ -82,7 +82,7 @@ def test_there_is_room_for_so_many_of_one_agent(approvals):
     assert asked(approvals, id="one more").number == 11
 
 
-def test_there_is_room_for_so_many_of_all(approvals):
+def test_all_requests_are_limited(approvals):
     for number in range(100):
         asked(approvals, id=f"{number}", agent=f"robot{number // 10}")
     with pytest.raises(errors.Refused, match="100 requests already wait"):
@@ -105,7 +105,7 @@ def test_all_is_for_rejecting_only(approvals, fields):
     assert asked(approvals).decision == "waiting"
 
 
-def test_with_none_waiting_there_is_none_to_name(approvals):
+def test_the_error_without_waiting_requests(approvals):
     with pytest.raises(errors.Refused, match="request 1 is not waiting; no request is waiting"):
         approvals.approve(Approve(number=1))
 

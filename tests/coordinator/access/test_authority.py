@@ -1,4 +1,4 @@
-"""Precedence: who may change what whom has asserted."""
+"""Authority: which sources may change which facts."""
 
 import pytest
 
@@ -23,7 +23,7 @@ changes = pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES.keys()
 
 @changes
 @pytest.mark.parametrize("source", ["scene", "perception"])
-def test_what_an_operator_said_only_an_operator_changes(dispatcher, source, change):
+def test_facts_of_an_operator_are_changed_by_operators_only(dispatcher, source, change):
     add(dispatcher, name="chair1", alt=("seat",))
     before = dispatcher.map.entity("chair1")
     with pytest.raises(errors.Refused, match="chair1 was defined by an operator, so only an operator may"):
@@ -34,7 +34,7 @@ def test_what_an_operator_said_only_an_operator_changes(dispatcher, source, chan
 
 
 @pytest.mark.parametrize("source", ["scene", "perception"])
-def test_anybody_may_say_where_it_is(dispatcher, source):
+def test_every_source_may_change_the_pose(dispatcher, source):
     add(dispatcher, name="chair1")
     dispatcher.change(c.Update(name="chair1", at=AT, source=source, agent="camera", confidence=0.5))
     chair1 = dispatcher.map.entity("chair1")
@@ -43,7 +43,7 @@ def test_anybody_may_say_where_it_is(dispatcher, source):
 
 
 @changes
-def test_what_perception_said_perception_changes(dispatcher, change):
+def test_perception_may_change_its_own_facts(dispatcher, change):
     add(dispatcher, name="chair1", alt=("seat",), source="perception")
     before = dispatcher.map.entity("chair1")
     change(dispatcher, "perception")
@@ -51,7 +51,7 @@ def test_what_perception_said_perception_changes(dispatcher, change):
 
 
 @changes
-def test_an_operator_s_word_on_a_thing_that_perception_brought_in_counts(dispatcher, change):
+def test_an_operator_may_claim_an_entity_of_perception(dispatcher, change):
     add(dispatcher, name="chair1", alt=("seat",), source="perception")
     dispatcher.change(c.Update(name="chair1", ref="my chair"))
     dispatcher.change(c.Update(name="chair1", at=AT, source="perception"))
@@ -69,7 +69,7 @@ def test_only_an_operator_replaces_the_tbox_or_undoes_what_an_operator_did(dispa
         dispatcher.change(c.Load(content=b"x", tbox=True, replace=True))
 
 
-def test_what_is_seen_against_an_operators_word_is_kept_beside_it(dispatcher, semantic_map):
+def test_a_perceived_conflict_is_stored_with_the_entity(dispatcher, semantic_map):
     add(dispatcher, name="chair1", ref="seat")
     before = dispatcher.map.entity("chair1")
     dispatcher.change(
@@ -117,6 +117,6 @@ def test_the_same_conflict_again_changes_nothing(dispatcher):
         (c.Add(class_="Cup", at=AT), "scene", None),
     ],
 )
-def test_what_the_map_does_not_own_goes_back_and_that_is_said(command, truth, said):
+def test_changes_that_will_be_overridden_get_a_note(command, truth, said):
     note = authority.describe_override(command, truth)
     assert (said is None and note is None) or said in note

@@ -1,4 +1,4 @@
-"""What may be held by what, what goes with it, and where it is held."""
+"""Which entity can be attached to which, with which contents, and at which pose."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ HERE = Pose(position_m=(1.0, 2.0, 0.0))
 
 
 def thing(name, *, held_by="", part_of="", grip=None, since=1, **fields):
-    """A chair of the map that may be held since a commit."""
+    """A chair that is attached since a commit, if given."""
     properties = {"isDirectPartOf": part_of} if part_of else {}
     if held_by:
         properties["isGraspedBy"] = held_by
@@ -105,13 +105,13 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("held", "holder", "bodies", "why"), REFUSED.values(), ids=REFUSED)
-def test_what_cannot_be_held_is_refused_with_the_reason(held, holder, bodies, why):
+def test_an_impossible_attachment_is_rejected_with_the_reason(held, holder, bodies, why):
     with pytest.raises(errors.Refused) as refused:
         attachment_rules.require_attachable(held, holder, by_name(held, holder), bodies)
     assert str(refused.value) == why
 
 
-def test_what_a_robot_holds_cannot_hold_the_robot():
+def test_a_robot_cannot_be_attached_to_its_attached_object():
     robot, gripper, cup = (
         thing("robot1"),
         thing("gripper1", part_of="robot1"),
@@ -131,11 +131,11 @@ def test_what_a_robot_holds_cannot_hold_the_robot():
     ],
     ids=["not in the scene", "free in the scene", "by what is fixed", "held by it already"],
 )
-def test_what_nothing_else_has_may_be_held(held, bodies):
+def test_a_free_object_can_be_attached(held, bodies):
     attachment_rules.require_attachable(held, HAND, by_name(held, HAND), bodies)
 
 
-def test_a_load_is_what_stands_on_it_and_can_be_taken():
+def test_contents_are_the_supported_objects_that_can_be_attached():
     tray = thing("tray1")
     there = by_name(
         tray,
@@ -151,7 +151,7 @@ def test_a_load_is_what_stands_on_it_and_can_be_taken():
     assert attachment_rules.find_load(borne, tray, HAND, there, bodies) == ("cup1", "spoon1")
 
 
-def test_a_thing_is_not_taken_by_what_stands_on_it():
+def test_an_object_is_not_attached_to_its_own_contents():
     table, robot, gripper = thing("table1"), thing("robot1"), thing("gripper1", part_of="robot1")
     there = by_name(table, robot, gripper)
     end = "is on or inside table1, so table1 cannot be attached to gripper1"
@@ -161,7 +161,7 @@ def test_a_thing_is_not_taken_by_what_stands_on_it():
         assert str(refused.value) == f"{who} {end}"
 
 
-def test_what_was_taken_in_the_same_commit_came_along():
+def test_contents_were_attached_in_the_same_commit():
     tray = thing("tray1", held_by="hand1", since=5)
     held = by_name(
         tray,
@@ -184,7 +184,7 @@ POSES = st.builds(
 
 
 @given(POSES, POSES)
-def test_a_held_thing_stays_where_it_is(held, holder):
+def test_fixed_objects_and_parts_cannot_be_attached(held, holder):
     grip = attachment_rules.compute_grip(held, holder, None, None)
     again = compose(holder, grip)
     assert distance_m(again, held) < 1e-5
@@ -209,7 +209,7 @@ TURNED = Pose(position_m=(3.0, 2.0, 1.0), orientation_wxyz=orientation_from_yaw(
         (TURNED, HERE, None, 1.0, ((2.0, 0.0, 1.0), 1.0)),
     ],
 )
-def test_a_grip_is_what_is_wanted_and_else_what_is_now(held, holder, at, yaw, grip):
+def test_a_grip_is_the_wanted_or_the_current_relative_pose(held, holder, at, yaw, grip):
     found = attachment_rules.compute_grip(held, holder, at, yaw)
     if grip is None:
         assert found is None
@@ -219,7 +219,7 @@ def test_a_grip_is_what_is_wanted_and_else_what_is_now(held, holder, at, yaw, gr
         assert found.yaw_rad == pytest.approx(angle)
 
 
-def test_where_a_held_thing_is_follows_only_from_a_known_holder_and_grip():
+def test_the_pose_of_an_attached_object_needs_a_known_holder_and_grip():
     gripped = thing("cup1", held_by="hand1", grip=HERE)
     assert attachment_rules.attached_pose(gripped, lambda name: None) is None
     assert attachment_rules.attached_pose(thing("cup1", held_by="hand1"), lambda name: HERE) is None
@@ -227,13 +227,13 @@ def test_where_a_held_thing_is_follows_only_from_a_known_holder_and_grip():
     assert attachment_rules.attached_pose(gripped, lambda name: HERE).position_m == (2.0, 4.0, 0.0)
 
 
-def test_only_what_nothing_holds_is_put_elsewhere():
+def test_an_attached_object_cannot_be_moved():
     attachment_rules.require_detached(CUP)
     with pytest.raises(errors.Refused, match=r"^cup1 is attached to hand1; to move it, first: semmap detach"):
         attachment_rules.require_detached(thing("cup1", held_by="hand1"))
 
 
-def test_what_leaves_may_hold_only_what_leaves_too():
+def test_an_entity_with_attached_objects_is_removed_only_with_them():
     held = by_name(
         thing("fork1", held_by="hand1"), thing("cup1", held_by="hand1"), thing("hat1", held_by="head1")
     )

@@ -1,4 +1,4 @@
-"""Several changes in one commit, without the wire between."""
+"""Several changes in one commit, without Zenoh."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_it_is_one_commit_and_one_undo(home):
     assert home.map.entity("chair1").pose.position_m == (0.0, 0.0, 0.0)
 
 
-def test_what_is_so_already_is_said(home):
+def test_unchanged_entities_are_reported(home):
     home.change(c.Set(name="chair2", property="isOpen", values=(True,)))
     reply = home.change(c.Batch(changes=opened("chair1", "chair2")))
     assert reply.text == "changed 1: chair1; already so: chair2"
@@ -67,7 +67,7 @@ def test_what_is_so_already_is_said(home):
         (c.Update(name="chair3", class_="Chiar"), errors.UnknownClass),
     ],
 )
-def test_where_one_is_refused_none_is_made(home, semantic_map, last, error):
+def test_if_one_is_rejected_none_is_made(home, semantic_map, last, error):
     before = set(semantic_map.abox()), dict(home.map.entities), home.map.seq
     with pytest.raises(error):
         home.change(c.Batch(changes=(*opened("chair1", "chair2"), last)))
@@ -87,14 +87,14 @@ def test_where_one_is_refused_none_is_made(home, semantic_map, last, error):
         ((c.Update(name="chair1", at=(0.0, 0.0, 0.0), frame="chair2"),), "remove the frame"),
     ],
 )
-def test_what_makes_no_sense_in_a_batch_is_refused(home, changes, said):
+def test_invalid_changes_in_a_batch_are_rejected(home, changes, said):
     before = home.map.seq
     with pytest.raises(errors.BadRequest, match=said):
         home.change(c.Batch(changes=changes))
     assert home.map.seq == before
 
 
-def test_it_is_tried_and_done_once_under_its_id(home):
+def test_a_dry_run_and_a_repetition_by_id(home):
     tried = home.change(c.Batch(changes=opened("chair1", "chair2"), dry_run=True))
     assert tried.dry_run
     assert states(home)["chair1"] is False
@@ -104,7 +104,7 @@ def test_it_is_tried_and_done_once_under_its_id(home):
     assert again.text.startswith("already done: ")
 
 
-def test_who_signs_the_batch_signs_its_changes(home):
+def test_the_agent_of_the_batch_is_that_of_its_changes(home):
     named = c.Update(name="chair1", ref="portal")
     with pytest.raises(errors.Refused, match="only an operator"):
         home.change(c.Batch(source="perception", changes=(named,)))
@@ -112,7 +112,7 @@ def test_who_signs_the_batch_signs_its_changes(home):
         home.change(c.Batch(changes=opened("chair2"), unchanged=("chair1",), since=0))
 
 
-def test_the_reason_tells_a_few_of_many(home, semantic_map):
+def test_the_reason_names_the_first_changes(home, semantic_map):
     home.change(c.Batch(changes=opened("chair1", "chair2", "chair3")))
     row = last(semantic_map)
     assert row.reason == "set chair1 isOpen true; set chair2 isOpen true; set chair3 isOpen true"

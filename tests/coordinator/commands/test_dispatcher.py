@@ -1,4 +1,4 @@
-"""Commands as changes of a real map, without the wire between."""
+"""Commands change a real map, without Zenoh."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def everything(semantic_map) -> set:
     return set(semantic_map.abox())
 
 
-def test_add_says_what_it_made(dispatcher):
+def test_add_reports_the_entity(dispatcher):
     reply = add(dispatcher, at=(1.0, 2.0, 0.0), yaw=1.0, size=(0.4, 0.4, 0.9), ref="seat", alt=("stool",))
     (name,) = reply.names
     chair = dispatcher.map.entity(name)
@@ -70,7 +70,7 @@ def test_a_class_is_found_without_regard_to_case_and_underscores(dispatcher):
         ({"orientation": (1.0, 1.0, 0.0, 0.0)}, errors.BadRequest),
     ],
 )
-def test_a_refused_add_changes_nothing(dispatcher, semantic_map, fields, error):
+def test_a_rejected_add_changes_nothing(dispatcher, semantic_map, fields, error):
     add(dispatcher, name="chair1")
     before = everything(semantic_map), dict(dispatcher.map.entities), dispatcher.map.seq
     with pytest.raises(error):
@@ -78,7 +78,7 @@ def test_a_refused_add_changes_nothing(dispatcher, semantic_map, fields, error):
     assert (everything(semantic_map), dict(dispatcher.map.entities), dispatcher.map.seq) == before
 
 
-def test_what_is_not_named_in_an_update_stays(dispatcher):
+def test_omitted_fields_of_an_update_are_kept(dispatcher):
     add(
         dispatcher,
         name="chair1",
@@ -135,7 +135,7 @@ def test_a_removed_entity_leaves_nothing(dispatcher, semantic_map):
     assert dispatcher.map.entities == {}
 
 
-def test_remove_takes_all_or_none(dispatcher):
+def test_remove_removes_all_or_none(dispatcher):
     add(dispatcher, name="chair1")
     with pytest.raises(errors.UnknownName, match="chair2"):
         dispatcher.change(c.Remove(names=("chair1", "chair2")))
@@ -191,14 +191,14 @@ def test_a_scene_is_loaded_whole_or_not_at_all(dispatcher):
     assert reply.skipped == ("g1 (unknown class 'Ghost')",)
 
 
-def test_replace_takes_the_present_map_out_in_the_same_commit(dispatcher):
+def test_replace_clears_the_map_in_the_same_commit(dispatcher):
     add(dispatcher, name="old")
     reply = load_text(dispatcher, '{"entities": [{"class": "Chair", "name": "new"}]}', replace=True)
     assert set(dispatcher.map.entities) == {"new"}
     assert reply.commit == 2
 
 
-def test_loading_a_name_twice_is_refused(dispatcher):
+def test_loading_a_name_twice_is_rejected(dispatcher):
     load_text(dispatcher, '{"entities": [{"class": "Chair", "name": "a"}]}')
     with pytest.raises(errors.NameTaken, match="'a'"):
         load_text(
@@ -212,7 +212,7 @@ def test_loading_a_name_twice_is_refused(dispatcher):
 
 
 def follow(dispatcher, name, pose):
-    """The map takes over where a body came to rest."""
+    """Commit where a body came to rest."""
     return dispatcher.change(ObservedState.of(dispatcher.map.entities, {name: pose}))
 
 
@@ -231,7 +231,7 @@ def test_a_missed_commit_is_noticed(dispatcher):
     assert not dispatcher.map.take(Commit(seq=3, stamp_ns=0, id="c", source="operator"))
 
 
-def test_another_knowledge_base_may_know_less(dispatcher, semantic_map):
+def test_another_knowledge_base_may_have_fewer_commits(dispatcher, semantic_map):
     before = semantic_map.snapshot()
     add(dispatcher, name="chair1")
     dispatcher.map.begin(before)
@@ -244,8 +244,8 @@ def test_another_knowledge_base_may_know_less(dispatcher, semantic_map):
 
 
 @pytest.mark.parametrize("refusals", [1, 4])
-def test_a_name_that_turns_out_to_be_taken_is_thought_of_again(dispatcher, monkeypatch, refusals):
-    """Somebody may have published what was never committed."""
+def test_another_name_is_generated_if_one_is_taken(dispatcher, monkeypatch, refusals):
+    """The replica may have a forged commit."""
     ask, left = dispatcher._ask, [refusals]
 
     def refuse_first(call):
@@ -274,7 +274,7 @@ def test_a_removed_entity_frees_its_name_and_is_no_longer_tracked(dispatcher):
     assert add(dispatcher, at=(5.0, 1.0, 0.0)).names == ("chair1",)
 
 
-def test_what_is_tracked_no_more_is_forgotten_and_places_are_known_as_they_come_and_go(dispatcher):
+def test_tracked_entities_and_places_are_indexed(dispatcher):
     add(dispatcher, name="chair1", at=(1.0, 1.0, 0.0))
     dispatcher.change(c.Track(name="chair1", from_="sim"))
     assert dispatcher.change(c.Track(name="chair1", from_="sim")).text == (
@@ -311,7 +311,7 @@ def test_an_entity_is_listed_by_its_classes_in_the_order_of_names(dispatcher):
         dispatcher.map.entity("c")
 
 
-def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(dispatcher):
+def test_undo_includes_the_settling_after_a_command(dispatcher):
     add(dispatcher, name="chair1", at=(1.0, 1.0, 0.0))
     follow(dispatcher, "chair1", Pose(position_m=(1.5, 1.0, 0.0)))
     add(dispatcher, name="chair2")
@@ -324,7 +324,7 @@ def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(dispatcher):
         dispatcher.change(c.Undo())
 
 
-def test_a_hand_s_move_is_asked_for_and_can_be_undone(dispatcher):
+def test_a_manual_move_is_attributed_and_can_be_undone(dispatcher):
     add(dispatcher, name="chair1", at=(1.0, 1.0, 0.0))
     dispatcher.manual_moves.register(c.Move(name="chair1", at=(3.0, 1.0, 0.0), agent="ann"))
     follow(dispatcher, "chair1", Pose(position_m=(3.0, 1.0, 0.0)))
@@ -337,7 +337,7 @@ def test_a_hand_s_move_is_asked_for_and_can_be_undone(dispatcher):
     assert dispatcher.map.entity("chair1").pose_provenance.source == "operator"
 
 
-def test_a_hand_s_move_is_its_client_s_when_the_knowledge_base_was_away_at_first(dispatcher, monkeypatch):
+def test_a_manual_move_is_attributed_after_a_restart_of_the_knowledge_base(dispatcher, monkeypatch):
     add(dispatcher, name="chair1", at=(1.0, 1.0, 0.0))
     dispatcher.manual_moves.register(c.Move(name="chair1", at=(3.0, 1.0, 0.0), agent="ann"))
     rests = Pose(position_m=(3.0, 1.0, 0.0))
@@ -354,21 +354,21 @@ def raise_(error):
     raise error
 
 
-def test_an_undo_sent_again_is_answered_with_its_result(dispatcher):
+def test_a_repeated_undo_returns_its_first_result(dispatcher):
     add(dispatcher, name="chair1")
     add(dispatcher, name="chair2")
     assert dispatcher.change(c.Undo(id="u")).commit == dispatcher.change(c.Undo(id="u")).commit == 3
     assert set(dispatcher.map.entities) == {"chair1"}
 
 
-def test_an_undo_under_the_id_of_another_command_is_answered_as_that(dispatcher):
+def test_an_undo_with_the_id_of_another_command_is_rejected(dispatcher):
     dispatcher.change(c.Add(class_="Chair", name="chair1", id="x"))
     assert dispatcher.change(c.Undo(id="x")).text == "already done: add Chair chair1"
     assert set(dispatcher.map.entities) == {"chair1"}
 
 
 def in_their_turn(dispatcher: CommandDispatcher, changes: list) -> list:
-    """The results or errors of changes that come at the same time."""
+    """Return the results or errors of concurrent changes."""
 
     def ask_later(call):
         future: Future = Future()
@@ -408,7 +408,7 @@ def test_changes_together_are_as_if_made_one_after_the_other(dispatcher, semanti
     assert dispatcher.map.entity("a").pose == Pose(position_m=(3.0, 0.0, 0.0))
 
 
-def test_a_change_costs_one_question_also_with_an_id(dispatcher, monkeypatch):
+def test_a_change_costs_one_request_also_with_an_id(dispatcher, monkeypatch):
     asked, ask = [], dispatcher._ask
     monkeypatch.setattr(dispatcher, "_ask", lambda call: asked.append(call.VERB) or ask(call))
     add(dispatcher, name="chair1", at=(1.0, 1.0, 0.0), id="a")
@@ -434,7 +434,7 @@ def test_a_command_whose_reply_was_lost_with_the_coordinator_is_not_done_twice(
 ):
     dispatcher.change(c.Add(class_="Chair", name="chair0"))
     first = dispatcher.change(command)
-    next_dispatcher = CommandDispatcher(dispatcher._ask)  # that of the coordinator which takes its place
+    next_dispatcher = CommandDispatcher(dispatcher._ask)  # of the restarted coordinator
     next_dispatcher.map.classes = dispatcher.map.classes
     next_dispatcher.map.begin(semantic_map.snapshot())
     again = next_dispatcher.change(command)
@@ -467,7 +467,7 @@ def test_the_entities_of_a_class_are_those_of_the_map(dispatcher, semantic_map):
     assert dispatcher.map.entities_of(None) == tuple(semantic_map.entities())
 
 
-def test_a_change_too_large_to_be_passed_on_is_known_to_the_next_command(dispatcher, monkeypatch):
+def test_an_abridged_change_is_visible_to_the_next_command(dispatcher, monkeypatch):
     monkeypatch.setattr("semmap.schemas.commits.MANY_ENTITIES", 2)
     monkeypatch.setattr("semmap.nodes.runtime.map_replica.PAGE", 2)
     entities = b",".join(b'{"class": "Chair", "name": "seat%d"}' % i for i in range(5))
@@ -496,7 +496,7 @@ def test_a_scene_in_parts_is_several_commits(dispatcher, monkeypatch):
     assert again.commit == loaded.commit
 
 
-def test_what_takes_the_place_of_something_else_is_one_commit(dispatcher):
+def test_a_replacement_is_one_commit(dispatcher):
     with pytest.raises(errors.BadRequest, match="without --parts"):
         dispatcher.change(c.Load(content=five_chairs(), filename="five.json", parts=True, replace=True))
     with pytest.raises(errors.BadRequest, match="--tbox makes one commit"):
@@ -543,14 +543,14 @@ def test_a_property_is_set_and_unset(dispatcher):
         (c.Update(name="chair1", unset=("isOpne",)), "did you mean isOpen"),
     ],
 )
-def test_a_statement_that_makes_no_sense_is_refused(dispatcher, command, said):
+def test_an_invalid_statement_is_rejected(dispatcher, command, said):
     add(dispatcher, name="chair1")
     with pytest.raises(errors.BadRequest, match=said):
         dispatcher.change(command)
     assert dispatcher.map.seq == 1
 
 
-def test_an_update_changes_properties_with_the_rest_and_says_so(dispatcher):
+def test_an_update_also_changes_properties(dispatcher):
     add(dispatcher, name="chair1", at=(1.0, 0.0, 0.0), set=("note=a", "note=b"))
     reply = dispatcher.change(
         c.Update(name="chair1", at=(2.0, 0.0, 0.0), unset=("note=a",), set=("isOpen=true",))
@@ -575,7 +575,7 @@ def test_an_update_changes_properties_with_the_rest_and_says_so(dispatcher):
     ],
     ids=lambda command: command.VERB,
 )
-def test_a_dry_run_says_what_would_be_and_does_nothing(dispatcher, semantic_map, command):
+def test_a_dry_run_reports_the_change_and_makes_none(dispatcher, semantic_map, command):
     add(dispatcher, name="chair1", ref="seat", set=("note=a",))
     before = everything(semantic_map), dict(dispatcher.map.entities), dispatcher.map.seq, semantic_map.seq
     (reply,) = in_their_turn(dispatcher, [command])
@@ -594,7 +594,7 @@ def test_a_dry_run_says_what_would_be_and_does_nothing(dispatcher, semantic_map,
     assert reply.text.endswith(done.text)
 
 
-def test_what_a_dry_run_would_bring(dispatcher):
+def test_a_dry_run_reports_inferences(dispatcher):
     add(dispatcher, name="chair1")
     reply = add(dispatcher, name="chair2", dry_run=True)
     assert "chair2 type Furniture" in reply.follows
@@ -603,7 +603,7 @@ def test_what_a_dry_run_would_bring(dispatcher):
         add(dispatcher, name="chair1", dry_run=True)
 
 
-def test_doubtful_values_are_noted_and_a_chair_is_no_kitchen(dispatcher):
+def test_doubtful_values_are_noted_and_a_chair_cannot_become_a_kitchen(dispatcher):
     add(dispatcher, "Kitchen", "kitchen1", at=(0.0, 0.0, 0.0), size=(4.0, 4.0, 2.0))
     assert add(dispatcher, name="near", at=(1.0, 1.0, 0.0)).notes == ()
     (note,) = add(dispatcher, name="far", at=(90.0, 1.0, 0.0)).notes
@@ -622,7 +622,7 @@ def test_a_packed_scene_is_loaded(dispatcher):
     assert dispatcher.change(c.Load(content=content, filename="scene.json.gz")).names == ("chair1",)
 
 
-def test_a_packed_document_is_passed_on_as_it_came():
+def test_a_packed_document_is_forwarded_unchanged():
     command = c.Load(id="1", content=gzip.compress(b":a a :B ."), filename="map.ttl.gz", source="file")
     asked = next(load.load(MapView(), command))
     assert isinstance(asked, LoadDocument)

@@ -1,4 +1,4 @@
-"""What a ball joint carries is neither open nor shut, and nobody states that it is."""
+"""A body on a joint without limits is neither open nor closed."""
 
 import pytest
 
@@ -40,7 +40,7 @@ def have(home, *joints):
         c.Batch(changes=(c.Set(name="thing1", property="is open", values=(True,)),)),
     ],
 )
-def test_that_is_refused_with_the_reason(home, joints, why, command):
+def test_opening_it_is_rejected_with_the_reason(home, joints, why, command):
     have(home, *joints)
     before = home.map.seq
     with pytest.raises(errors.Refused) as refused:
@@ -50,13 +50,13 @@ def test_that_is_refused_with_the_reason(home, joints, why, command):
 
 
 @pytest.mark.parametrize("joints", [(), (SWITCH,), (BALL, DOOR)])
-def test_what_may_open_and_what_is_not_known_may_be_stated(home, joints):
+def test_bodies_that_open_and_unknown_ones_may_be_set(home, joints):
     have(home, *joints)
     home.change(c.Set(name="thing1", property="isOpen", values=(True,)))
     assert home.map.entity("thing1").properties["isOpen"] is True
 
 
-def test_other_properties_of_it_may_be_stated(home):
+def test_other_properties_may_be_set(home):
     have(home, BALL)
     home.change(c.Set(name="thing1", property="note", values=("loose",)))
     assert home.map.entity("thing1").properties["note"] == ("loose",)

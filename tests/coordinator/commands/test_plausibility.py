@@ -62,7 +62,7 @@ def test_a_size_ten_times_off():
     assert find_doubts("c", class_info("Thing", model="no such model"), None, (90.0, 1.0, 1.0), ()) == ()
 
 
-def test_a_fridge_is_no_room_unless_forced():
+def test_a_fridge_becomes_a_room_only_if_forced():
     fridge, room = entity("fridge1"), entity("room1", place=True)
     with pytest.raises(
         errors.Refused, match=r"fridge1 is an object \(X\), and as a Hall it would be a place; .*--force"

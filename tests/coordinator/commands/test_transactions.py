@@ -1,4 +1,4 @@
-"""Commands as transactions: what is wanted of which entities, and in which words it is kept."""
+"""Transactions that are built from commands, and their reasons."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def said(statements):
     return {one.property: one.values for one in statements}
 
 
-def test_a_transaction_says_of_itself_what_the_command_says():
+def test_a_transaction_has_the_metadata_of_the_command():
     command = c.Update(
         name="chair1",
         id="u1",
@@ -70,7 +70,7 @@ def test_a_transaction_says_of_itself_what_the_command_says():
     )
 
 
-def test_a_command_without_these_has_the_usual_ones():
+def test_a_command_without_metadata_has_the_defaults():
     made = transactions.build(c.Clear(id="c1"), "clear")
     assert (made.reason, made.confidence, made.unchanged, made.since, made.dry_run) == (
         "clear",
@@ -81,7 +81,7 @@ def test_a_command_without_these_has_the_usual_ones():
     )
 
 
-def test_what_the_scene_does_is_no_client_s_command():
+def test_a_change_of_the_scene_has_no_verb():
     command = c.Add(class_="Chair", id="a", source="scene")
     assert transactions.add(command, "chair1", CHAIR, HERE, None).verb == ""
     assert (
@@ -188,7 +188,7 @@ def test_an_extent_given_to_a_place_moves_and_resizes_it_only_where_that_is_give
         ({"orientation": (1.0, 0.0, 0.0, 0.0)}, ROOM, None, "cannot be turned"),
     ],
 )
-def test_an_extent_is_refused_of_what_is_no_place_and_with_an_angle(fields, one, found, error):
+def test_an_extent_is_rejected_for_objects_and_with_an_angle(fields, one, found, error):
     with pytest.raises(errors.BadRequest, match=error):
         transactions.update(c.Update(name=one.name, id="u", extent=SQUARE, **fields), one, found)
 
@@ -225,7 +225,7 @@ def test_a_place_with_a_polygon_is_neither_moved_nor_turned_as_a_box(fields):
     ],
     ids=["height", "tall", "name", "unset", "unset value", "box", "nowhere", "no size"],
 )
-def test_what_a_polygon_says_nothing_of_may_change(one, fields):
+def test_fields_that_a_polygon_does_not_define_may_change(one, fields):
     transactions.update(c.Update(name="kitchen1", id="u", **fields), one)
 
 
@@ -237,7 +237,7 @@ def test_what_a_polygon_says_nothing_of_may_change(one, fields):
         ({"if_is": False}, (Statement(property="isOpen", values=("false",)),)),
     ],
 )
-def test_a_property_is_set_as_people_write_it(fields, condition):
+def test_property_values_are_written_as_text(fields, condition):
     command = c.Set(name="door1", id="s", property="isOpen", values=(True, 2, "x"), **fields)
     made = transactions.set_property(command)
     (edit,) = made.edit
@@ -275,7 +275,7 @@ def test_a_property_loses_a_value_or_all(fields, values, condition, reason):
         (5, "update e0; update e1; update e2; and 2 more changes"),
     ],
 )
-def test_changes_together_are_told_each_as_long_as_they_are_few(count, reason):
+def test_the_reason_names_each_change_of_a_small_batch(count, reason):
     changes = [
         transactions.update(c.Update(name=f"e{i}", id="u"), entity(f"e{i}", HERE)) for i in range(count)
     ]
@@ -292,12 +292,12 @@ def test_changes_together_are_told_each_as_long_as_they_are_few(count, reason):
         ({"from_": "sim", "off": True}, "", "track robot1 --off"),
     ],
 )
-def test_an_entity_is_tracked_or_no_more(fields, tracked, reason):
+def test_tracking_is_started_and_stopped(fields, tracked, reason):
     made = transactions.track(c.Track(name="robot1", id="t", **fields))
     assert (made.edit, made.reason) == ((Edit(name="robot1", tracked=tracked),), reason)
 
 
-def test_what_is_taken_is_where_it_is_and_held_as_it_is():
+def test_attaching_stores_pose_holder_and_grip():
     taken = [
         transactions.Attachment("tray1", "hand1", HERE, TURNED),
         transactions.Attachment("cup1", "tray1", None, None),
@@ -311,7 +311,7 @@ def test_what_is_taken_is_where_it_is_and_held_as_it_is():
     assert said(cup.unset) == {"graspPose": ()}
 
 
-def test_what_is_let_go_stays_where_it_is_and_nothing_holds_it():
+def test_detaching_stores_the_pose_and_removes_the_holder():
     made = transactions.detach(c.Detach(name="cup1", id="d"), {"cup1": TURNED, "fork1": None})
     cup, fork = made.edit
     assert made.reason == "detach cup1"
@@ -355,7 +355,7 @@ def test_a_place_of_a_file_is_where_its_extent_is_if_it_is_anywhere():
 
 
 @pytest.mark.parametrize("words", ["note", "=x", ""])
-def test_what_is_no_assignment_is_refused(words):
+def test_an_invalid_assignment_is_rejected(words):
     with pytest.raises(errors.BadRequest, match=f"^'{words}' is not of the form PROPERTY=VALUE$"):
         transactions.add(c.Add(class_="Chair", id="a", set=(words,)), "chair1", CHAIR, HERE, None)
 

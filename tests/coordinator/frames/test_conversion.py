@@ -1,4 +1,4 @@
-"""Commands into the map's frame."""
+"""Conversion of commands to the map frame."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from semmap.schemas.entities import Pose, orientation_from_yaw
 
 TURNED = Pose(position_m=(2.0, 1.0, 0.5), orientation_wxyz=orientation_from_yaw(math.pi / 2))
 LYING = Pose(position_m=(0.0, 0.0, 1.0), orientation_wxyz=(math.sqrt(0.5), 0.0, math.sqrt(0.5), 0.0))
-"""Its x is down, its z along the map's x."""
+"""Its x points down, its z along the map's x."""
 
 
 def test_without_an_angle_only_the_position_is_in_the_frame():
@@ -63,11 +63,11 @@ def test_positions_among_words_are_in_the_frame_and_names_stay():
         (List(format="legacy", frame="f"), "remove --frame"),
     ],
 )
-def test_what_makes_no_sense_in_a_frame(command, said):
+def test_invalid_uses_of_a_frame(command, said):
     with pytest.raises(errors.BadRequest, match=said):
         require_position(command)
 
 
-def test_beyond_reach_is_said():
+def test_positions_beyond_the_limit_are_rejected():
     with pytest.raises(errors.BadRequest, match="coordinates are limited to 10,000 m"):
         convert_to_map(Move(name="c", at=(9_999.0, 0.0, 0.0), frame="f"), Pose(position_m=(500.0, 0.0, 0.0)))

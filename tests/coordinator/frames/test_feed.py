@@ -1,4 +1,4 @@
-"""Frames through a whole system: published, told by `frames`, and positions in them."""
+"""Frames in a whole system: publications, `frames`, and positions in frames."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def system(tmp_path_factory):
 
 @contextlib.contextmanager
 def repeated(publish):
-    """Publish again and again, on a thread of its own: nothing of it gets stale."""
+    """Publish repeatedly on another thread, so that nothing becomes stale."""
     done = threading.Event()
 
     def repeat():
@@ -74,7 +74,7 @@ def test_positions_in_the_frame_of_a_robot_that_is_tracked(system):
             assert "robot1/lidar" in system.cli("frames")
 
 
-def test_a_stale_frame_is_refused_and_told(system):
+def test_a_stale_frame_is_rejected_and_reported(system):
     with system.client() as client:
         client.publish_frame("beacon", "map", at=(1.0, 1.0, 0.0))
         until(lambda: "beacon" in [f.name for f in client.frames()], "the frame")
@@ -84,7 +84,7 @@ def test_a_stale_frame_is_refused_and_told(system):
         assert any("beacon is stale" in problem for problem in client.status().problems)
 
 
-def test_cycles_and_unknown_frames_are_refused_in_words(system):
+def test_cycles_and_unknown_frames_are_rejected_with_a_reason(system):
     with system.client() as client:
         client.publish_frame("dock", "map", at=(5.0, 0.0, 0.0), fixed=True)
         until(lambda: "dock" in [f.name for f in client.frames()], "the frame")

@@ -1,4 +1,4 @@
-"""Where entities and cameras stand just now, how that is known, and in which frame they are."""
+"""Current poses of entities and cameras, their sources, and their parent frames."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_what_is_tracked_is_where_it_was_last_seen():
     assert link == Link("map", at(3.0), "sim", 0.5)
 
 
-def test_a_stale_pose_is_told():
+def test_a_stale_pose_is_reported():
     link = links(
         one("robot1", at(1.0), tracked="stream"), live={"robot1": lives(at(3.0), stale=True, age_s=30.0)}
     ).link("robot1")
@@ -62,7 +62,7 @@ def test_a_stale_pose_is_told():
 
 
 @pytest.mark.parametrize("tracked", ["sim", "stream"])
-def test_what_is_tracked_and_was_never_seen_is_stale_where_the_map_says(tracked):
+def test_a_tracked_entity_without_live_pose_is_stale_at_its_committed_pose(tracked):
     link = links(one("robot1", at(1.0), tracked=tracked)).link("robot1")
     assert (link.pose, link.source, link.age_s, link.stale) == (at(1.0), tracked, None, True)
     assert link.problem.endswith("its current pose is unknown: no live pose has been received yet")
@@ -83,8 +83,8 @@ def test_a_part_is_in_the_frame_of_its_whole():
     assert link.pose.position_m == pytest.approx((2.0, 0.0, 0.5))
 
 
-def test_a_part_that_nobody_tracks_goes_with_its_whole():
-    """It is where the map says it is on its whole, wherever that is by now."""
+def test_an_untracked_part_moves_with_its_whole():
+    """Its committed pose relative to its whole is kept."""
     arm, robot = one("arm1", at(1.5), part_of="robot1"), one("robot1", at(1.0), tracked="sim")
     live = {"robot1": lives(at(7.0), source="sim")}
     assert links(arm, robot, live=live).link("arm1").pose.position_m == pytest.approx((0.5, 0.0, 0.0))

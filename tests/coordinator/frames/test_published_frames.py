@@ -1,4 +1,4 @@
-"""The frames that others publish: what is taken, what is ignored and why, and what is stale."""
+"""Published frames: which are stored, which are ignored and why, and which are stale."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ def say(published, name, parent, now_s=0.0, *, taken=(), stamp_ns=1, **fields):
     published.take(name, lambda: (message, stamp_ns), taken, now_s)
 
 
-def test_the_newest_wins_and_one_that_comes_late_is_passed_over():
+def test_the_newest_pose_is_used_and_a_late_one_is_ignored():
     published = PublishedFrames(2.0)
     say(published, "lidar", "robot1", at=(1.0, 0.0, 0.0), stamp_ns=2_000)
     say(published, "lidar", "robot1", at=(2.0, 0.0, 0.0), stamp_ns=1_000)
@@ -20,7 +20,7 @@ def test_the_newest_wins_and_one_that_comes_late_is_passed_over():
     assert published.link("lidar", 0.0).pose.position_m == (3.0, 0.0, 0.0)
 
 
-def test_silence_is_stale_told_for_a_minute_and_forgotten_in_the_end():
+def test_a_silent_frame_is_stale_reported_for_a_minute_and_then_removed():
     published = PublishedFrames(2.0)
     say(published, "lidar", "robot1")
     say(published, "mount", "robot1", fixed=True)
@@ -35,7 +35,7 @@ def test_silence_is_stale_told_for_a_minute_and_forgotten_in_the_end():
     assert not published.link("mount", 700.0).stale
 
 
-def test_a_cycle_is_ignored_and_what_was_there_stays():
+def test_a_cycle_is_ignored_and_existing_frames_are_kept():
     published = PublishedFrames(2.0)
     say(published, "a", "map")
     say(published, "b", "a")
@@ -49,7 +49,7 @@ def test_a_cycle_is_ignored_and_what_was_there_stays():
         "semmap/frame/a: ignored (2 times): the frames form a cycle: a in c in b in a",
         "semmap/frame/d: ignored: the frames form a cycle: d in d",
     ]
-    say(published, "b", "map")  # a frame may go elsewhere
+    say(published, "b", "map")  # a frame may change its parent
     say(published, "a", "c")
     assert published.link("a", 0.0).parent == "c"
 
@@ -62,14 +62,14 @@ def test_entities_and_the_map_keep_their_names():
     assert any("semmap track robot1" in problem for problem in published.problems(0.0))
 
 
-def test_a_frame_is_taken_away():
+def test_a_frame_is_deleted():
     published = PublishedFrames(2.0)
     say(published, "lidar", "robot1", fixed=True)
     published.take("lidar", lambda: None, (), 1.0)
     assert published.link("lidar", 1.0) is None
 
 
-def test_what_is_no_pose_is_said():
+def test_an_invalid_pose_is_reported():
     published = PublishedFrames(2.0)
     say(published, "lidar", "robot1", yaw=1.0, orientation=(1.0, 0.0, 0.0, 0.0))
     assert not list(published)

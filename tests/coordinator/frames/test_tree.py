@@ -96,7 +96,7 @@ def test_a_part_may_be_written_with_a_slash():
     assert tree.resolve("robot1/lidar") == "robot1/lidar"
 
 
-def test_an_unknown_frame_is_named_with_those_near():
+def test_an_unknown_frame_is_reported_with_similar_ones():
     with pytest.raises(errors.UnknownName, match=r"unknown frame 'robot1/lidr'.*robot1/lidar"):
         tree_of(ROBOT).resolve("robot1/lidr")
     assert tree_of(ROBOT).is_missing("robot1/lidr")
@@ -109,7 +109,7 @@ def test_a_parent_that_is_missing_is_named():
         tree.map_pose("lidar")
 
 
-def test_a_cycle_is_told_and_not_followed():
+def test_a_cycle_is_reported_and_not_followed():
     tree = tree_of({"a": Link("b", at(1.0), "stream"), "b": Link("a", at(1.0), "stream")})
     with pytest.raises(errors.Refused, match="form a cycle: a in b in a"):
         tree.map_pose("a")

@@ -1,4 +1,4 @@
-"""A body that is away from its committed pose is a disagreement, whether it moves or stands."""
+"""A body that differs from its committed pose is a disagreement, moving or not."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def tracked(name: str = "robot1", how: str = "sim") -> Entity:
 
 
 @pytest.mark.parametrize("truth", ["map", "scene", "perceived", "replayed"])
-def test_a_robot_under_way_is_named_with_its_distance_though_nothing_is_to_be_done(truth):
+def test_a_driving_robot_is_named_with_its_distance_though_no_action_is_due(truth):
     robot = structs.replace(body("robot1", at(1.2), resting=False), robot=True)
     assert look([tracked()], [robot], truth) == Actions()
     assert displaced([tracked()], [robot], truth) == ("robot1 is moving: 1.2 m from its committed pose",)
@@ -43,7 +43,7 @@ def test_a_body_that_turns_on_the_spot_is_named_with_its_angle():
 
 
 def test_a_body_that_rests_where_nothing_will_be_done_about_it_is_named():
-    """A stream tells the map where the robot is, so the map does not follow its body."""
+    """The pose of the robot comes from a stream, so the map does not follow its body."""
     assert displaced([tracked(how="stream")], [body("robot1", at(0.3))]) == (
         "robot1 stands still: 0.3 m from its committed pose",
     )
@@ -83,7 +83,7 @@ def test_a_body_without_an_entity_and_an_entity_without_a_pose_are_not_displaced
     assert displaced([entity("cup1", None)], [body("cup1", at(3.0)), body("cup2", at(3.0))]) == ()
 
 
-def test_what_is_still_to_be_done_is_described_once_for_each_entity():
+def test_pending_actions_are_described_once_for_each_entity():
     chair, cup = entity("chair1", at(0.0), shaped=2), entity("cup1", at(0.0))
     found = look([chair, cup], [body("chair1", at(0.0)), body("cup1", at(1.0))])
     assert describe_pending(found, ()) == (

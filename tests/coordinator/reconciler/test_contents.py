@@ -1,4 +1,4 @@
-"""What a drawer takes along is followed with it, in one commit."""
+"""Contents that a drawer moves are committed with it, in one commit."""
 
 from concurrent.futures import Future
 
@@ -51,7 +51,7 @@ def pull(reconciler: Reconciler, name: str, *, resting: bool) -> None:
     reconciler.scene.bodies[name] = moved
 
 
-def test_what_is_inside_is_found_by_the_box_as_far_as_drawers_go(reconciler):
+def test_contents_are_found_by_the_box_including_open_drawers(reconciler):
     bodies = reconciler.scene.bodies
     assert find_contents(bodies["chest1"], bodies.values()) == ["apple1", "apple2"]
     held = structs.replace(bodies["apple1"], held_by="robot1")
@@ -59,9 +59,7 @@ def test_what_is_inside_is_found_by_the_box_as_far_as_drawers_go(reconciler):
     assert find_contents(bodies["chest1"], [held, above]) == []
 
 
-def test_a_drawer_and_what_it_took_along_are_followed_in_one_commit_once_all_of_it_rests(
-    dispatcher, reconciler
-):
+def test_a_drawer_and_its_contents_are_committed_together_once_all_rest(dispatcher, reconciler):
     seq = dispatcher.map.seq
     reconciler.reconcile()
     assert dispatcher.map.seq == seq
@@ -74,7 +72,7 @@ def test_a_drawer_and_what_it_took_along_are_followed_in_one_commit_once_all_of_
     assert found["chest1"].provenance.reason == "chest1 was opened to 100% in the scene"
 
 
-def test_a_hand_that_opened_it_is_told(dispatcher, reconciler):
+def test_a_manual_opening_is_attributed(dispatcher, reconciler):
     pull(reconciler, "apple2", resting=True)
     dispatcher.manual_moves.register(c.Open(name="chest1", agent="ann"))
     reconciler.reconcile()
@@ -83,7 +81,7 @@ def test_a_hand_that_opened_it_is_told(dispatcher, reconciler):
     assert set(dispatcher.change(c.Undo()).names) == {"chest1", "apple1", "apple2"}
 
 
-def test_what_never_rests_is_not_waited_for(dispatcher, reconciler, monkeypatch):
+def test_the_wait_for_rest_is_limited(dispatcher, reconciler, monkeypatch):
     monkeypatch.setattr(rest_waits, "CALM_S", 0.0)
     seq = dispatcher.map.seq
     reconciler.reconcile()
@@ -92,7 +90,7 @@ def test_what_never_rests_is_not_waited_for(dispatcher, reconciler, monkeypatch)
     assert dispatcher.map.entity("apple2").pose.position_m[0] == 0.0
 
 
-def test_what_a_word_moved_is_followed_together_too(dispatcher, reconciler):
+def test_contents_moved_by_a_command_are_committed_together(dispatcher, reconciler):
     dispatcher.change(c.Set(name="chest1", property="openness", values=(1.0,)))
     body = reconciler.scene.bodies["chest1"]
     reconciler.scene.bodies["chest1"] = structs.replace(body, joint_commit=dispatcher.map.seq)

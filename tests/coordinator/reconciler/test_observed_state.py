@@ -1,4 +1,4 @@
-"""Where bodies came to rest and how joints stand, as a change of the map and in words."""
+"""Observed poses and joints, as a change of the map and in words."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def test_a_map_states_how_joints_stand(joints, stated):
         ((door(0.0), knob(0.0)), {}, "was closed and was switched off"),
     ],
 )
-def test_what_became_of_joints_is_told_of_those_that_moved(joints, before, words):
+def test_only_changed_joints_are_described(joints, before, words):
     assert describe_joint_change(joints, before) == words
 
 
@@ -134,13 +134,13 @@ def test_an_edit_has_what_the_scene_knows_of_each():
     ],
     ids=["nothing", "named", "moved", "opened", "taken"],
 )
-def test_what_was_changed_meanwhile_stays_as_it_is(meanwhile, is_edited):
+def test_entities_that_were_changed_since_are_not_edited(meanwhile, is_edited):
     settled = ObservedState.of({"chair1": CHAIR}, {"chair1": THERE})
     now = {"chair1": structs.replace(CHAIR, **meanwhile)}
     assert [edit.name for edit in settled.edits(now)] == (["chair1"] if is_edited else [])
 
 
-def test_what_was_removed_meanwhile_is_left_out():
+def test_entities_that_were_removed_since_are_left_out():
     both = {"chair1": CHAIR, "chair2": structs.replace(CHAIR, name="chair2")}
     settled = ObservedState.of(both, dict.fromkeys(both, THERE))
     assert [edit.name for edit in settled.edits({"chair2": both["chair2"]})] == ["chair2"]

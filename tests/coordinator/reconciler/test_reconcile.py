@@ -81,7 +81,7 @@ GRIP = "0.1 0 0.3 1 0 0 0"
 
 
 def held(holder: str, *, since: int = 5, source: str = "operator", grip: str = GRIP) -> Entity:
-    """A cup of which the map says what holds it."""
+    """A cup that is attached in the map."""
     said = {"isGraspedBy": holder, "graspPose": grip} if holder else {}
     return structs.replace(
         entity("cup1", at(0.0)), properties=said, grip_provenance=provenance(since, source)
@@ -89,7 +89,7 @@ def held(holder: str, *, since: int = 5, source: str = "operator", grip: str = G
 
 
 def gripped(holder: str, *, commit: int = 4, x: float = 0.1, yaw: float = 0.0) -> Body:
-    """The cup's body, held by another or by none."""
+    """The cup's body, attached to another body or to none."""
     grip = at(x, 0.0, 0.3, yaw) if holder else None
     return structs.replace(body("cup1", at(0.0)), held_by=holder, grip=grip, grip_commit=commit)
 
@@ -104,7 +104,7 @@ def test_a_body_is_ordered_to_be_held_once_its_holder_is_there_and_let_go_always
     assert (order.name, order.holder, order.grip) == ("cup1", "", None)
 
 
-def test_a_body_that_nobody_was_told_of_is_held_as_the_map_says_whoever_said_it():
+def test_a_body_without_earlier_orders_is_attached_as_in_the_map():
     hand = body("hand1", at(5.0), of_entity=False)
     assert look([held("hand1", source="scene")], [gripped("", commit=-1), hand]).grips
     assert not look([held("hand1", source="scene")], [gripped("", commit=4), hand]).grips
@@ -128,8 +128,8 @@ def test_a_grip_differs_beyond_the_thresholds_of_poses():
         assert follows(grip="nonsense", truth=truth)
 
 
-def test_where_a_held_body_is_follows_from_its_holder():
-    """Neither is it put anywhere, nor does the map follow it."""
+def test_an_attached_body_is_placed_by_its_holder():
+    """It is neither placed nor followed."""
     hand, elsewhere = body("hand1", at(5.0), of_entity=False), at(9.0)
     known = structs.replace(gripped("hand1", commit=5), pose=elsewhere)
     cup = structs.replace(held("hand1"), pose_provenance=provenance(7))
@@ -165,7 +165,7 @@ def test_joints_go_where_the_map_says_since_and_else_the_map_follows_them():
 
 
 def test_joints_that_stand_as_the_map_says_are_ordered_without_moving_them():
-    """The body is told the commit; one that still moves is told where to."""
+    """The order has the commit number, and positions only if the body still moves."""
     (order,) = look([fridge(openness=0.5)], [jointed(1.0005)]).joints
     assert order.positions == {}
     (order,) = look([fridge(openness=0.5)], [jointed(1.0, resting=False)]).joints
@@ -279,7 +279,7 @@ def test_an_order_of_the_map_moves_the_body_even_below_the_threshold_and_in_moti
     assert (placement.pose, placement.commit) == (at(1), 5)
 
 
-def test_what_the_scene_told_the_map_is_not_ordered_back():
+def test_changes_that_came_from_the_scene_are_not_ordered_back():
     entities, bodies = [entity("chair1", at(1), posed=5, source="scene")], [body("chair1", at(2), commit=4)]
     actions = look(entities, bodies)
     assert actions.follow
@@ -305,7 +305,7 @@ def test_in_mode_scene_bodies_become_entities_and_entities_without_body_are_miss
     assert not actions.delete
 
 
-def test_where_only_perception_tells_the_map_the_keeper_leaves_all_as_it_is():
+def test_if_only_perception_updates_the_map_nothing_is_reconciled():
     entities = [
         entity("chair1", at(1)),
         entity("cup1", at(2), posed=7),
@@ -327,7 +327,7 @@ scenes = st.dictionaries(
 
 
 def carry_out(entities: dict[str, Entity], bodies: dict[str, Body], actions: Actions):
-    """A world in which every order is obeyed and nothing moves by itself."""
+    """A world in which every order is executed and nothing moves by itself."""
     entities, bodies = dict(entities), dict(bodies)
     for name in actions.delete:
         del bodies[name]
@@ -372,7 +372,7 @@ def test_mode_map_never_changes_who_exists_in_the_map(entities, bodies):
     assert not actions.missing
 
 
-def test_what_one_commit_brings_and_puts_elsewhere_is_set_down_together():
+def test_additions_and_moves_of_one_commit_are_placed_together():
     table, cup = entity("table1", at(1), posed=7), entity("cup1", at(1, 0, 0.7), posed=7, shaped=7)
     actions = look([cup, table], [body("table1", at(3))])
     assert actions.delete == ("table1",)

@@ -1,4 +1,4 @@
-"""Who holds what: whoever changed last wins, and where a held thing is follows from its holder."""
+"""Attachments: the last change wins, and an attached body is placed by its holder."""
 
 import pytest
 from msgspec import structs
@@ -48,7 +48,7 @@ def kept(entity_, body_, truth="map", there=("cup1", "tray1")):
         (cup("tray1", commit=5, grip=None), held("tray1", commit=5), None, True),
     ],
 )
-def test_whoever_changed_last_wins(said, stands, holder, follows):
+def test_the_last_change_wins(said, stands, holder, follows):
     actions = kept(said, stands)
     orders = () if holder is None else (GripOrder(
         name="cup1", holder=holder, grip=GRIP if holder else None, commit=said.grip_provenance.commit
@@ -57,7 +57,7 @@ def test_whoever_changed_last_wins(said, stands, holder, follows):
     assert actions.gripped == (("cup1",) if follows else ())
 
 
-def test_what_is_held_is_neither_put_nor_followed():
+def test_an_attached_body_is_neither_placed_nor_followed():
     actions = kept(cup("tray1", commit=5), held("tray1", commit=5, x=9.0))
     assert not any(actions)
 
@@ -88,7 +88,7 @@ def test_circles_are_refused():
     attachment_rules.require_attachable(tray, robot, there, {})
 
 
-def test_where_it_is_follows_from_its_holder():
+def test_its_pose_follows_from_its_holder():
     said = cup("tray1", commit=5)
     assert (holder_of(said), grip_of(said)) == ("tray1", GRIP)
     where = {"tray1": Pose(position_m=(2.0, 0.0, 1.0), orientation_wxyz=(0.0, 0.0, 0.0, 1.0))}.get
@@ -103,7 +103,7 @@ def taken(name: str, holder: str, commit: int):
     return structs.replace(entity(name, at(0.0)), properties={"isGraspedBy": holder}, grip_provenance=grip)
 
 
-def test_what_goes_along_is_let_go_together():
+def test_contents_are_detached_together():
     tray = taken("tray1", "gripper1", 7)
     others = [taken("cup1", "tray1", 7), taken("cup2", "tray1", 8), taken("apple1", "gripper1", 7)]
     there = {e.name: e for e in (tray, *others)}
@@ -111,7 +111,7 @@ def test_what_goes_along_is_let_go_together():
     assert attachment_rules.find_attached_with(entity("table1", at(0.0)), there) == ()
 
 
-def test_what_is_fixed_or_a_part_or_held_does_not_go_along():
+def test_fixed_parts_and_attached_objects_are_not_carried():
     tray, gripper = entity("tray1", at(0.0)), entity("gripper1", at(0.0))
     there = {
         "cup1": cup(),
@@ -123,7 +123,7 @@ def test_what_is_fixed_or_a_part_or_held_does_not_go_along():
     assert attachment_rules.find_load((*there, "gone1"), tray, gripper, there, bodies) == ("cup1",)
 
 
-def test_what_stands_on_a_thing_does_not_take_it_away():
+def test_an_object_is_not_attached_to_its_contents():
     tray, person = entity("tray1", at(0.0)), taken("person1", "cup1", 3)
     there = {"tray1": tray, "person1": person, "cup1": cup()}
     with pytest.raises(Refused, match=r"^person1 is on or inside tray1, so tray1 cannot be attached"):

@@ -1,4 +1,4 @@
-"""Joints are kept like poses: whoever changed last wins, and a second look finds nothing to do."""
+"""Joints are reconciled like poses: the last change wins, and a second pass finds no action."""
 
 import pytest
 from hypothesis import given
@@ -32,11 +32,11 @@ def standing(share: float, *, joint_commit: int = 1, resting: bool = True) -> Bo
     return structs.replace(known, joints=(door,), joint_commit=joint_commit)
 
 
-def test_of_a_door_that_nobody_spoke_of_nothing_is_said_while_it_is_shut():
+def test_nothing_is_stated_about_a_closed_door_by_default():
     assert look([fridge()], [standing(0.0)]) == Actions()
 
 
-def test_the_map_follows_a_door_that_somebody_opened():
+def test_the_map_follows_a_door_that_was_opened():
     assert look([fridge()], [standing(0.4)]).opened == ("chair1",)
     assert look([fridge(isOpen=False)], [standing(0.4)]).opened == ("chair1",)
     assert look([fridge(openness=0.1, isOpen=True)], [standing(0.4)]).opened == ("chair1",)
@@ -46,45 +46,45 @@ def test_it_does_not_follow_one_that_still_moves():
     assert look([fridge()], [standing(0.4, resting=False)]) == Actions()
 
 
-def test_the_map_orders_what_was_said_of_it_since():
+def test_a_later_statement_is_ordered():
     (wanted,) = look([fridge(2, isOpen=True)], [standing(0.0)]).joints
     assert (wanted.name, wanted.positions, wanted.commit) == ("chair1", {"door": 1.6}, 2)
 
 
-def test_what_is_said_and_so_already_is_ordered_without_moving_anything():
-    """Else a hand that opens it later would be taken for earlier than the word."""
+def test_a_statement_that_already_holds_is_ordered_without_motion():
+    """Otherwise a later manual opening would be taken for an earlier one."""
     (wanted,) = look([fridge(2, isOpen=True)], [standing(0.4)]).joints
     assert (wanted.positions, wanted.commit) == ({}, 2)
 
 
-def test_what_moves_is_ordered_even_where_it_passes_just_now():
-    """It may be on its way to shut, by the word before."""
+def test_a_moving_joint_is_ordered_even_at_its_target():
+    """It may be closing because of an earlier command."""
     (wanted,) = look([fridge(3, isOpen=True)], [standing(0.9, joint_commit=2, resting=False)]).joints
     assert (wanted.positions, wanted.commit) == ({"door": 1.6}, 3)
 
 
-def test_a_word_is_done_to_the_letter_and_a_hand_that_is_near_is_let_be():
+def test_commands_are_exact_and_small_manual_changes_are_tolerated():
     (wanted,) = look([fridge(2, isOpen=False, openness=0.0)], [standing(0.015)]).joints
     assert (wanted.positions, wanted.commit) == ({"door": 0.0}, 2)
     assert look([fridge(2, isOpen=False, openness=0.0)], [standing(0.015, joint_commit=2)]) == Actions()
 
 
-def test_once_ordered_whatever_stopped_it_counts():
+def test_after_an_order_the_reached_position_counts():
     assert look([fridge(2, isOpen=True)], [standing(0.0, joint_commit=2)]).opened == ("chair1",)
 
 
-def test_what_the_scene_said_is_no_order():
+def test_a_statement_from_the_scene_is_not_ordered():
     said = fridge(5, "scene", isOpen=True, openness=0.4, jointPositions="door=0.64")
     assert look([said], [standing(0.4)]) == Actions()
     assert look([said], [standing(0.0)]).opened == ("chair1",)
 
 
-def test_positions_say_more_than_openness():
+def test_positions_override_openness():
     said = fridge(1, isOpen=True, openness=0.4, jointPositions="door=1.6")
     assert look([said], [standing(1.0)]) == Actions()
 
 
-def test_under_truth_scene_the_map_follows_whoever_said_what():
+def test_under_truth_scene_the_map_always_follows():
     assert look([fridge(9, isOpen=False)], [standing(1.0)], "scene").opened == ("chair1",)
 
 
@@ -105,7 +105,7 @@ def test_once_the_map_has_followed_it_agrees(share):
     assert said["isOpen"] is (openness(there.joints) > 0.05)
 
 
-def test_what_was_said_meanwhile_is_not_overwritten():
+def test_statements_made_since_are_not_overwritten():
     settled = ObservedState.of({"chair1": fridge()}, {}, {"chair1": standing(1.0).joints})
     assert settled.edits({"chair1": fridge(4, isOpen=False)}) == []
     assert settled.edits({}) == []
@@ -148,7 +148,7 @@ def switched(commit: int = 2, source: str = "operator", **said) -> Entity:
     return structs.replace(known, properties=said, switch_provenance=provenance(commit, source))
 
 
-def test_the_map_follows_a_switch_that_somebody_turned():
+def test_the_map_follows_a_switch_that_was_turned():
     assert look([fridge()], [stove(1.0)]).opened == ("chair1",)
     said = switched(1, isSwitchedOn=False)
     assert look([said], [stove(0.6)]).opened == ("chair1",)
@@ -156,7 +156,7 @@ def test_the_map_follows_a_switch_that_somebody_turned():
     assert look([said], [stove(0.0, door=0.5)]).opened == ("chair1",)
 
 
-def test_what_is_said_of_a_switch_is_done_and_doors_stay():
+def test_a_statement_about_a_switch_does_not_move_doors():
     (wanted,) = look([switched(isSwitchedOn=True)], [stove(0.0)]).joints
     assert (wanted.positions, wanted.commit) == ({"door": 0.0, "knob": -1.5}, 2)
     exact = switched(isSwitchedOn=True, switchPositions="knob=-0.9", isOpen=True)
@@ -185,5 +185,5 @@ def test_how_switches_stand_is_stated_apart_from_doors():
         (1.0, 0.5, {"isOpen": False}, "was opened to 50% and was switched on"),
     ],
 )
-def test_only_of_what_is_new_something_is_told(share, door, before, told):
+def test_only_changes_are_described(share, door, before, told):
     assert describe_joint_change(stove(share, door).joints, before) == told

@@ -1,4 +1,4 @@
-"""A robot of a simulator that has just begun is put where the map says that it last stood."""
+"""A robot of a new simulator is placed at its last committed pose."""
 
 import pytest
 from msgspec import structs
@@ -22,7 +22,7 @@ def robot(name: str = "robot1", *, commit: int, part_of: str = "", pose=BEGAN) -
 
 
 @pytest.mark.parametrize("truth", TRUTHS)
-def test_it_begins_where_it_stood_and_its_parts_go_along(truth):
+def test_it_starts_at_its_committed_pose_with_its_parts(truth):
     bodies = [robot(commit=-1), robot("robot1_gripper", commit=-1, part_of="robot1")]
     wanted = look([known(), known("robot1_gripper")], bodies, truth)
     (placed,) = wanted.place
@@ -31,7 +31,7 @@ def test_it_begins_where_it_stood_and_its_parts_go_along(truth):
 
 
 @pytest.mark.parametrize("truth", TRUTHS)
-def test_once_it_has_begun_the_map_follows_it(truth):
+def test_after_its_start_the_map_follows_it(truth):
     for commit in (0, 9):
         wanted = look([known()], [robot(commit=commit)], truth)
         assert [placement.pose for placement in wanted.follow] == [BEGAN]

@@ -31,7 +31,7 @@ def standing(order: BodyOrder) -> Body:
     )
 
 
-def test_where_only_perception_tells_the_map_nothing_is_asked_of_the_simulator(dispatcher):
+def test_if_only_perception_updates_the_map_the_simulator_gets_no_orders(dispatcher):
     asked = []
     reconciler = Reconciler(
         CoordinatorConfig("perceived"),
@@ -49,7 +49,7 @@ def test_where_only_perception_tells_the_map_nothing_is_asked_of_the_simulator(d
 
 
 def test_a_reset_tries_again_what_could_not_be_made(dispatcher):
-    """A model file may have been mended meanwhile."""
+    """A model file may have been repaired since."""
     spawns = []
 
     def ask(message):
@@ -95,11 +95,11 @@ def test_a_body_that_cannot_be_made_is_a_problem_only_as_long_as_its_entity_is_t
     assert reconciler.problems() == ["chair1: failed: its model file is broken"]
     dispatcher.change(c.Remove(names=("chair1",)))
     reconciler.reconcile()
-    assert (reconciler.problems(), said) == ([], [])  # and no heartbeat says it for an hour
+    assert (reconciler.problems(), said) == ([], [])  # and it is not in the heartbeat for an hour
 
 
-def test_an_order_by_hand_waits_until_the_map_s_own_is_carried_out(dispatcher):
-    """It would be lost: an undo, for one, puts the body back to where it was before."""
+def test_a_manual_move_waits_until_the_map_s_order_is_executed(dispatcher):
+    """Otherwise it would be lost, for example when an undo places the body."""
     asked = []
     reconciler = Reconciler(
         CoordinatorConfig("map"),
@@ -134,7 +134,7 @@ def test_an_order_by_hand_waits_until_the_map_s_own_is_carried_out(dispatcher):
     assert (done, first.result()) == (["chair2", "chair1"], "chair1")
 
 
-def test_an_order_by_hand_that_waits_is_tried_when_the_simulator_is_gone(dispatcher):
+def test_a_waiting_manual_move_is_tried_when_the_simulator_is_gone(dispatcher):
     reconciler = Reconciler(
         CoordinatorConfig("map"), dispatcher, immediate(dispatcher), lambda call: Future(), print
     )
@@ -219,7 +219,7 @@ def test_a_reset_without_a_simulator_is_refused(dispatcher):
         reconciler.place_all()
 
 
-def test_bodies_are_told_of_batch_by_batch(dispatcher):
+def test_bodies_are_known_batch_by_batch(dispatcher):
     told = []
 
     def ask(message):
@@ -299,7 +299,7 @@ def test_what_is_seen_against_an_operators_word_is_a_problem_of_the_system(dispa
 
 
 def bodies_elsewhere(dispatcher, count):
-    """A keeper that sees so many chairs rest elsewhere than the map says; what it changes, what it moves."""
+    """A reconciler that sees chairs at rest elsewhere; its changes of the map, and its orders."""
     changes = []
 
     def change(change):
@@ -354,7 +354,7 @@ def test_a_body_is_followed_later_when_the_map_does_not_answer_now(dispatcher):
     assert (len(changes), moved) == (2, [])
 
 
-def test_who_moves_an_entity_before_the_map_follows_its_body_is_right(dispatcher):
+def test_a_command_before_the_map_follows_takes_precedence(dispatcher):
     reconciler, changes, _ = bodies_elsewhere(dispatcher, 1)
     reconciler.reconcile()
     dispatcher.change(c.Update(name="chair0", at=(7.0, 7.0, 0.0)))
@@ -369,7 +369,7 @@ def test_a_body_whose_entity_is_gone_is_no_longer_followed(dispatcher):
     assert dispatcher.change(changes[0][0]).commit is None
 
 
-def test_an_answer_that_cannot_be_taken_does_not_end_the_keeping(dispatcher):
+def test_an_invalid_reply_does_not_stop_the_reconciler(dispatcher):
     asked = []
 
     def ask(message):
@@ -389,7 +389,7 @@ def test_an_answer_that_cannot_be_taken_does_not_end_the_keeping(dispatcher):
 
 
 class Refusing:
-    """Changes of the map that are under way until the test ends them, and what the simulator is asked."""
+    """Pending changes of the map that the test completes, and the orders to the simulator."""
 
     def __init__(self, dispatcher, *entities: str):
         self.changes, self.said, self.asked = [], [], []
@@ -423,7 +423,7 @@ OPENED = (Joint(name="door1", kind="hinge", lower=0.0, upper=1.0, closed=0.0, po
 GRIP = Pose(position_m=(0.0, 0.0, 1.0))
 
 
-def test_joints_go_back_when_the_map_rejects_how_they_stand(dispatcher):
+def test_joints_are_restored_when_the_map_rejects_them(dispatcher):
     map_ = Refusing(dispatcher, "chair1")
     map_.become("chair1", joints=OPENED, joint_commit=1)
     map_.reconciler.reconcile()
@@ -442,7 +442,7 @@ def test_joints_go_back_when_the_map_rejects_how_they_stand(dispatcher):
         (MemoryError("no memory"), 2, ["chair1: joint positions are not committed yet: no memory"]),
     ],
 )
-def test_joints_that_the_map_cannot_take_over_are_tried_again(dispatcher, error, tries, said):
+def test_joints_that_are_not_committed_are_tried_again(dispatcher, error, tries, said):
     map_ = Refusing(dispatcher, "chair1")
     map_.become("chair1", joints=OPENED, joint_commit=1)
     map_.reconciler.reconcile()
@@ -451,7 +451,7 @@ def test_joints_that_the_map_cannot_take_over_are_tried_again(dispatcher, error,
     assert map_.reconciler.is_followed("chair1") is (tries == 1)
 
 
-def test_the_map_takes_over_what_was_taken_in_the_scene_and_by_whom(dispatcher):
+def test_the_map_follows_attachments_in_the_scene(dispatcher):
     map_ = Refusing(dispatcher, "chair1", "chair2", "table1")
     map_.become("chair1", held_by="stranger1", grip=GRIP, grip_commit=0)
     map_.become("chair2", held_by="table1", grip=GRIP, grip_commit=0)
@@ -463,7 +463,7 @@ def test_the_map_takes_over_what_was_taken_in_the_scene_and_by_whom(dispatcher):
     assert len(map_.changes) == 1  # it is under way
 
 
-def test_the_map_takes_over_what_was_let_go_in_the_scene_and_by_whom(dispatcher):
+def test_the_map_follows_detachments_in_the_scene(dispatcher):
     dispatcher.map.bodies = dict
     map_ = Refusing(dispatcher, "chair1", "table1")
     said = structs.replace(
@@ -492,7 +492,7 @@ def test_the_map_takes_over_what_was_let_go_in_the_scene_and_by_whom(dispatcher)
         ),
     ],
 )
-def test_what_holds_a_body_is_put_back_when_the_map_rejects_it(dispatcher, error, tries, said, asked):
+def test_an_attachment_is_restored_when_the_map_rejects_it(dispatcher, error, tries, said, asked):
     map_ = Refusing(dispatcher, "chair1", "table1")
     map_.become("chair1", held_by="table1", grip=GRIP, grip_commit=0)
     map_.reconciler.reconcile()
@@ -605,7 +605,7 @@ def test_the_state_of_a_body(dispatcher, name, fields, status, detail):
     assert lost.status == ("none" if name == "kitchen1" else "unknown")
 
 
-def test_the_world_s_bodies_that_are_no_entities_are_problems_where_the_scene_is_the_truth(dispatcher):
+def test_world_bodies_without_entities_are_problems_if_the_scene_is_the_truth(dispatcher):
     reconciler = Reconciler(
         CoordinatorConfig("scene"), dispatcher, lambda change: Future(), lambda call: Future(), print
     )
@@ -649,7 +649,7 @@ def test_a_body_of_the_scene_becomes_an_entity_after_what_it_is_part_of(dispatch
     assert (added[-1].name, added[-1].set) == ("leg", ("isDirectPartOf=sofa",))
 
 
-def test_what_a_hand_carried_together_is_followed_in_one_commit_once_all_of_it_rests(dispatcher):
+def test_bodies_moved_together_are_committed_together_once_all_rest(dispatcher):
     reconciler = Reconciler(
         CoordinatorConfig("map"), dispatcher, immediate(dispatcher), lambda call: Future(), lambda text: None
     )

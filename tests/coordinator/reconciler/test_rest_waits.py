@@ -1,4 +1,4 @@
-"""The wait for what moves in a thing has an end, which is in simulated time."""
+"""The wait for moving contents or parts is limited in simulated time."""
 
 from msgspec import structs
 

@@ -1,4 +1,4 @@
-"""A robot and its parts are followed in one commit, so that none stays behind, and added in one order."""
+"""A robot and its parts are committed together, and added in a fixed order."""
 
 from concurrent.futures import Future
 from types import SimpleNamespace
@@ -24,7 +24,7 @@ ARM = Joint(name="arm", kind="hinge", lower=-1.0, upper=1.0)
 
 @pytest.fixture
 def reconciler(dispatcher):
-    """A robot with a gripper and a hand at that, which drove by a metre, and a chair that was pushed."""
+    """A robot with a gripper and a hand, which drove one metre, and a chair that was pushed."""
     reconciler = Reconciler(
         CoordinatorConfig("map"), dispatcher, immediate(dispatcher), lambda call: Future(), lambda text: None
     )
@@ -49,7 +49,7 @@ def stands_at_m(dispatcher, name: str) -> float:
 
 
 @pytest.mark.parametrize("moving", ["robot1", "gripper1", "hand1"])
-def test_it_is_followed_whole_once_all_of_it_rests(dispatcher, reconciler, moving):
+def test_it_is_committed_completely_once_all_parts_rest(dispatcher, reconciler, moving):
     have(reconciler, moving, resting=False)
     seq = dispatcher.map.seq
     reconciler.reconcile()
@@ -86,7 +86,7 @@ def test_the_joints_of_a_part_come_too(dispatcher, reconciler):
 def test_an_arm_that_never_rests_is_waited_for_in_simulated_time_only(dispatcher, reconciler, monkeypatch):
     have(reconciler, "hand1", resting=False)
     hours = SimpleNamespace(monotonic=(3600.0 * i for i in range(9)).__next__)
-    monkeypatch.setattr(module, "time", hours, raising=False)  # as on a machine that is very busy
+    monkeypatch.setattr(module, "time", hours, raising=False)  # as on a very busy machine
     for _ in range(3):
         reconciler.reconcile()
     assert [stands_at_m(dispatcher, name) for name in ("robot1", "gripper1", "hand1")] == [0.0, 0.0, 0.0]
@@ -115,9 +115,7 @@ def test_a_robot_that_drove_on_is_waited_for_again_where_it_stops_next(dispatche
     assert {stands_at_m(dispatcher, name) for name in parts} == {2.0}
 
 
-def test_while_it_drives_map_and_scene_do_not_agree_and_the_rest_is_no_matter_to_others(
-    dispatcher, reconciler
-):
+def test_while_it_drives_only_its_own_agreement_fails(dispatcher, reconciler):
     for name in ("robot1", "gripper1", "hand1"):
         have(reconciler, name, resting=False)
     reconciler.reconcile()
@@ -135,7 +133,7 @@ def test_whose_agreement_is_asked_for_must_be_there(reconciler):
 
 @pytest.fixture
 def newcomer(dispatcher):
-    """A robot whose arm has sunk under its weight, with a gripper, of which the map knows nothing yet."""
+    """A new robot with a gripper, whose arm has sunk under its weight."""
     reconciler = Reconciler(
         CoordinatorConfig("map"), dispatcher, immediate(dispatcher), lambda call: Future(), lambda text: None
     )

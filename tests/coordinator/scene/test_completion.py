@@ -1,4 +1,4 @@
-"""When the order of a hand is answered, and with what."""
+"""When an order is answered, and with which reply."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def body(*, resting: bool) -> Body:
 
 
 class World:
-    """A coordinator's view of a cup that is moved, without any process."""
+    """A coordinator's view of a cup that is moved, without processes."""
 
     def __init__(self, truth="map"):
         self.now_s = 0.0
@@ -80,7 +80,7 @@ class World:
         self.completion.answer_waiting()
 
     def follow(self):
-        """The map begins to follow the cup; the future is of what becomes of that."""
+        """The map begins to follow the cup; returns the future commit."""
         made = Future()
         self.completion.watch(lambda _: made)(ObservedState.of(self.entities, {"cup1": THERE}))
         return made
@@ -113,7 +113,7 @@ def test_a_commit_from_poses_before_the_move_is_not_its_own(world):
     assert reply.result().commit is None
 
 
-def test_who_does_not_wait_is_answered_at_once(world):
+def test_without_wait_the_reply_is_immediate(world):
     assert world.move(structs.replace(MOVE, wait=False)) == RELEASED
 
 
@@ -130,7 +130,7 @@ def test_a_pause_answers_those_who_wait(world):
     assert reply.result().notes == (PAUSED,)
 
 
-def test_a_body_that_rests_where_the_map_has_it_makes_no_commit(world):
+def test_a_body_at_its_committed_pose_makes_no_commit(world):
     reply = world.move()
     world.poses(11, resting=True, followed=True)
     assert (reply.result().commit, reply.result().notes) == (
@@ -139,7 +139,7 @@ def test_a_body_that_rests_where_the_map_has_it_makes_no_commit(world):
     )
 
 
-def test_a_body_that_another_commit_put_elsewhere_is_said_to_be(world):
+def test_a_change_by_another_commit_is_reported(world):
     reply = world.move()
     world.entities["cup1"] = entity(commit=9)
     world.poses(11, resting=True, followed=True)
@@ -171,7 +171,7 @@ def test_a_place_that_the_map_rejects_is_an_error(world):
         (lambda w: setattr(w.scene, "known", False), errors.NoAnswer, "the simulator ended before cup1"),
     ],
 )
-def test_what_keeps_a_body_from_coming_to_rest_is_said(world, end, kind, text):
+def test_the_reason_why_a_body_cannot_rest_is_reported(world, end, kind, text):
     reply = world.move()
     end(world)
     world.poses(11, resting=False)
@@ -179,13 +179,13 @@ def test_what_keeps_a_body_from_coming_to_rest_is_said(world, end, kind, text):
         reply.result()
 
 
-def test_a_body_that_is_taken_again_answers_who_waited_for_the_first_move(world):
+def test_a_second_move_answers_the_first(world):
     first, second = world.move(), world.move(structs.replace(MOVE, at=(6.0, 2.0, 0.0)))
     assert first.result().text == "cup1 was moved again before the map had followed"
     assert not second.done()
 
 
-def test_an_undo_stops_the_move_and_who_waits_is_told(world):
+def test_an_undo_stops_the_move_and_answers_its_client(world):
     reply = world.move()
     undo = Undo(id="u1")
     stopped = world.completion.stop(undo, None).result()
@@ -214,7 +214,7 @@ def test_an_undo_while_the_commit_is_being_made_is_about_that_commit(world):
     assert world.completion.stop(Undo(), None) is None
 
 
-def test_a_course_is_waited_for_to_its_end_and_then_for_the_commit(world):
+def test_a_drive_is_waited_for_until_its_commit(world):
     drive = Drive(name="cup1", to=((5.0, 2.0),), wait=True)
     reply = world.completion.begin(drive, RELEASED, lambda _: "", None)
     world.now_s = 10 * WAIT_S
@@ -229,7 +229,7 @@ def test_a_course_is_waited_for_to_its_end_and_then_for_the_commit(world):
     assert reply.result() == Moved(name="cup1", text="cup1 is at (5.00, 2.00)", commit=4)
 
 
-def test_a_course_that_is_refused_is_an_error(world):
+def test_a_rejected_drive_is_an_error(world):
     drive = Drive(name="cup1", to=((5.0, 2.0),), wait=True)
     reply = world.completion.begin(drive, RELEASED, lambda _: "", None)
     world.completion.fail(drive, errors.Refused("cup1 is blocked at (1, 2)"))

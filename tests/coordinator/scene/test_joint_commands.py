@@ -1,4 +1,4 @@
-"""How joints are ordered to open and close, and what is replied where nothing opens or something is stuck."""
+"""Orders that open and close joints, and the replies if nothing opens or is blocked."""
 
 from concurrent.futures import Future
 
@@ -45,7 +45,7 @@ SWITCH = Joint(name="knob1", kind="hinge", lower=0.0, upper=1.0, closed=0.0, swi
         ((HINGE, SWITCH), f"{NO}; to switch it: semmap set thing1 isSwitchedOn true"),
     ],
 )
-def test_why_nothing_opens_is_told(joints, said):
+def test_the_reason_why_nothing_opens_is_reported(joints, said):
     with pytest.raises(errors.Refused) as refused:
         _require_joints(c.Open(name="thing1"), body(*joints))
     assert str(refused.value) == said
@@ -62,7 +62,7 @@ DRAWER = Joint(name="drawer", kind="slide", lower=0.0, upper=0.3, closed=0.0)
 
 
 class FakeSimulator:
-    """Stands in for the simulator: it notes the orders, and how joints begin to move."""
+    """A fake simulator that records the orders, and moves joints."""
 
     def __init__(self):
         self.orders, self.failed = [], {}
@@ -104,9 +104,7 @@ def opening(dispatcher, reconciler, simulator):
         (c.Close(name="thing1", joint="drawer"), 0.0),
     ],
 )
-def test_open_moves_joints_to_the_share_that_was_asked_for_and_close_to_none(
-    opening, simulator, command, openness
-):
+def test_open_moves_joints_to_the_requested_share_and_close_to_zero(opening, simulator, command, openness):
     opening.move(command)
     (order,) = simulator.orders
     assert (order.name, order.joint, order.openness) == ("thing1", command.joint or "", openness)
@@ -155,7 +153,7 @@ def at_shares(door=0.0, drawer=0.0, knob=0.0):
         (c.Close(name="thing1"), at_shares(door=0.1), "something stops door"),
     ],
 )
-def test_which_joints_did_not_get_where_they_were_sent_is_told(command, there, said):
+def test_joints_that_miss_their_target_are_reported(command, there, said):
     text = _arrived(command, there)
     assert text.startswith("thing1: ")
     assert text.partition("; ")[2] == (said or "")
@@ -194,7 +192,7 @@ def test_a_switch_is_turned():
         (c.Close(name="thing1", joint="drawer"), 0.5, ""),
     ],
 )
-def test_what_did_not_arrive_is_told(command, door, short):
+def test_blocked_joints_are_reported(command, door, short):
     drawer = structs.replace(DRAWER, position=DRAWER.position_at(_share(command)))
     text = _arrived(command, body(structs.replace(DOOR, position=door), drawer, SWITCH))
     assert text.startswith("thing1: ")

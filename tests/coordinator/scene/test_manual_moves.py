@@ -7,7 +7,7 @@ from semmap.schemas.commands import Move
 
 MOVE = Move(name="cup1", at=(1.0, 2.0, 0.0), agent="ann")
 ANN = Attribution("move", "ann", "cup1 was moved by hand")
-NOBODY = Attribution("", "", "cup1 came to rest")
+PHYSICS = Attribution("", "", "cup1 came to rest")
 
 
 def mover(released: ManualMoves) -> Attribution:
@@ -36,32 +36,32 @@ def released():
     return released
 
 
-def test_the_hand_is_forgotten_when_the_map_has_followed(released):
+def test_a_move_is_forgotten_when_the_map_has_followed(released):
     assert mover(released) == ANN
-    assert mover(released) == NOBODY
+    assert mover(released) == PHYSICS
 
 
-def test_the_hand_is_kept_while_the_map_does_not_answer_however_long(released, clock):
+def test_a_move_is_kept_while_the_map_does_not_respond(released, clock):
     for _ in range(3):
         clock.now_s += 50.0
         with pytest.raises(errors.NoAnswer), released.attribution_of("cup1"):
             raise errors.NoAnswer("it is being restarted")
     assert mover(released) == ANN
-    assert mover(released) == NOBODY
+    assert mover(released) == PHYSICS
 
 
-def test_the_hand_is_forgotten_when_the_map_refuses_the_place(released):
+def test_a_move_is_forgotten_when_the_map_rejects_the_pose(released):
     with pytest.raises(errors.Refused), released.attribution_of("cup1"):
         raise errors.Refused("it may not stand there")
-    assert mover(released) == NOBODY
+    assert mover(released) == PHYSICS
 
 
-def test_a_body_that_goes_on_for_too_long_came_to_rest_by_itself(released, clock):
+def test_a_body_that_moves_for_too_long_is_not_attributed(released, clock):
     clock.now_s += 61.0
-    assert mover(released) == NOBODY
+    assert mover(released) == PHYSICS
 
 
-def test_a_new_hand_counts_more_than_one_whose_move_is_still_to_be_told(released):
+def test_a_new_move_replaces_one_that_is_not_committed(released):
     def while_it_is_told():
         released.register(Move(name="cup1", at=(1.0, 2.0, 0.0), agent="bob"))
         raise errors.NoAnswer("it is being restarted")
@@ -71,10 +71,10 @@ def test_a_new_hand_counts_more_than_one_whose_move_is_still_to_be_told(released
     assert mover(released).agent == "bob"
 
 
-def test_what_was_carried_together_is_followed_together(released, clock):
+def test_bodies_moved_together_are_committed_together(released, clock):
     tray = Move(name="tray1", at=(1.0, 2.0, 0.0), agent="ann")
     released.register(tray, ["bowl1", "apple1"])
-    assert released.group_of("cup1") == released.group_of("nobody") == frozenset()
+    assert released.group_of("cup1") == released.group_of("unknown") == frozenset()
     assert released.group_of("apple1") == {"tray1", "bowl1", "apple1"}
     with pytest.raises(errors.NoAnswer), released.attribution_of("tray1", "apple1"):
         raise errors.NoAnswer("it is being restarted")
@@ -84,14 +84,14 @@ def test_what_was_carried_together_is_followed_together(released, clock):
     assert released.group_of("bowl1") == frozenset()
 
 
-def test_who_is_taken_again_is_no_longer_of_the_party(released):
+def test_a_body_that_is_moved_again_leaves_the_group(released):
     released.register(Move(name="tray1", at=(1.0, 2.0, 0.0)), ["bowl1", "apple1"])
     released.register(Move(name="apple1", at=(1.0, 2.0, 0.0)))
     assert released.group_of("tray1") == {"tray1", "bowl1"}
     assert released.group_of("apple1") == frozenset()
 
 
-def test_a_party_of_which_one_goes_on_for_too_long_is_followed_one_by_one(released, clock):
+def test_a_group_that_moves_for_too_long_is_committed_one_by_one(released, clock):
     released.register(Move(name="tray1", at=(1.0, 2.0, 0.0)), ["bowl1"])
     clock.now_s += 61.0
     assert released.group_of("tray1") == frozenset()

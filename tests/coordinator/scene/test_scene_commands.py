@@ -39,7 +39,7 @@ def running_with(bodies, ask, register):
 
 
 def said_of_a_move(z: float, put: Body) -> str:
-    """What is said of a hand's move to (1, 2, z) when the simulator answers that it `put` the cup so."""
+    """Return the reply to a move to (1, 2, z), if the simulator `put` the cup there."""
 
     def ask(_):
         future = Future()
@@ -68,12 +68,12 @@ def said_of_a_move(z: float, put: Body) -> str:
         ),
     ],
 )
-def test_a_hand_says_where_it_let_go(z, put, said):
+def test_a_move_reports_where_the_body_was_released(z, put, said):
     assert said_of_a_move(z, put).startswith(said)
 
 
-def test_a_hand_that_carries_puts_what_is_borne_with_it():
-    """As a rigid body: what the map says is on it goes by where the bodies are."""
+def test_a_move_with_contents_keeps_their_relative_poses():
+    """They move like a rigid body, by the poses of the bodies."""
     tray = structs.replace(cup(0.74), name="tray1")
     beside = structs.replace(cup(0.76), pose=Pose(position_m=(1.2, 2.0, 0.76)))
     asked, registered = [], []
