@@ -80,7 +80,7 @@ class Robot:
         )
         self._publisher = bus.publisher(session, keys.COMMIT)
         bus.serve(session, keys.BRIDGE, self._answer)
-        self._token = bus.appear(session, "kb_node")
+        self._token = bus.declare_presence(session, "kb_node")
 
     def commit(self, number: int) -> int:
         """Put one of its things elsewhere; how many bytes are published for it."""

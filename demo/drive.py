@@ -33,7 +33,7 @@ def drive(t: Tour) -> None:
 
     t.tell("On it drives, past the counter where the milk was, and lets the apple go")
     t.do("drive", "robot1", "--to", "8.4", "1.15", "--yaw", "0", holds="robot1 is at")
-    t.do("detach", "apple1", holds="let go of apple1")
+    t.do("detach", "apple1", holds="apple1 is detached")
 
     t.tell("Where is the milk? Nobody sees it, and the map knows")
     t.do("find", "the milk in the fridge", holds="milk1")

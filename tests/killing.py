@@ -1,4 +1,4 @@
-"""A node that is killed again and again while a client works as fast as it can."""
+"""A node that is killed repeatedly while a client sends commands as fast as it can."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.conftest import until
 
 
 class Busy(threading.Thread):
-    """A client that does one thing after the other until it is stopped; `step` does one of them."""
+    """A client that runs `step` repeatedly until it is stopped."""
 
     def __init__(self, system):
         super().__init__()
@@ -31,11 +31,11 @@ class Busy(threading.Thread):
                     self.unanswered()
 
     def step(self, client):
-        """One thing, which ends with its answer, or raises NoAnswer."""
+        """Send one command and wait for its reply; may raise NoAnswer."""
         raise NotImplementedError
 
     def unanswered(self):
-        """The last step got no answer: it may have been done."""
+        """Handle a step without reply: it may have been executed."""
         raise NotImplementedError
 
     def stop(self):
@@ -44,13 +44,13 @@ class Busy(threading.Thread):
         assert not self.is_alive()
 
     def goes_on(self):
-        """Wait for one more step that is done."""
+        """Wait until another step has succeeded."""
         before = self.done
         until(lambda: self.done > before, "the client goes on")
 
 
 def kill_again_and_again(system, node, busy, kills):
-    """Kill a node so many times while `busy` works, each time once it is back; then stop the client."""
+    """Kill a node repeatedly while `busy` works, each time after it is back; then stop the client."""
     chance = random.Random(kills)
     busy.start()
     pid = 0

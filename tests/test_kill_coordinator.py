@@ -1,4 +1,4 @@
-"""A coordinator that is killed again and again while a client adds without giving names."""
+"""A coordinator that is killed repeatedly while a client adds entities without names."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tests.killing import Busy, kill_again_and_again
 
 
 class Adder(Busy):
-    """Adds cups; two cups for one call would be one command done twice."""
+    """Adds cups; two cups for one call would mean that a command was executed twice."""
 
     def __init__(self, system):
         super().__init__(system)
@@ -24,7 +24,7 @@ class Adder(Busy):
 
 
 @pytest.mark.parametrize("kills", [3, pytest.param(30, marks=pytest.mark.long)])
-def test_what_is_asked_once_is_done_once_however_often_the_coordinator_is_killed(empty_map, kills):
+def test_a_command_is_executed_once_however_often_the_coordinator_is_killed(empty_map, kills):
     empty_map.begin_anew("none")
     with empty_map.client() as client:
         adder = Adder(empty_map)

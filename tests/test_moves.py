@@ -109,11 +109,11 @@ def test_who_does_not_wait_is_answered_at_once_and_an_undo_stops_the_move(client
     assert (said.commit, said.text) == (None, "put chair9 at (-2, 0.5, 1.5) and released it")
     stopped = client.undo()
     assert (stopped.commit, stopped.names) == (None, ("chair9",))
-    assert stopped.text == "stopped the move of chair9: it goes back to where the map has it"
+    assert stopped.text == "stopped the move of chair9: it returns to its committed pose"
     client.pause(off=True)
     moved = client.move("chair9", before)
     assert moved.commit is None
-    assert moved.notes == ("no commit: chair9 rests where the map has it",)
+    assert moved.notes == ("no commit: chair9 rests at its committed pose",)
     assert client.status().commit == commit
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from semmap.schemas import errors
 from tests.conftest import running, until
-from tests.sim_node.physics.test_ends import STOVE
+from tests.sim_node.physics.test_joint_texts import STOVE
 
 
 @pytest.fixture(scope="module")

@@ -138,7 +138,9 @@ def test_the_knowledge_base_runs_from_it_with_its_extra_alone(wheel, tmp_path):
     assert "Dishware" in said
     refused = subprocess.run([python.with_name("semmap"), "up"], cwd=tmp_path, capture_output=True, text=True)
     assert refused.returncode == 2
-    assert "pip install 'semmap[sim,record]', or go without: semmap up --no-sim --no-record" in refused.stderr
+    assert (
+        "pip install 'semmap[sim,record]', or start without: semmap up --no-sim --no-record" in refused.stderr
+    )
 
 
 @pytest.mark.long

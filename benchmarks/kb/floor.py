@@ -149,7 +149,7 @@ def _cpu_s(processes: Sequence[psutil.Process]) -> float:
 
 def main() -> None:
     """Be one of the processes."""
-    bus.read_links_apart()
+    bus.set_reader_threads()
     match sys.argv[1:]:
         case ["relay", where, beyond]:
             relay(where, beyond)

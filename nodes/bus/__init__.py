@@ -1,71 +1,78 @@
-"""The only code that knows Zenoh: open a session, ask, serve, publish, follow."""
+"""The only package that imports Zenoh: sessions, queries, queryables, publishers and subscribers."""
 
-from semmap.nodes.bus import own_config
-from semmap.nodes.bus.asking import (
+from semmap.nodes.bus import zenoh_config
+from semmap.nodes.bus.fragmentation import FRAGMENT_BYTES, MESSAGE_BYTES, PUBLICATION_BYTES
+from semmap.nodes.bus.liveliness import (
+    LivelinessMonitor,
+    declare_presence,
+    find_robots,
+    follow_presence,
+    follow_robots,
+)
+from semmap.nodes.bus.pubsub import (
+    NewestSamples,
+    follow,
+    follow_cameras,
+    includes,
+    intersects,
+    listen,
+    publisher,
+    subscriber_check,
+)
+from semmap.nodes.bus.query_client import (
     TIMEOUT_S,
+    BusyBackoff,
     Encoded,
     ForeignReply,
-    Patience,
     TimedOut,
     ask,
     ask_later,
     first_round_s,
     read_reply,
 )
-from semmap.nodes.bus.lifelines import Lifelines, appear, follow_presence, follow_robots, robots
-from semmap.nodes.bus.pieces import MESSAGE, PIECE, PUBLISHED
-from semmap.nodes.bus.pubsub import (
-    Newest,
-    follow,
-    follow_cameras,
-    includes,
-    listen,
-    meets,
-    publisher,
-    watched,
-)
-from semmap.nodes.bus.serving import Request, serve, serve_puts
+from semmap.nodes.bus.query_server import Request, serve, serve_puts
 from semmap.nodes.bus.session import (
     DEFAULT_ENDPOINT,
     FOREVER_S,
     PATIENCE_S,
     RESTART_S,
     TLS,
-    HungUp,
+    ConnectionClosed,
     Network,
     Session,
     host_of,
     is_local,
     linked_routers,
     open_session,
-    over_tls,
-    read_links_apart,
     require_tls,
+    set_reader_threads,
+    to_tls,
 )
 
 __all__ = [
     "DEFAULT_ENDPOINT",
     "FOREVER_S",
-    "MESSAGE",
+    "FRAGMENT_BYTES",
+    "MESSAGE_BYTES",
     "PATIENCE_S",
-    "PIECE",
-    "PUBLISHED",
+    "PUBLICATION_BYTES",
     "RESTART_S",
     "TIMEOUT_S",
     "TLS",
+    "BusyBackoff",
+    "ConnectionClosed",
     "Encoded",
     "ForeignReply",
-    "HungUp",
-    "Lifelines",
+    "LivelinessMonitor",
     "Network",
-    "Newest",
-    "Patience",
+    "NewestSamples",
     "Request",
     "Session",
     "TimedOut",
-    "appear",
     "ask",
     "ask_later",
+    "declare_presence",
+    "find_robots",
     "first_round_s",
     "follow",
     "follow_cameras",
@@ -73,19 +80,18 @@ __all__ = [
     "follow_robots",
     "host_of",
     "includes",
+    "intersects",
     "is_local",
     "linked_routers",
     "listen",
-    "meets",
     "open_session",
-    "over_tls",
-    "own_config",
     "publisher",
-    "read_links_apart",
     "read_reply",
     "require_tls",
-    "robots",
     "serve",
     "serve_puts",
-    "watched",
+    "set_reader_threads",
+    "subscriber_check",
+    "to_tls",
+    "zenoh_config",
 ]

@@ -1,4 +1,4 @@
-"""Publish and follow: both ends of a topic, with its quality of service."""
+"""Publishers and subscribers of topics, with their quality of service."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from typing import Any, Literal
 import zenoh
 from zenoh import ext
 
-from semmap.nodes.bus import pieces
+from semmap.nodes.bus import fragmentation
 from semmap.schemas import codec, errors, keys
 from semmap.schemas.scenes import CameraFrame
 
 
 def publisher(session: zenoh.Session, topic: keys.Topic, key: str | None = None) -> Any:
-    """A publisher with the topic's quality of service."""
+    """Return a publisher with the topic's quality of service."""
     key = key or topic.key
     if topic.qos == "newest":
         return session.declare_publisher(key, congestion_control=zenoh.CongestionControl.DROP)
@@ -29,8 +29,8 @@ def publisher(session: zenoh.Session, topic: keys.Topic, key: str | None = None)
     )
 
 
-def watched(session: zenoh.Session, topic: keys.Topic) -> Callable[[], bool]:
-    """A function that tells whether anybody follows any key of `topic` just now."""
+def subscriber_check(session: zenoh.Session, topic: keys.Topic) -> Callable[[], bool]:
+    """Return a function that returns whether any key of `topic` currently has a subscriber."""
     publisher = session.declare_publisher(topic.key)
     return lambda: publisher.matching_status.matching  # type: ignore[attr-defined]
 
@@ -41,17 +41,16 @@ def follow(
     receive: Callable[[str, Any], None],
     ignored: Callable[[], None] = lambda: None,
 ) -> Any:
-    """Each publication of `topic` goes to `receive(key, message)`, on a thread of Zenoh's.
+    """Pass each publication of `topic` to `receive(key, message)`, on a thread of Zenoh.
 
-    One that is malformed or too large is dropped: whoever sent it is not one of ours. `ignored()` is told of
-    each.
+    A malformed or too large publication is dropped, and `ignored()` is called.
     """
 
     def on_sample(sample: zenoh.Sample) -> None:
         if sample.kind == zenoh.SampleKind.DELETE:
             receive(str(sample.key_expr), None)
             return
-        if len(sample.payload) > pieces.MESSAGE:
+        if len(sample.payload) > fragmentation.MESSAGE_BYTES:
             ignored()
             return
         try:
@@ -61,7 +60,7 @@ def follow(
             return
         receive(str(sample.key_expr), message)
 
-    # In a flood larger than the cache, Zenoh (1.10.2) passes some over while it recovers what came before.
+    # In a burst larger than the cache, Zenoh (1.10.2) skips samples while it recovers earlier ones.
     if topic.qos == "newest" or "*" in topic.key or topic is keys.ACK:
         return session.declare_subscriber(topic.key, on_sample)
     return ext.declare_advanced_subscriber(
@@ -72,24 +71,24 @@ def follow(
     )
 
 
-class Newest:
-    """Publications that come too often to be handled one by one: the newest of each key, when wanted."""
+class NewestSamples:
+    """The newest publication of each key, for topics that are too frequent to handle one by one."""
 
     def __init__(
         self, session: zenoh.Session, topic: keys.Topic, most: int = 4096, *, deletions: bool = False
     ) -> None:
-        """Of more than `most` that come before somebody looks, the oldest are dropped.
+        """If more than `most` samples arrive between two calls of `take`, the oldest are dropped.
 
-        With `deletions` a key that was deleted is told of, too: then `read()` gives None.
+        With `deletions`, deleted keys are returned too: `read()` then returns None.
         """
         self._deletions = deletions
         self._subscriber = session.declare_subscriber(topic.key, zenoh.handlers.RingChannel(most))
         self._kind = topic.message
 
     def take(self) -> Iterator[tuple[str, Callable[[], Any]]]:
-        """Key and `read()`, which gives the message, of what has come since this was asked last.
+        """Yield the key and `read()`, which returns the message, of what has arrived since the last call.
 
-        `read` raises BadRequest for what is no such message.
+        `read` raises BadRequest for an invalid message.
         """
         newest: dict[str, zenoh.Sample] = {}
         while (sample := self._subscriber.try_recv()) is not None:
@@ -101,8 +100,8 @@ class Newest:
     def _read(self, sample: zenoh.Sample) -> Any:
         if sample.kind == zenoh.SampleKind.DELETE:
             return None
-        if len(sample.payload) > pieces.MESSAGE:
-            raise errors.BadRequest(f"a message of {len(sample.payload):,} bytes is too large")
+        if len(sample.payload) > fragmentation.MESSAGE_BYTES:
+            raise errors.BadRequest(f"message too large: {len(sample.payload):,} bytes")
         return codec.decode(sample.payload.to_bytes(), self._kind)
 
 
@@ -112,10 +111,10 @@ def follow_cameras(
     receive: Callable[[CameraFrame, Callable[[], bytes]], None],
     refuse: Callable[[str], None],
 ) -> Callable[[], None]:
-    """Each plane of each camera goes to `receive(frame, read)`, where `read()` gives its pixels.
+    """Pass each plane of each camera to `receive(frame, read)`; `read()` returns its pixels.
 
-    On a thread of Zenoh's, so they should only be kept. `refuse(reason)` is told of what is no frame.
-    What is returned ends it.
+    Both are called on a thread of Zenoh, so they must only queue. `refuse(reason)` is called for an invalid
+    frame. Returns a function that ends the subscription.
     """
 
     def on_sample(sample: zenoh.Sample) -> None:
@@ -134,7 +133,7 @@ def follow_cameras(
 
 
 def includes(key_exprs: Iterable[str], key_expr: str) -> bool:
-    """Is all of `key_expr` in one of `key_exprs`? So it is for what is no key expression: nobody is asked."""
+    """Return whether one of `key_exprs` includes `key_expr`; True for an invalid key expression."""
     try:
         wanted = zenoh.KeyExpr(key_expr)
     except zenoh.ZError:
@@ -142,8 +141,8 @@ def includes(key_exprs: Iterable[str], key_expr: str) -> bool:
     return any(zenoh.KeyExpr(one).includes(wanted) for one in key_exprs)
 
 
-def meets(key_exprs: Iterable[str], key_expr: str) -> bool:
-    """Is any key of `key_expr` in one of `key_exprs`? So it is for what is no key expression."""
+def intersects(key_exprs: Iterable[str], key_expr: str) -> bool:
+    """Return whether one of `key_exprs` intersects `key_expr`; True for an invalid key expression."""
     try:
         wanted = zenoh.KeyExpr(key_expr)
     except zenoh.ZError:
@@ -152,7 +151,7 @@ def meets(key_exprs: Iterable[str], key_expr: str) -> bool:
 
 
 def listen(session: zenoh.Session, key_expr: str) -> Iterator[tuple[str, str]]:
-    """Key and content, as JSON, of what is published from now on. Raises BadRequest for no key expression."""
+    """Yield key and content (as JSON) of new publications. Raises BadRequest if `key_expr` is invalid."""
     try:
         subscriber = session.declare_subscriber(key_expr)
     except zenoh.ZError as error:

@@ -1,8 +1,8 @@
-"""ROS 2's way over Zenoh, as rmw_zenoh documents it: keys, attachments and tokens of one node's endpoints.
+"""ROS 2 over Zenoh as documented by rmw_zenoh: keys, attachments and liveliness tokens of one node.
 
-Data goes by `<domain>/<topic>/<type>/<hash>`, in CDR, with an attachment that numbers and dates it. A
-liveliness token tells others of each endpoint. Latched publications are kept in the publisher's cache, where
-late subscribers ask for them.
+Data is published in CDR on `<domain>/<topic>/<type>/<hash>`, with an attachment that has a sequence number
+and a stamp. A liveliness token announces each endpoint. Latched publications are kept in the publisher's
+cache, which late subscribers query.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple
 import zenoh
 from zenoh import ext
 
-from semmap.nodes.bus import pieces
+from semmap.nodes.bus import fragmentation
 
 _SPACE: Final = "@ros2_lv"
 _DEPTH: Final = 10
@@ -26,9 +26,9 @@ _ATTACHED: Final = struct.Struct("<qqB16s")
 
 
 class RosTopic(NamedTuple):
-    """A topic: its name as in `/map`, its type as in `nav_msgs/msg/OccupancyGrid`, and that type's hash.
+    """A topic: its name as in `/map`, its type as in `nav_msgs/msg/OccupancyGrid`, and the type's hash.
 
-    What is `latched` reaches subscribers that come later, too.
+    A `latched` publication also reaches later subscribers.
     """
 
     name: str
@@ -38,23 +38,23 @@ class RosTopic(NamedTuple):
     reliable: bool = True
 
     def key(self, domain: int) -> str:
-        """Where its messages go."""
+        """Return the key of its messages."""
         return f"{domain}/{self.name.strip('/')}/{self._dds_type}/{self.hash}"
 
     @property
     def qos(self) -> str:
-        """Its quality of service in a token; what is empty is the default."""
+        """Its quality of service as written in a token; an empty field is the default."""
         reliability = "" if self.reliable else "2"
         return f"{reliability}:{'1' if self.latched else ''}:,{1 if self.latched else _DEPTH}:,:,:,,"
 
     @property
     def token(self) -> str:
-        """How tokens of its endpoints end."""
+        """The end of the tokens of its endpoints."""
         return f"{self.name.replace('/', '%')}/{self._dds_type}/{self.hash}/{self.qos}"
 
     @property
     def tokens(self) -> str:
-        """The same, whatever the quality of service."""
+        """The same for any quality of service."""
         return f"{self.name.replace('/', '%')}/{self._dds_type}/{self.hash}/*"
 
     @property
@@ -64,28 +64,28 @@ class RosTopic(NamedTuple):
 
 
 class RosNode:
-    """A node of ROS's graph in one session, until that is closed. Any thread may use it."""
+    """A node in the ROS graph, within one session until that is closed. Any thread may use it."""
 
     def __init__(self, session: zenoh.Session, name: str, domain: int) -> None:
         self._session, self._name, self._domain = session, name, domain
         self._numbers = itertools.count(1)
         self._space = f"{_SPACE}/{domain}/{session.zid()}/0"
         self._kept: list[object] = []
-        """Zenoh ends what nobody holds."""
+        """Declarations end when no reference to them is left."""
         self._kept.append(session.liveliness().declare_token(f"{self._space}/0/NN/%/%/{name}"))
 
     def publish(self, topic: RosTopic) -> RosPublisher:
-        """A publisher of a topic."""
+        """Create a publisher of a topic."""
         token = self._announce("MP", topic)
         made = RosPublisher(self._session, topic, topic.key(self._domain), token)
         self._kept.append(made)
         return made
 
     def subscribe(self, topic: RosTopic, receive: Callable[[bytes], None]) -> None:
-        """Each message of a topic goes to `receive(cdr)`, on a thread of Zenoh's, unless it is too large."""
+        """Pass each message of a topic to `receive(cdr)`, on a thread of Zenoh, unless it is too large."""
 
         def on_sample(sample: zenoh.Sample) -> None:
-            if len(sample.payload) <= pieces.PLANE:
+            if len(sample.payload) <= fragmentation.PLANE_BYTES:
                 receive(sample.payload.to_bytes())
 
         key = topic.key(self._domain)
@@ -100,12 +100,12 @@ class RosNode:
             self._session.declare_subscriber(key, on_sample)
         self._announce("MS", topic)
 
-    def when_subscribed(self, topic: RosTopic, told: Callable[[], None]) -> None:
-        """Call `told()` for each subscriber of a topic that there is or that comes."""
+    def when_subscribed(self, topic: RosTopic, on_subscriber: Callable[[], None]) -> None:
+        """Call `on_subscriber()` for each present and future subscriber of a topic."""
 
         def on_sample(sample: zenoh.Sample) -> None:
             if sample.kind == zenoh.SampleKind.PUT:
-                told()
+                on_subscriber()
 
         of_topic = f"{_SPACE}/{self._domain}/*/*/*/MS/*/*/*/{topic.tokens}"
         self._session.liveliness().declare_subscriber(of_topic, on_sample, history=True)
@@ -117,7 +117,7 @@ class RosNode:
 
 
 class RosPublisher:
-    """Of one topic."""
+    """Publishes messages of one topic."""
 
     def __init__(self, session: zenoh.Session, topic: RosTopic, key: str, token: str) -> None:
         self._sequence = itertools.count(1)
@@ -136,6 +136,6 @@ class RosPublisher:
             self._publisher = session.declare_publisher(key, congestion_control=wait)
 
     def put(self, cdr: bytes | memoryview) -> None:
-        """Publish a message, now."""
+        """Publish a message with the current time."""
         attached = _ATTACHED.pack(next(self._sequence), time.time_ns(), len(self._gid), self._gid)
         self._publisher.put(bytes(cdr), encoding=_CDR, attachment=attached)

@@ -1,7 +1,7 @@
-"""Open a session.
+"""Opens sessions.
 
-One that has a Python callback keeps the process from exiting until it is closed (seen with Zenoh 1.10.2), so
-sessions are context managers.
+A session with a Python callback keeps the process from exiting until it is closed (seen with Zenoh 1.10.2).
+Sessions are therefore context managers.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import zenoh
 from msgspec import Struct
 from zenoh import Session as Session
 
-from semmap.nodes.bus import own_config, pieces
+from semmap.nodes.bus import fragmentation, zenoh_config
 from semmap.nodes.identity import Identity
 from semmap.schemas import errors, keys
 from semmap.schemas.endpoints import DEFAULT_ENDPOINT as DEFAULT_ENDPOINT
@@ -26,34 +26,32 @@ from semmap.schemas.endpoints import DEFAULT_ENDPOINT as DEFAULT_ENDPOINT
 TLS = "tls/"
 PATIENCE_S = 3.0
 RESTART_S = 30.0
-"""Seconds: as long as a node takes to be back after a kill, on a busy machine and with a large map."""
+"""Seconds that a node needs to restart after a kill, on a busy machine and with a large map."""
 FOREVER_S = math.inf
-"""As patience: a node goes on trying to connect."""
+"""As patience: a node never stops trying to connect."""
 _MEET_MS = 100
-"""Milliseconds: as long as a peer that joins may take to meet those that it hears of. It takes a few, but
-often Zenoh 1.10.2 does not notice that it is done, and would wait for half a second."""
+"""Milliseconds that a joining peer may take to connect to the others. It takes a few, but Zenoh 1.10.2 often
+does not notice the end and would wait for half a second."""
 
 _READERS: Final = 8
-"""Threads that read links. One whose messages wait for a busy callback holds up its thread; of Zenoh's own
-number, 2, two senders that flood would take both, and whoever asks over another link would wait for them."""
+"""Threads that read links. A thread is blocked while a message waits for a busy callback. With Zenoh's
+default of 2, two flooding senders would block both, and delay requests on all other links."""
 _THREADS: Final = "ZENOH_RUNTIME"
-"""The environment variable by which Zenoh takes the numbers of its threads, once in a process."""
+"""The environment variable with Zenoh's numbers of threads, read once in a process."""
 
 _LARGEST: Final = "transport/link/rx/max_message_size"
 
 _NOT_REACHED = ("Unable to connect", "Can not create a new", "deadline has elapsed")
-_HUNG_UP = "Read error on T"
+_CONNECTION_CLOSED = "Read error on T"
 
 
 class Network(Struct, frozen=True):
     """How a process joins the system: a node listens, a client does not.
 
-    A "peer" reaches each node by itself, a "client" all of them by the one that it connects to. `namespace`
-    prefixes every key (one robot of many).
+    A "peer" connects to each node, a "client" only to one. `namespace` prefixes every key (one of several
+    robots). A client whose connection is refused retries for `patience_s`; 0 tries once.
 
-    A client whose connection is refused tries again for `patience_s`; 0 is once.
-
-    With an `identity` all links are mutual TLS. `access` is Zenoh's access control, of a router.
+    With an `identity` all links use mutual TLS. `access` is the Zenoh access control of a router.
     """
 
     connect: tuple[str, ...] = (DEFAULT_ENDPOINT,)
@@ -64,20 +62,20 @@ class Network(Struct, frozen=True):
     identity: Identity | None = None
     access: Mapping[str, Any] | None = None
     own_config: str | None = None
-    """A Zenoh configuration file, in which all that is not said here holds."""
+    """A Zenoh configuration file, for all settings that semmap does not set."""
 
     @property
     def commands(self) -> str:
-        """The prefix under which this process asks for commands: its own, where it has a name."""
+        """The prefix of this process's commands; it contains the name of its identity, if it has one."""
         return keys.CMD if self.identity is None else keys.commands_as(self.identity.name)
 
     def values(self) -> dict[str, Any]:
-        """What Zenoh's configuration is to say, by path.
+        """Return the settings for Zenoh, by path.
 
-        Scouting and shared memory are off; a node goes on trying to connect, a client gives up.
+        Scouting and shared memory are off. A node never stops trying to connect, a client does.
         """
         node = bool(self.listen) or self.patience_s == FOREVER_S
-        first_ms, last_ms = (100, 500) if self.identity is None else (50, 200)  # a router begins anew, too
+        first_ms, last_ms = (100, 500) if self.identity is None else (50, 200)  # a secure router restarts
         retry = {"period_init_ms": first_ms, "period_max_ms": last_ms, "period_increase_factor": 2}
         values: dict[str, Any] = {
             "mode": self.mode,
@@ -101,9 +99,9 @@ class Network(Struct, frozen=True):
         return values
 
     def as_file(self) -> str:
-        """The same as a configuration file of Zenoh's, for a program that is not one of ours."""
+        """Return the settings as a Zenoh configuration file, for other programs."""
         document: dict[str, Any] = {}
-        for path, value in {**self.values(), _LARGEST: pieces.PLANE}.items():
+        for path, value in {**self.values(), _LARGEST: fragmentation.PLANE_BYTES}.items():
             *above, last = path.split("/")
             inner = document
             for name in above:
@@ -112,54 +110,54 @@ class Network(Struct, frozen=True):
         return json.dumps(document, indent=2)
 
     def as_config(self) -> zenoh.Config:
-        """The configuration of a session. Raises BadFile for one of one's own that cannot be read."""
+        """Return the configuration of a session. Raises BadFile for an unreadable configuration file."""
         values = self.values()
-        config = zenoh.Config() if self.own_config is None else own_config.read(self.own_config)
+        config = zenoh.Config() if self.own_config is None else zenoh_config.read(self.own_config)
         if self.own_config is None or config.get_json(_LARGEST) == zenoh.Config().get_json(_LARGEST):
-            values[_LARGEST] = pieces.PLANE
+            values[_LARGEST] = fragmentation.PLANE_BYTES
         for key, value in values.items():
             config.insert_json5(key, json.dumps(value))
         return config
 
 
-def read_links_apart() -> None:
-    """Let a flood on some links not hold up the others; to be called before the process's first session."""
+def set_reader_threads() -> None:
+    """Read links on more threads, so that a flood on one does not delay others; call before any session."""
     os.environ.setdefault(_THREADS, f"(rx: (worker_threads: {_READERS}))")
 
 
 def require_tls(endpoint: str) -> None:
-    """Raises BadRequest for an endpoint without certificates, or with a set-up of its own."""
+    """Raise BadRequest for an endpoint without TLS, or with settings of its own."""
     if not endpoint.startswith(TLS) or "#" in endpoint:
         raise errors.BadRequest(
-            "certificates are shown at endpoints of TLS only, such as tls/127.0.0.1:7447;"
-            f" '{endpoint}' is not one"
+            f"'{endpoint}' is not a plain TLS endpoint, which certificates require;"
+            " example: tls/127.0.0.1:7447"
         )
 
 
-class HungUp(errors.NoAnswer):
-    """Somebody listens there, and does not want to talk with us."""
+class ConnectionClosed(errors.NoAnswer):
+    """The listener closed the connection, for example because it requires a certificate."""
 
 
 def host_of(endpoint: str) -> str:
-    """The host of an endpoint `protocol/host:port`."""
+    """Return the host of an endpoint `protocol/host:port`."""
     return endpoint.partition("/")[2].partition("#")[0].partition("?")[0].rpartition(":")[0].strip("[]")
 
 
 def is_local(endpoint: str) -> bool:
-    """Can only programs of this machine reach it? A port of loopback, or a socket in the file system."""
+    """Return whether an endpoint is reachable from this machine only: loopback or a unix socket."""
     if endpoint.startswith(("unixsock-stream/", "unixpipe/")):
         return True
     host = host_of(endpoint)
     return host in ("localhost", "::1") or re.fullmatch(r"127(\.\d{1,3}){3}", host) is not None
 
 
-def over_tls(endpoint: str) -> str:
-    """The endpoint by TLS, where it was given by plain TCP."""
+def to_tls(endpoint: str) -> str:
+    """Return the TLS endpoint for one of plain TCP."""
     return TLS + endpoint.removeprefix("tcp/") if endpoint.startswith("tcp/") else endpoint
 
 
 def _tls(identity: Identity, *, listens: bool) -> dict[str, Any]:
-    """Both ends show a certificate, and a link ends when that of either expires."""
+    """Return the TLS settings: both ends show a certificate, and a link ends when either expires."""
     values: dict[str, Any] = {
         "root_ca_certificate": identity.authority,
         "enable_mtls": True,
@@ -174,13 +172,13 @@ def _tls(identity: Identity, *, listens: bool) -> dict[str, Any]:
 
 
 def linked_routers(session: zenoh.Session) -> int:
-    """To how many routers a session has a link just now."""
+    """Return the number of routers that a session is linked to."""
     return len(session.info.routers_zid())
 
 
 @contextmanager
 def open_session(network: Network) -> Iterator[zenoh.Session]:
-    """A session that is closed whatever happens. Raises NoAnswer or BadRequest (a malformed endpoint)."""
+    """Open a session and close it at the end. Raises NoAnswer, or BadRequest for a malformed endpoint."""
     try:
         session = zenoh.open(network.as_config())
     except zenoh.ZError as error:
@@ -188,15 +186,15 @@ def open_session(network: Network) -> Iterator[zenoh.Session]:
         if not network.listen and any(said in str(error) for said in _NOT_REACHED):
             if network.identity is not None:
                 raise errors.NoAnswer(
-                    f"no system answers at {where}: none runs there with --secure, or it does not admit"
-                    f" the certificate of {network.identity.name}, or {network.identity.authority} does not"
-                    " vouch for it"
+                    f"no response from {where}: no system runs there with --secure, or it rejects the"
+                    f" certificate of {network.identity.name}, or {network.identity.authority} is not its"
+                    " authority"
                 ) from None
-            raise errors.NoAnswer(f"no system answers at {where}; start one with: semmap up") from None
-        if not network.listen and _HUNG_UP in str(error):
-            raise HungUp(
-                f"whoever listens at {where} hung up; a secure system wants to know who you are:"
-                " --identity DIR/NAME"
+            raise errors.NoAnswer(f"no response from {where}; start a system with: semmap up") from None
+        if not network.listen and _CONNECTION_CLOSED in str(error):
+            raise ConnectionClosed(
+                f"connection closed by {where}: the system requires a client certificate"
+                " (--identity DIR/NAME)"
             ) from None
         if "Endpoints must be of the form" in str(error):
             raise errors.BadRequest(

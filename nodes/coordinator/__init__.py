@@ -1,6 +1,8 @@
-"""One front end for commands, and the reconciler that keeps map and scene in agreement.
+"""The coordinator: the entry point for commands, and the reconciler that keeps map and scene in agreement.
 
-`door/` turns commands into transactions, with `free_names.py`, `free_places.py`, `formats.py` and the
-readers of `files/`;
-`scene/reconcile.py` is the reconciler, a pure function; `scene/scene_view.py` is what is known of the scene.
+`commands/` turns commands into transactions, `scene/` sends commands to the simulator, and `reconciler/`
+compares map and scene. `access/` decides which client may do what.
+
+`live/` receives the poses of tracked entities, and `frames/` converts positions between frames.
+`scheduler.py` orders the changes, and `node.py` connects all of it to Zenoh.
 """

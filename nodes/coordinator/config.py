@@ -14,17 +14,17 @@ Truth = Literal["map", "scene", "perceived", "replayed"]
 
 @dataclass(frozen=True)
 class Thresholds:
-    """How far a body must be from where the map says, to count as moved."""
+    """Distances from the committed state above which a body counts as moved."""
 
     distance_m: float = 0.05
     angle_rad: float = math.radians(5.0)
     share: float = 0.02
-    """Of the way of a door or drawer: how far open it must be more or less."""
+    """As a fraction of the range of a joint."""
 
 
 @dataclass(frozen=True)
 class LiveRules:
-    """When a live pose is stale, and how often it is committed of what moves; 0 is not before it stops."""
+    """When a live pose is stale, and how often poses of moving entities are committed (0: only at rest)."""
 
     stale_s: float = 2.0
     journal_every_s: float = 0.0
@@ -32,10 +32,11 @@ class LiveRules:
 
 @dataclass(frozen=True)
 class CoordinatorConfig:
-    """`truth` says who owns existence: in `map` the scene follows the map, in `scene` the other way.
+    """`truth` is the source of truth for which entities exist.
 
-    In `perceived` the simulator stands for the world itself: only perception updates the map. In
-    `replayed` the map is the past, which the scene follows and never changes.
+    With `map` the scene follows the map, and with `scene` the map follows the scene. With `perceived` the
+    simulator represents the real world, and only perception updates the map. With `replayed` the map is in
+    the past, and the scene follows it without changing it.
     """
 
     truth: Truth = "map"
@@ -43,4 +44,4 @@ class CoordinatorConfig:
     live: LiveRules = field(default_factory=LiveRules)
     network: Network = field(default_factory=Network)
     keys: Path | None = None
-    """The folder of keys of a secure system: then names are proved, and roles hold."""
+    """The folder of keys of a secure system, in which names are certified and roles are enforced."""

@@ -1,4 +1,4 @@
-"""Commands that come before the coordinator knows the map: they wait for it rather than fail."""
+"""Commands that arrive before the coordinator has received the map wait for it instead of failing."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from concurrent.futures import Future
 from typing import Any
 
 from semmap.nodes import bus
-from semmap.nodes.runtime.futures import OwnFuture, settle
+from semmap.nodes.runtime.futures import SingleThreadFuture, settle
 from semmap.schemas import errors
 
 
 class EarlyCommands:
-    """They wait for a moment after a start, and as long as there is a knowledge base: it may be at work."""
+    """Holds commands for a short time after a start, and as long as a knowledge base runs."""
 
     def __init__(self, is_there: Callable[[], bool]) -> None:
-        """`is_there()` tells whether there is a knowledge base."""
+        """`is_there()` returns whether a knowledge base is running."""
         self._is_there = is_there
         self._waiting: list[tuple[float, Callable[[], Any], Future[Any]]] = []
 
@@ -24,13 +24,13 @@ class EarlyCommands:
         return len(self._waiting)
 
     def wait(self, execute: Callable[[], Any]) -> Future[Any]:
-        """The outcome of `execute()`, which is called when there is a map."""
-        future: Future[Any] = OwnFuture()
+        """Return the result of `execute()`, which is called when the map is there."""
+        future: Future[Any] = SingleThreadFuture()
         self._waiting.append((time.monotonic() + bus.RESTART_S, execute, future))
         return future
 
-    def go_on(self, *, has_map: bool) -> None:
-        """Execute what waits if there is a map now; refuse what has waited for nobody."""
+    def retry(self, *, has_map: bool) -> None:
+        """Execute the waiting commands if the map is there, and reject those that waited too long."""
         waiting, self._waiting = self._waiting, []
         for deadline_s, execute, future in waiting:
             if has_map:
@@ -39,5 +39,5 @@ class EarlyCommands:
                 self._waiting.append((deadline_s, execute, future))
             else:
                 future.set_exception(
-                    errors.NoAnswer("the knowledge base is not answering; see: semmap status")
+                    errors.NoAnswer("no response from the knowledge base; see: semmap status")
                 )

@@ -10,12 +10,12 @@ from semmap.schemas.entities import Entity
 
 
 def lu4r(entities: Iterable[Entity]) -> dict[str, Any]:
-    """What the LU4R language-understanding tool reads. An entity without a position has no `coordinate`."""
+    """Return the input document of LU4R; an entity without a position has no `coordinate`."""
     return {"entities": [_lu4r(entity) for entity in entities]}
 
 
 def legacy(entities: Iterable[Entity], class_iris: dict[str, str]) -> dict[str, Any]:
-    """The old system's object, keyed by IRI."""
+    """Return the format of the legacy system, an object keyed by IRI."""
     return {entity.iri: _legacy(entity, class_iris[entity.class_]) for entity in entities}
 
 

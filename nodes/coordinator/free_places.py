@@ -1,7 +1,7 @@
-"""Positions for entities that are added without one: the nearest to a default position that is free.
+"""Finds positions for entities that are added without one: the free place nearest to a default position.
 
-What stands on the floor is kept in cells, and how far the search came for each size, so that an answer costs
-what has changed since the last one, not what there is.
+Objects on the floor are indexed by grid cells, and the progress of the search is stored for each size. A
+request therefore costs what has changed since the last one, not the number of objects.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from semmap.schemas.entities import Entity, Size, Vector
 DEFAULT_POSITION: Vector = (2.0, 2.0, 0.0)
 _STEP_M = 0.5
 _STEPS_A_REACH = 4
-"""A big thing is tried at fewer places: so many as far as it reaches."""
+"""The step of the search for a large object: its reach divided by this number."""
 _GAP_M = 0.1
 _UNDERFOOT_M = 0.05
 _USUAL_SIZE: Size = (0.5, 0.5, 0.5)
 _CELL_M = 1.0
 _MANY_CELLS = 1000
-"""What covers more cells is looked at for every place, instead of being noted in each."""
+"""An object that covers more cells is checked for every place instead of being indexed."""
 _MANY_SIZES = 64
 
 Spot = tuple[int, int]
-"""A place that is tried: of a ring around the default position, by its number, and of the points of that."""
+"""A place to try: the number of a ring around the default position, and of a point on the ring."""
 
 
 class Footprint(NamedTuple):
-    """A rectangle on the floor [m]: its middle, half its extents, and the cosine and sine of its yaw."""
+    """A rectangle on the floor [m]: centre, half extents, and the cosine and sine of its yaw."""
 
     x: float
     y: float
@@ -41,11 +41,11 @@ class Footprint(NamedTuple):
 
     @property
     def radius(self) -> float:
-        """Of the circle around it."""
+        """Radius of the circumscribed circle [m]."""
         return math.hypot(self.half_width, self.half_depth)
 
     def distance(self, x: float, y: float) -> float:
-        """From a point, 0 inside."""
+        """Return the distance from a point [m], 0 inside."""
         dx, dy = x - self.x, y - self.y
         along = abs(self.cos * dx + self.sin * dy) - self.half_width
         across = abs(self.cos * dy - self.sin * dx) - self.half_depth
@@ -53,7 +53,7 @@ class Footprint(NamedTuple):
 
 
 class FreePlaces:
-    """What stands on the floor of a map, and where there is room."""
+    """The objects on the floor of a map, and the free places between them."""
 
     def __init__(self) -> None:
         self._changed: set[str] = set()
@@ -61,16 +61,16 @@ class FreePlaces:
         self._cells: dict[Spot, dict[str, Footprint]] = {}
         self._large: dict[str, Footprint] = {}
         self._searches: dict[float, _Search] = {}
-        """By how far a thing reaches."""
+        """Searches by the reach of an object [m]."""
 
     def touch(self, names: Iterable[str]) -> None:
-        """Entities came, changed or went. Nothing is worked out until somebody asks."""
+        """Note that entities were added, changed or removed; they are processed at the next request."""
         self._changed.update(names)
 
     def find(self, entities: Mapping[str, Entity], size_m: Size | None) -> Vector:
-        """The place nearest to the default position where a thing of `size_m` touches nothing.
+        """Return the place nearest to the default position where an object of `size_m` touches nothing.
 
-        `entities` are those of the map; all that changed since the last question was `touch`ed.
+        `entities` are those of the map. All changes since the last call were passed to `touch`.
         """
         self._catch_up(entities)
         width, depth, _ = size_m or _USUAL_SIZE
@@ -112,13 +112,13 @@ class FreePlaces:
             for cell in _cells(footprint.x, footprint.y, footprint.radius) or ():
                 self._cells[cell].pop(name)
         for search in self._searches.values():
-            search.freed(footprint)
+            search.release(footprint)
 
     def _is_free(self, x: float, y: float, reach_m: float) -> bool:
         if any(large.distance(x, y) <= reach_m for large in self._large.values()):
             return False
         cells = _cells(x, y, reach_m)
-        if cells is None:  # a very big thing
+        if cells is None:  # a very large object
             return all(f.distance(x, y) > reach_m for f in self._footprints.values())
         return all(
             footprint.distance(x, y) > reach_m
@@ -128,7 +128,7 @@ class FreePlaces:
 
 
 class _Search:
-    """How far the search for places of one size came: of the spots before, only some may be free."""
+    """The progress of the search for one size; only some of the earlier places may be free again."""
 
     def __init__(self, reach_m: float) -> None:
         self._reach_m = reach_m
@@ -137,7 +137,7 @@ class _Search:
         self._freed: list[Spot] = []
 
     def spots(self) -> Iterator[Spot]:
-        """Those that may be free, the nearest first; going on says that the last one is not."""
+        """Yield the places that may be free, nearest first; requesting the next marks the last occupied."""
         while self._freed:
             yield self._freed[0]
             heapq.heappop(self._freed)
@@ -147,15 +147,15 @@ class _Search:
             self._next = (ring, point + 1) if point + 1 < _points(ring) else (ring + 1, 0)
 
     def position(self, spot: Spot) -> tuple[float, float]:
-        """Where a spot is [m]."""
+        """Return the position of a place [m]."""
         ring, point = spot
         angle = 2.0 * math.pi * point / _points(ring)
         x, y, _ = DEFAULT_POSITION
         radius = ring * self._step_m
         return x + radius * math.cos(angle), y + radius * math.sin(angle)
 
-    def freed(self, footprint: Footprint) -> None:
-        """Something no longer stands there: the spots that it kept from being free are tried again."""
+    def release(self, footprint: Footprint) -> None:
+        """Try the places again that a removed object had occupied."""
         dx, dy = footprint.x - DEFAULT_POSITION[0], footprint.y - DEFAULT_POSITION[1]
         away, around = math.hypot(dx, dy), footprint.radius + self._reach_m
         first = max(0, math.ceil((away - around) / self._step_m))
@@ -171,7 +171,7 @@ def _points(ring: int) -> int:
 
 
 def _facing(angle: float, away_m: float, around_m: float, count: int) -> Iterator[int]:
-    """Of so many points of a ring, those in the directions in which a circle lies."""
+    """Yield the points of a ring in the directions of a circle."""
     if away_m <= around_m:
         return iter(range(count))
     half = math.asin(around_m / away_m)
@@ -181,7 +181,7 @@ def _facing(angle: float, away_m: float, around_m: float, count: int) -> Iterato
 
 
 def _footprint(entity: Entity) -> Footprint | None:
-    """None for what is not in the way: places, and rugs and the like, on which things may stand."""
+    """Return the footprint; None for places and for flat objects such as rugs, on which others may stand."""
     if entity.pose is None or entity.place:
         return None
     if entity.size_m is not None and entity.size_m[2] < _UNDERFOOT_M:
@@ -193,7 +193,7 @@ def _footprint(entity: Entity) -> Footprint | None:
 
 
 def _cells(x: float, y: float, radius_m: float) -> list[Spot] | None:
-    """The cells within a distance; None if they are too many."""
+    """Return the cells within a distance; None if they are too many."""
     left, right = (math.floor((x + side * radius_m) / _CELL_M) for side in (-1, 1))
     bottom, top = (math.floor((y + side * radius_m) / _CELL_M) for side in (-1, 1))
     if (right - left + 1) * (top - bottom + 1) > _MANY_CELLS:

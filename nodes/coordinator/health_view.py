@@ -12,22 +12,21 @@ from semmap.schemas.wording import counted
 SILENT_AFTER_S = 3.0
 _HEARD_WITHIN_S = 2.0
 _NODES = 50
-"""More than there are; but anybody may publish heartbeats where there are no certificates."""
+"""More than a system has. Without certificates any program may publish heartbeats."""
 
 
 class HealthView:
-    """The last heartbeat of each node on each host, and when it came.
+    """The last heartbeat of each node on each host, and when it arrived.
 
-    A page or a bridge to ROS is no node that has to be there: any number may be, and one that has ended is
-    not told any more.
+    Clients such as the page or the ROS bridge are optional. They are no longer listed once they have ended.
     """
 
     def __init__(self) -> None:
         self._last: dict[tuple[str, str, int], tuple[Health, float]] = {}
-        self._told_from = time.monotonic() + _HEARD_WITHIN_S
+        self._complete_from = time.monotonic() + _HEARD_WITHIN_S
 
     def take(self, health: Health) -> None:
-        """Remember a heartbeat; of strange nodes no more than a few."""
+        """Store a heartbeat; the number of unknown nodes is limited."""
         self._forget_clients()
         which = health.node, health.host, health.pid if health.node in keys.CLIENTS else 0
         if which not in self._last and len(self._last) >= _NODES:
@@ -35,21 +34,21 @@ class HealthView:
         self._last[which] = (health, time.monotonic())
 
     def alive(self, node: str) -> bool:
-        """Was the node heard of lately?"""
+        """Return whether a heartbeat of the node has arrived recently."""
         now_s = time.monotonic()
         return any(name == node and now_s - at < SILENT_AFTER_S for (name, *_), (_, at) in self._last.items())
 
-    def may_be_there(self, node: str) -> bool:
-        """Is the node alive, or is it too early to tell? A heart beats once a second."""
-        return self.alive(node) or time.monotonic() < self._told_from
+    def may_be_alive(self, node: str) -> bool:
+        """Return whether the node is alive or may be: a heartbeat is published once a second."""
+        return self.alive(node) or time.monotonic() < self._complete_from
 
     def nodes(self) -> tuple[NodeStatus, ...]:
-        """One row a node, by its name and its host's."""
+        """Return the state of each node, sorted by name and host."""
         self._forget_clients()
         return tuple(self._status(health, at) for _, (health, at) in sorted(self._last.items()))
 
     def _forget_clients(self) -> None:
-        """Those that were not heard of lately."""
+        """Remove clients without recent heartbeats."""
         now_s = time.monotonic()
         for which, (health, at) in list(self._last.items()):
             if health.node in keys.CLIENTS and now_s - at >= SILENT_AFTER_S:

@@ -96,7 +96,7 @@ class Client(CommandMethods):
     ) -> None:
         self.session = session
         self.identity = identity
-        self._lifelines = bus.Lifelines(session)
+        self._liveliness = bus.LivelinessMonitor(session)
         self._live: dict[str, Any] = {}
         """The publishers of live poses and frames, by key."""
         self.prefix = keys.CMD if identity is None else keys.commands_as(identity.name)
@@ -110,7 +110,7 @@ class Client(CommandMethods):
         of the certificate does not permit the command. Raises NoAnswer if there is no reply within
         `timeout_s` [s].
         """
-        signed, first_hand = _prepare(command, self._signature), command.VERB in keys.OF_THE_MAP
+        signed, prefer_complete = _prepare(command, self._signature), command.VERB in keys.OF_THE_MAP
         if self.identity is not None and (refusal := roles.refusal(self.identity.role, signed)) is not None:
             raise errors.Refused(refusal)
         reply: R = self._ask(
@@ -119,14 +119,14 @@ class Client(CommandMethods):
             reply_type(type(command)),
             timeout_s=timeout_s,
             patience_s=bus.RESTART_S if isinstance(command, _LONG) else bus.PATIENCE_S,
-            first_hand=first_hand,
+            prefer_complete=prefer_complete,
         )
         return reply
 
     def _ask(self, verb: str, command: Command, kind: Any, **how: Any) -> Any:
         """Send a request as `bus.ask` does. An error that different versions cause says so."""
         try:
-            return bus.ask(self.session, self.prefix, verb, command, kind, lifelines=self._lifelines, **how)
+            return bus.ask(self.session, self.prefix, verb, command, kind, liveliness=self._liveliness, **how)
         except errors.SemmapError as error:
             if _is_version_mismatch(error) and (difference := version.difference(self._system_version())):
                 raise type(error)(f"{error.text}; {difference}", explanation=error.explanation) from None

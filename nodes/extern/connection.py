@@ -88,7 +88,7 @@ def open_session(
     own_config = os.environ.get(CONFIG_VARIABLE) or None
     if identity is not None:
         identity.require_valid()
-        where = bus.over_tls(where)
+        where = bus.to_tls(where)
         bus.require_tls(where)
     elif where.startswith(bus.TLS) and not own_config:
         raise errors.NoAnswer(
@@ -111,7 +111,7 @@ def open_session(
                 session = stack.enter_context(bus.open_session(network))
                 break
             except errors.NoAnswer as error:
-                is_rejected = isinstance(error, bus.HungUp) or (
+                is_rejected = isinstance(error, bus.ConnectionClosed) or (
                     identity is not None
                     and time.monotonic() > deadline_s - _START_S + _ROUTER_RESTART_S
                     and presence.is_listening(where)

@@ -10,7 +10,7 @@ from pathlib import Path
 from msgspec import structs
 
 from semmap.nodes.extern.journal_copy import journal_copy, private_folder
-from semmap.nodes.runtime import extras, rhythm
+from semmap.nodes.runtime import extras, playback_clock
 from semmap.nodes.supervisor.settings import SETTINGS, Replay, Settings
 from semmap.ontology import EMPTY_WORLD, FLAT_WORLD, HOUSEHOLD_TTL
 from semmap.schemas import codec, errors
@@ -23,7 +23,7 @@ def replay(
     since: When | None = None,
     until: When | None = None,
     speed: float = 1.0,
-    longest_s: float = rhythm.LONGEST_S,
+    longest_s: float = playback_clock.LONGEST_S,
     listen: str | None = None,
     world: str | Path | None = None,
     sim: bool = True,
@@ -42,8 +42,8 @@ def replay(
     history, BadRequest for an invalid period or speed, and the errors of `semmap up`.
     """
     data, world = Path(data).resolve(), None if world is None else Path(world)
-    rhythm.require_speed(speed)
-    rhythm.require_longest(longest_s)
+    playback_clock.require_speed(speed)
+    playback_clock.require_longest(longest_s)
     extras.require(
         "semmap replay",
         "kb",

@@ -1,7 +1,7 @@
-"""Who is who: certificates with a name and a role, the authority that issues them, and the register of them.
+"""Identities: certificates with a name and a role, the authority that issues them, and their register.
 
-`identity.py` is what a process needs to show who it is, and reads certificates without any library;
-`authority.py` issues them (with the `keys` extra); `register.py` is the list of those that were issued.
+`identity.py` has the files that identify a process, and reads certificates without any library.
+`authority.py` issues certificates (with the extra `keys`). `register.py` lists the issued ones.
 """
 
 from semmap.nodes.identity.identity import SUPERVISOR as SUPERVISOR

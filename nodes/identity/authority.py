@@ -1,6 +1,7 @@
-"""A private certification authority: issues certificates with a name and a role, renews and revokes them.
+"""A private certificate authority: issues, renews and revokes certificates with a name and a role.
 
-Only the router's certificate may be a server's: another one with that use could pose as the router.
+Only the router's certificate is valid for servers. Another certificate with that use could impersonate the
+router.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 from msgspec import structs
 
 from semmap.nodes.identity.identity import AUTHORITY, SUPERVISOR
-from semmap.nodes.identity.register import FILE, Member, Register, changing
+from semmap.nodes.identity.register import FILE, Member, Register, lock_folder
 from semmap.schemas import errors, keys
 from semmap.schemas.keys import ROUTER
 from semmap.schemas.roles import Role
@@ -36,31 +37,31 @@ _AUTHORITY_KEY: Final = "ca.key"
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 _HOST: Final = re.compile(r"(?=.{1,253}$)[A-Za-z0-9-]{1,63}(\.[A-Za-z0-9-]{1,63})*\.?")
 _EARLY: Final = timedelta(minutes=5)
-"""Clocks differ."""
+"""Certificates are valid from this long ago, because clocks differ."""
 
 P = ParamSpec("P")
 _Key = ec.EllipticCurvePrivateKey
 
 
-def _alone(change: Callable[Concatenate[Path, P], Member]) -> Callable[Concatenate[Path, P], Member]:
-    """A change of a folder of keys, one at a time. Raises BadFile where there is none."""
+def _locked(change: Callable[Concatenate[Path, P], Member]) -> Callable[Concatenate[Path, P], Member]:
+    """Decorate a change of a folder of keys to hold its lock. Raises BadFile if there is no register."""
 
     @functools.wraps(change)
-    def alone(folder: Path, /, *args: P.args, **options: P.kwargs) -> Member:
+    def locked(folder: Path, /, *args: P.args, **options: P.kwargs) -> Member:
         Register.read(folder)
-        with changing(folder):
+        with lock_folder(folder):
             return change(folder, *args, **options)
 
-    return alone
+    return locked
 
 
 def init(folder: Path, hosts: tuple[str, ...] = (), days: int = DAYS) -> Register:
-    """Make the authority and the system's own certificates in `folder`.
+    """Create the authority and the system's own certificates in `folder`.
 
-    Raises Refused where there is one, BadRequest for what is no host, BadFile where it cannot be written.
+    Raises Refused if it already has keys, BadRequest for an invalid host, BadFile if it cannot be written.
     """
     if (folder / FILE).exists() or (folder / AUTHORITY).exists():
-        raise errors.Refused(f"there are keys in {folder} already; add to them with: semmap keys add NAME")
+        raise errors.Refused(f"{folder} already contains keys; to add one: semmap keys add NAME")
     hosts = tuple(dict.fromkeys((*HOSTS, *hosts)))
     for host in hosts:
         _host(host)
@@ -87,57 +88,57 @@ def init(folder: Path, hosts: tuple[str, ...] = (), days: int = DAYS) -> Registe
     return register
 
 
-@_alone
+@_locked
 def add(folder: Path, name: str, role: Role, days: int = DAYS) -> Member:
-    """Issue a certificate. Raises BadRequest for no name, Refused for one that was given before."""
+    """Issue a certificate. Raises BadRequest for an invalid name, Refused for one that was used before."""
     register = Register.read(folder)
     if not _NAME.fullmatch(name):
         raise errors.BadRequest(
-            f"'{name}' is not a name: up to 64 letters, digits, '_', '.' and '-', beginning with a letter or"
-            " a digit"
+            f"invalid name '{name}'; use up to 64 letters, digits, '_', '.' and '-', beginning with a letter"
+            " or a digit"
         )
     known = {other.lower(): member for other, member in register.members.items()}
     if (member := known.get(name.lower())) is not None:
         raise errors.Refused(
-            f"{member.name} was revoked, and its certificate would be good again; choose another name"
+            f"{member.name} was revoked, and its old certificate would become valid again; use another name"
             if member.revoked
-            else f"{member.name} has a certificate already ({member.role}); for a new one:"
+            else f"{member.name} already has a certificate ({member.role}); to renew it:"
             f" semmap keys renew {member.name}"
         )
     if f"{name}.crt".lower() == AUTHORITY:
-        raise errors.BadRequest(f"'{name}' is the authority's own name; choose another one")
+        raise errors.BadRequest(f"'{name}' is the name of the authority; use another name")
     return _in_register(folder, register, name, role, days)
 
 
-@_alone
+@_locked
 def renew(
     folder: Path, name: str, hosts: tuple[str, ...] = (), days: int = DAYS, role: Role | None = None
 ) -> Member:
-    """A new key and certificate for somebody, in another role if one is given.
+    """Issue a new key and certificate for a member, with another role if one is given.
 
-    `hosts` are added to the router's. Raises UnknownName, and Refused for one who was revoked and for another
-    role of the system's own.
+    `hosts` are added to the router's certificate. Raises UnknownName; Refused for a revoked member, and for
+    another role of one of the system's own.
     """
     register = Register.read(folder)
     member = _member(register, name)
     if member.revoked:
-        raise errors.Refused(f"{name} was revoked; add another name instead")
+        raise errors.Refused(f"{name} was revoked; add a member with another name")
     if hosts and name != ROUTER:
         raise errors.BadRequest(
-            f"only the router's certificate carries hosts: semmap keys renew {ROUTER} --host"
+            f"only the router's certificate has hosts; use: semmap keys renew {ROUTER} --host"
         )
     if name in OWN and role not in (None, member.role):
-        raise errors.Refused(f"{name} is the system's own and stays a {member.role}")
+        raise errors.Refused(f"{name} is part of the system; its role {member.role} cannot be changed")
     register = structs.replace(register, hosts=tuple(dict.fromkeys((*register.hosts, *hosts))))
     return _in_register(folder, register, name, role or member.role, days)
 
 
-@_alone
+@_locked
 def revoke(folder: Path, name: str) -> Member:
-    """Admit somebody no longer. Raises UnknownName, Refused for the system's own."""
+    """Revoke a certificate. Raises UnknownName; Refused for the system's own."""
     register = Register.read(folder)
     if name in OWN:
-        raise errors.Refused(f"{name} is the system's own; give it a new key with: semmap keys renew {name}")
+        raise errors.Refused(f"{name} is part of the system; to replace its key: semmap keys renew {name}")
     member = structs.replace(_member(register, name), revoked=True)
     structs.replace(register, members={**register.members, name: member}).write(folder)
     return member
@@ -157,7 +158,7 @@ def _in_register(folder: Path, register: Register, name: str, role: Role, days: 
 
 
 def _issued(folder: Path, register: Register, name: str, role: Role, days: int) -> Register:
-    """Write a key and a certificate; the register with it."""
+    """Write a key and a certificate, and return the register with it."""
     authority, authority_key = _authority(folder)
     key = _new_key()
     uses = [ExtendedKeyUsageOID.CLIENT_AUTH]
@@ -231,7 +232,7 @@ def _host(host: str) -> x509.GeneralName:
     except ValueError:
         if _HOST.fullmatch(host):
             return x509.DNSName(host)
-        raise errors.BadRequest(f"'{host}' is neither a host name nor an address") from None
+        raise errors.BadRequest(f"invalid host name or address '{host}'") from None
 
 
 def _key_usage(*, signs_certificates: bool) -> x509.KeyUsage:
@@ -259,7 +260,7 @@ def _key_bytes(key: _Key) -> bytes:
 
 
 def _write(folder: Path, name: str, content: bytes) -> None:
-    """Replace a file, readable by its owner only from the first byte on."""
+    """Replace a file; it is never readable by other users."""
     path = folder / f".{name}.new"
     path.unlink(missing_ok=True)
     with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "wb") as file:

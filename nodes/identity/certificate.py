@@ -1,7 +1,7 @@
-"""Reads who a certificate is for and until when it is valid: the few fields of X.509 that a client needs.
+"""Reads name, role and expiry of a certificate: the few fields of X.509 that a client needs.
 
-It does not verify anything: TLS does, on both ends. A client reads its own certificate only to say what its
-role may not do before it asks, so the base install needs no library for certificates.
+It does not verify the certificate: TLS does, on both ends. A client reads its own certificate only to report
+early what its role does not permit, so the base installation needs no certificate library.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _UTF_8: Final = "utf-8"
 
 
 class Certificate(NamedTuple):
-    """Name (the common name), role (the organizational unit) and the end of its validity."""
+    """Name (common name), role (organizational unit) and expiry."""
 
     name: str
     role: str
@@ -30,7 +30,7 @@ class Certificate(NamedTuple):
 
 
 def read(pem: bytes) -> Certificate:
-    """The first certificate of a PEM file. Raises ValueError for anything else."""
+    """Read the first certificate of a PEM file. Raises ValueError for anything else."""
     if (match := _PEM.search(pem)) is None:
         raise ValueError("no certificate")
     try:
@@ -46,7 +46,7 @@ def read(pem: bytes) -> Certificate:
 
 
 def _elements(der: bytes) -> Iterator[tuple[int, bytes]]:
-    """Tag and content of each element, one after another."""
+    """Yield tag and content of each DER element."""
     at = 0
     while at < len(der):
         tag, size, at = der[at], der[at + 1], at + 2
@@ -54,7 +54,7 @@ def _elements(der: bytes) -> Iterator[tuple[int, bytes]]:
             count = size & 0x7F
             size, at = int.from_bytes(der[at : at + count], "big"), at + count
         if at + size > len(der):
-            raise ValueError("it is cut short")
+            raise ValueError("it is truncated")
         yield tag, der[at : at + size]
         at += size
 

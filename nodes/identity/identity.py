@@ -1,4 +1,4 @@
-"""What a process shows of itself: its certificate, its key, and the authority that it trusts."""
+"""The identity of a process: its certificate, its key, and the authority that it trusts."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from semmap.schemas import errors
 
 AUTHORITY: Final = "ca.crt"
 SUPERVISOR: Final = "supervisor"
-"""The name of `semmap up` itself."""
+"""The name of `semmap up`."""
 
 
 class Identity(Struct, frozen=True):
-    """Paths of the files, and what the certificate says: a name, a role, and until when."""
+    """Paths of the files, and the certificate's name, role and expiry."""
 
     authority: str
     certificate: str
@@ -27,7 +27,7 @@ class Identity(Struct, frozen=True):
 
     @classmethod
     def read(cls, path: Path | str) -> Identity:
-        """The identity `DIR/NAME`: `DIR/NAME.crt`, `DIR/NAME.key` and `DIR/ca.crt`. Raises BadFile."""
+        """Read the identity `DIR/NAME`: `DIR/NAME.crt`, `DIR/NAME.key` and `DIR/ca.crt`. Raises BadFile."""
         from semmap.nodes.identity import certificate  # most clients show none
         from semmap.schemas.roles import ROLES
 
@@ -41,23 +41,23 @@ class Identity(Struct, frozen=True):
         for file in (crt, key, authority):
             if not file.is_file():
                 raise errors.BadFile(
-                    f"there is no file {file}; an identity is DIR/NAME, made by: semmap keys add"
+                    f"there is no file {file}; an identity is DIR/NAME; to create one: semmap keys add"
                 )
         try:
-            said = certificate.read(crt.read_bytes())
+            found = certificate.read(crt.read_bytes())
             key.open("rb").close()
         except ValueError as error:
             raise errors.BadFile(f"{crt} cannot be read: {error}") from None
         except OSError as error:
             raise errors.BadFile(f"{error.filename} cannot be read: {error.strerror}") from None
-        if said.role not in ROLES:
-            raise errors.BadFile(f"{crt} is not an identity: it says no role")
-        return cls(str(authority.resolve()), str(crt.resolve()), str(key.resolve()), *said)
+        if found.role not in ROLES:
+            raise errors.BadFile(f"{crt} is not an identity: the certificate has no role")
+        return cls(str(authority.resolve()), str(crt.resolve()), str(key.resolve()), *found)
 
     def require_valid(self) -> None:
-        """Raises NoAnswer for a certificate that has expired: nobody would answer to it."""
+        """Raise NoAnswer for an expired certificate, which no node would accept."""
         if self.expires < datetime.now(UTC):
             raise errors.NoAnswer(
                 f"the certificate of {self.name} expired on {self.expires:%Y-%m-%d %H:%M} UTC;"
-                f" renew it where it was made: semmap keys renew {self.name}"
+                f" renew it where it was issued: semmap keys renew {self.name}"
             )

@@ -1,4 +1,4 @@
-"""The certificates that an authority has issued: the list from which the router admits, and refuses."""
+"""The register of issued certificates, by which the router admits or rejects clients."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FILE: Final = "identities.json"
 
 
 class Member(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One to whom a certificate was issued; who is revoked never comes back under this name."""
+    """The owner of a certificate; the name of a revoked one cannot be used again."""
 
     name: str
     role: Role
@@ -31,25 +31,25 @@ class Member(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
 
 class Register(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """All of them, and the hosts at which the router's certificate lets itself be found."""
+    """All members, and the hosts in the router's certificate."""
 
     hosts: tuple[str, ...]
     members: dict[str, Member] = {}
 
     @property
     def admitted(self) -> tuple[Member, ...]:
-        """Those that are not revoked."""
+        """The members that are not revoked."""
         return tuple(member for member in self.members.values() if not member.revoked)
 
     @classmethod
     def read(cls, folder: Path) -> Register:
-        """That of a folder of keys. Raises BadFile where there is none."""
+        """Read the register of a folder of keys. Raises BadFile if there is none."""
         path = folder / FILE
         try:
             return msgspec.json.decode(path.read_bytes(), type=codec.prepared(cls))
         except FileNotFoundError:
             raise errors.BadFile(
-                f"{folder} is not a folder of keys; make one with: semmap keys init {folder}"
+                f"{folder} is not a folder of keys; create one with: semmap keys init {folder}"
             ) from None
         except OSError as error:
             raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
@@ -57,7 +57,7 @@ class Register(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
             raise errors.BadFile(f"{path} is malformed: {error}") from None
 
     def write(self, folder: Path) -> None:
-        """Replace that of the folder as a whole, durably. Whoever changes it holds `changing`."""
+        """Replace the register of a folder atomically and durably; the caller holds `lock_folder`."""
         with tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
             file.write(msgspec.json.format(msgspec.json.encode(self)))
             file.flush()
@@ -66,8 +66,8 @@ class Register(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
 
 @contextlib.contextmanager
-def changing(folder: Path) -> Iterator[None]:
-    """While this is open no other process changes the folder of keys."""
+def lock_folder(folder: Path) -> Iterator[None]:
+    """Lock the folder of keys: no other process changes it while the context is open."""
     lock = os.open(folder, os.O_RDONLY)
     try:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -77,7 +77,7 @@ def changing(folder: Path) -> Iterator[None]:
 
 
 class LiveRegister:
-    """The register as it is now: read again whenever its file has changed. Owned by one thread."""
+    """The current register, read again whenever its file has changed. Owned by one thread."""
 
     def __init__(self, folder: Path) -> None:
         """Raises BadFile."""
@@ -87,17 +87,17 @@ class LiveRegister:
 
     @property
     def now(self) -> Register:
-        """The newest that could be read."""
+        """The newest register that could be read."""
         if (stamp := self._stamp()) != self._seen:
             try:
                 self._register = Register.read(self._folder)
             except errors.BadFile:
-                return self._register  # and look again
+                return self._register  # try again later
             self._seen = stamp
         return self._register
 
     def role_of(self, name: str) -> Role | None:
-        """The role of somebody; None for one who is unknown or revoked."""
+        """Return the role of a member; None for one that is unknown or revoked."""
         member = self.now.members.get(name)
         return None if member is None or member.revoked else member.role
 

@@ -28,7 +28,7 @@ class Announcer:
         self._described = described
         self._commits = bus.publisher(session, keys.COMMIT)
         self._untold = bus.publisher(session, keys.UNTOLD)
-        self._entities_are_watched = bus.watched(session, keys.ENTITY)
+        self._entities_are_watched = bus.subscriber_check(session, keys.ENTITY)
         self._types = {entity.name: entity.types for entity in entities}
 
     def announce(self, commit: Commit, believed: Believed = UNCHANGED, *, told: bool) -> None:
@@ -39,7 +39,7 @@ class Announcer:
         """
         passed_on = abridged(_with_places(commit, believed))
         payload = codec.encode(passed_on)
-        if len(payload) > bus.PUBLISHED:
+        if len(payload) > bus.PUBLICATION_BYTES:
             passed_on = abridged(commit, always=True)
             payload = codec.encode(passed_on)
         if not told:
@@ -61,7 +61,7 @@ class Announcer:
         lost = set(self._types.get(entity.name, ())).difference(entity.types)
         self._delete(entity.name, sorted(lost))
         payload, encoding = codec.encode(entity), codec.encoding_of(entity)
-        if len(payload) > bus.PUBLISHED:
+        if len(payload) > bus.PUBLICATION_BYTES:
             return  # whoever wants to know it asks
         for class_name in entity.types:
             self._session.put(keys.entity_key(class_name, entity.name), payload, encoding=encoding)

@@ -16,7 +16,7 @@ from semmap.nodes.kb_node.config import Replay
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.replay.preparing import SOURCE
-from semmap.nodes.runtime import rhythm
+from semmap.nodes.runtime import playback_clock
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import errors, keys
 from semmap.schemas.bridge import LoadDocument, LoadTBox, TakeBack, Transactions
@@ -87,7 +87,7 @@ class Player:
             return
         stamps = self._source.stamps
         wait_s = (
-            rhythm.wait_s(
+            playback_clock.wait_s(
                 stamps.of(now), stamps.of(now + 1), speed=self._replay.speed, longest_s=self._replay.longest_s
             )
             if now > self._source.beginning.seq

@@ -42,8 +42,8 @@ from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, Clas
 from semmap.nodes.perception_node.tracking.map_updates import subject_of
 from semmap.nodes.perception_node.tracking.occupancy import occupancy_in
 from semmap.nodes.perception_node.tracking.tracks import Tracks
-from semmap.nodes.runtime.following import Begun, Follower
 from semmap.nodes.runtime.loop import Node, open_node
+from semmap.nodes.runtime.map_follower import Follower, SnapshotLoaded
 from semmap.nodes.runtime.map_replica import MapReplica
 from semmap.schemas import codec, errors, keys, wording
 from semmap.schemas.commands import Add, Command, LastSeen
@@ -99,8 +99,10 @@ class Perception:
         self._cloud_due = 0.0
         self._frame_time = time.monotonic()
         self._cloud = bus.publisher(node.session, keys.CLOUD)
-        self._cloud_is_wanted = bus.watched(node.session, keys.CLOUD)
-        Follower(node, self._map, keys.EFFECTS, heard=lambda commit, known: None, begun=self._on_map)
+        self._cloud_is_wanted = bus.subscriber_check(node.session, keys.CLOUD)
+        Follower(
+            node, self._map, keys.EFFECTS, on_commit=lambda commit, known: None, on_snapshot=self._on_map
+        )
         node.every(0.5, self._tick)
         self._on_taught = taught
         self._exemplar_commands = (
@@ -256,7 +258,7 @@ class Perception:
         self._refused[subject_of(command)] = time.monotonic() + _REFUSED_S
         self._on_complaint(f"the map rejected an observation: {error}")
 
-    def _on_map(self, begun: Begun) -> None:
+    def _on_map(self, begun: SnapshotLoaded) -> None:
         self._classes = hierarchy_of(begun.classes, self._usual_m)
         self._sent_commit = min(self._sent_commit, self._map.seq)
         self._node.ready("no camera frames yet")

@@ -17,8 +17,8 @@ from semmap.nodes.recorder.map_relations import Relations, changed_subjects, mis
 from semmap.nodes.recorder.perception_recorder import PerceptionRecorder
 from semmap.nodes.recorder.recording import Recording, free_to_serve, open_recording
 from semmap.nodes.recorder.retention import KEEP_ALL, Retention, recordings
-from semmap.nodes.runtime.following import Begun, Follower
 from semmap.nodes.runtime.loop import Node, open_node
+from semmap.nodes.runtime.map_follower import Follower, SnapshotLoaded
 from semmap.nodes.runtime.map_replica import MapReplica
 from semmap.schemas import keys, wording
 from semmap.schemas.bridge import Recall, StarQuery
@@ -64,7 +64,7 @@ class Recorder:
         self._arranged = False
         self._fetching_scene = False
         self._poses_at = 0.0
-        Follower(node, self._map, keys.COMMIT, heard=self._on_commit, begun=self._on_map)
+        Follower(node, self._map, keys.COMMIT, on_commit=self._on_commit, on_snapshot=self._on_map)
         node.follow(keys.POSES, self._on_poses)
         node.follow_newest(keys.LIVE_POSES, self._on_live)
         node.every(0.5, self._tick)
@@ -94,7 +94,7 @@ class Recorder:
         self._drawn.show(touched, self._map.entities, self._scene.bodies, simulated=self._scene.known)
         self._show_graph(touched or changed_subjects(commit.places))
 
-    def _on_map(self, begun: Begun) -> None:
+    def _on_map(self, begun: SnapshotLoaded) -> None:
         first = begun.before < 0
         before = begun.before if not first else begun.seq - 1 if self._after is None else self._after
         lost = missed_commits(before, begun.seq, self._unknown)

@@ -1,6 +1,5 @@
-"""The one listener of a host, where its nodes meet and clients join; it connects to routers of other hosts.
+"""The router: the only listener of a host, which connects its nodes, clients and the routers of other hosts.
 
-In a secure system everybody shows it a certificate, and it lets through what their role permits.
-
-`access.py` makes Zenoh's access control from the table of roles; `node.py` runs it.
+In a secure system it requires certificates and forwards only what the roles permit. `access.py` builds
+Zenoh's access control from the table of roles, and `node.py` runs the router.
 """

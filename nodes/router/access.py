@@ -1,12 +1,12 @@
-"""Zenoh's access control, made from the table of roles and the names that certificates were issued to.
+"""Builds Zenoh's access control from the table of roles and the names of certificates.
 
-A rule lets a message through only if its key expression includes the message's, so everything is denied and
-then some allowed. What is declared passes as it was declared: a client that does not hear of the queryable
-`semmap/as/*/cmd/*` never finds anybody who serves its own commands.
+A rule applies to a message only if its key expression includes that of the message, so everything is denied
+first. Declarations are forwarded as they were declared: a client without the declaration of the queryable
+`semmap/as/*/cmd/*` never finds a server of its own commands.
 
-Where the system has a namespace, the rules are about whole keys, with it.
+If the system has a namespace, the rules are for whole keys including it.
 
-`ingress` is what the router takes from somebody, `egress` what it passes on to them.
+`ingress` is what the router accepts from a client, `egress` what it forwards to it.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ _EVERY_MESSAGE: Final = (
 _EVERYTHING: Final = f"{keys.ROOT}/**"
 _PRESENCE: Final = keys.live_key("*")
 _BRANCHES: Final = sorted({f"{'/'.join(grant.key.split('/')[:2])}/**" for grant in roles.GRANTS})
-"""Every branch of keys but the one where commands are asked under a name."""
+"""Every branch of keys except that of commands under a name."""
 _LOSSLESS: Final = frozenset(topic.key for topic in keys.TOPICS if topic.qos == "lossless")
 
 
 def access_control(members: Iterable[Member], namespace: str = "") -> dict[str, Any]:
-    """The value of Zenoh's `access_control` that admits these members as their roles say.
+    """Return the value of Zenoh's `access_control` for these members and their roles.
 
-    `namespace` is that of the sessions: a robot's name, or `*` for the robots that share the router.
+    `namespace` is that of the sessions: the name of a robot, or `*` for all robots that share the router.
     """
     by_role: dict[Role, list[str]] = {}
     for member in members:
@@ -50,7 +50,7 @@ def access_control(members: Iterable[Member], namespace: str = "") -> dict[str, 
             policies.append(_policy(rules, f"as {name}", _of_name(name), [f"as {name}"]))
     for rule in rules if namespace else ():
         rule["key_exprs"] = [f"{namespace}/{key}" for key in rule["key_exprs"]]
-        if "liveliness_query" in rule["messages"]:  # who asks which robots there are names none
+        if "liveliness_query" in rule["messages"]:  # a query for all robots has no namespace
             rule["key_exprs"].append(keys.robots_live())
     return {
         "enabled": True,
@@ -66,9 +66,9 @@ Rule = tuple[Flow, tuple[str, ...], Sequence[str]]
 
 
 def _of_name(name: str) -> list[Rule]:
-    """Everybody asks for commands as themselves, and as nobody else.
+    """Return the rules for commands under a client's own name.
 
-    The router of another host passes on what those ask whom it has admitted, each as themselves.
+    The router of another host forwards commands of the clients it has admitted, each under its own name.
     """
     mine = f"{keys.commands_as() if name == keys.ROUTER else keys.commands_as(name)}/*"
     return [("ingress", ("query",), [mine]), ("egress", ("reply",), [mine])]
@@ -94,7 +94,7 @@ def _of_outsider(role: Role) -> list[Rule]:
 
 
 def _of_node() -> list[Rule]:
-    """A node does everything but ask in another's name."""
+    """Return the rules of a node, which may do everything except send commands under another name."""
     recovered = keys.recovery(_EVERYTHING)
     everything = [_EVERYTHING, _PRESENCE, recovered]
     but_queries = tuple(message for message in _EVERY_MESSAGE if message != "query")
@@ -106,14 +106,14 @@ def _of_node() -> list[Rule]:
 
 
 def _declared(asked: Iterable[str]) -> list[str]:
-    """The queryables that serve these keys, as nodes declare them: for all verbs of a prefix."""
+    """Return the queryables of these keys as nodes declare them: for all verbs of a prefix."""
     return list(dict.fromkeys(f"{key.rpartition('/')[0]}/*" for key in asked))
 
 
 def _policy(
     rules: list[dict[str, Any]], name: str, allowed: Iterable[Rule], subjects: list[str]
 ) -> dict[str, Any]:
-    """Add the rules, under ids made of `name`; the policy that gives them to the subjects."""
+    """Add the rules with ids made of `name`, and return the policy that assigns them to the subjects."""
     ids = []
     for number, (flow, messages, key_exprs) in enumerate(allowed):
         if not key_exprs:

@@ -10,12 +10,12 @@ from semmap.nodes.bus import Network
 
 @dataclass(frozen=True)
 class RouterConfig:
-    """`keys` is the folder of keys, with the register of who is admitted; None admits everybody.
+    """`keys` is the folder of keys with the register of identities; None admits all clients.
 
-    `network` says where to listen, and to which routers of other hosts to connect.
+    `network` defines where to listen, and which routers of other hosts to connect to.
     """
 
     keys: Path | None
     network: Network
     namespace: str = ""
-    """Which keys those who are admitted may use: a robot's, or `*`, those of all robots."""
+    """The namespace of admitted clients: the name of a robot, or `*` for all robots."""

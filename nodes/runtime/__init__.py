@@ -1,1 +1,1 @@
-"""What every node is built from: event loop, heartbeat, futures, and a replica of the map."""
+"""Common parts of all nodes: event loop, heartbeat, futures, and a replica of the map."""

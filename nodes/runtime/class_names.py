@@ -1,4 +1,4 @@
-"""Resolves class names as people write them."""
+"""Resolves class names as users write them."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from semmap.schemas.errors import UnknownClass, enumerated
 
 
 class AmbiguousClass(UnknownClass):
-    """Several classes may be meant."""
+    """The name matches several classes."""
 
 
 class ClassNames:
-    """The classes of the TBox by what people call them.
+    """The classes of the TBox by their names and labels.
 
-    A name or an IRI is taken literally. Else case, underscores and spaces do not matter, and labels count, in
-    every language that the TBox has.
+    A class name or an IRI is matched exactly. Otherwise case, underscores and spaces are ignored, and labels
+    in all languages of the TBox are matched too.
     """
 
     def __init__(self, classes: Iterable[ClassInfo] = ()) -> None:
@@ -28,38 +28,38 @@ class ClassNames:
         self._has_spatial = any(c.spatial for c in self.by_name.values())
 
     def find(self, word: str) -> ClassInfo:
-        """The class that `word` means. Raises AmbiguousClass, UnknownClass with the nearest names."""
+        """Return the class that `word` names. Raises AmbiguousClass, or UnknownClass with similar names."""
         try:
             name = self._index.find(word)
         except Ambiguous as error:
             raise AmbiguousClass(
-                f"'{word}' is ambiguous: {enumerated(error.names)}; say which class"
+                f"'{word}' is ambiguous: {enumerated(error.names)}; use one of these names"
             ) from None
         if name is None:
             raise UnknownClass(f"unknown class '{word}'{self._index.did_you_mean(word)}")
         return self.by_name[name]
 
     def has(self, word: str) -> bool:
-        """Whether a word means one class of things in space."""
+        """Return whether a word names one class of objects in space."""
         try:
             return self.find(word).spatial
         except UnknownClass:
             return False
 
     def spatial(self, word: str) -> ClassInfo:
-        """The class of a thing in space that `word` means. Raises UnknownClass."""
+        """Return the class of objects in space that `word` names. Raises UnknownClass."""
         found = self.find(word)
         if not found.spatial and not self._has_spatial:
             raise UnknownClass(
-                "nothing can be placed: the TBox does not say which of its classes are of things in space;"
+                "the TBox does not define which of its classes are spatial;"
                 " load it again with --spatial-root CLASS"
             )
         if not found.spatial:
-            raise UnknownClass(f"'{found.name}' is not a class of things in space; see: semmap classes")
+            raise UnknownClass(f"'{found.name}' is not a spatial class; see: semmap classes")
         return found
 
     def note(self, word: str, found: ClassInfo) -> tuple[str, ...]:
-        """How `word` was understood, where it was not taken literally."""
+        """Return a note on how `word` was resolved, unless it was matched exactly."""
         if word in (found.name, found.prefixed, found.iri, f"<{found.iri}>"):
             return ()
         return (f"'{word}' is read as {found.name}",)

@@ -1,6 +1,6 @@
-"""The parts of semmap that extras install: `pip install 'semmap[sim]'`. Without any it is a client.
+"""The optional parts of semmap: `pip install 'semmap[sim]'`. Without extras it is a client.
 
-A verb or a node says which one it lacks, before it does anything.
+A command or a node reports a missing extra before it does anything.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ MODULES: Mapping[str, tuple[str, ...]] = {
     "movie": ("av", "numpy"),
     "ros": ("mcap", "numpy", "rosbags"),
 }
-"""What each extra installs, as it is imported."""
+"""The modules that each extra installs."""
 
 OF_NODE: Mapping[str, str] = {
     "router": "kb",
@@ -35,34 +35,34 @@ OF_NODE: Mapping[str, str] = {
     "recorder": "record",
     "web": "web",
 }
-"""What a node, and the page beside them, needs."""
+"""The extra that each node, and the web page, needs."""
 
 _OPTIONS = {"sim": "--no-sim", "record": "--no-record"}
-"""How `semmap up` does without one."""
+"""The options of `semmap up` that avoid an extra."""
 
 
 def missing(extras: Iterable[str]) -> list[str]:
-    """Those of `extras` of which something is not installed."""
+    """Return the extras of which a module is not installed."""
     return [extra for extra in dict.fromkeys(extras) if any(find_spec(m) is None for m in MODULES[extra])]
 
 
 def require(what: str, *extras: str) -> None:
-    """Raises BadRequest, with what to install, when `what` needs what is not installed."""
+    """Raise BadRequest, with the command to install, if an extra is missing."""
     if lacking := missing(extras):
-        raise errors.BadRequest(f"{what} needs more than is installed: {_install(lacking)}")
+        raise errors.BadRequest(f"{what}: missing optional packages; install: {_install(lacking)}")
 
 
 def require_nodes(nodes: Iterable[str], *, named: bool = False) -> None:
-    """The same for `semmap up` with these nodes; says how to do without them, too, where that is possible.
+    """Raise BadRequest if `semmap up` lacks an extra; the message also has options that avoid it.
 
-    It is not where they were `named`.
+    There are none if the nodes were `named`.
     """
     if not (lacking := missing(["kb", *(OF_NODE[node] for node in nodes)])):
         return
-    said = f"semmap up needs more than is installed: {_install(lacking)}"
+    message = f"semmap up: missing optional packages; install: {_install(lacking)}"
     if not named and all(extra in _OPTIONS for extra in lacking):
-        said += f", or go without: semmap up {' '.join(_OPTIONS[extra] for extra in lacking)}"
-    raise errors.BadRequest(said)
+        message += f", or start without: semmap up {' '.join(_OPTIONS[extra] for extra in lacking)}"
+    raise errors.BadRequest(message)
 
 
 def _install(extras: list[str]) -> str:

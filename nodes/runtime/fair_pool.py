@@ -1,4 +1,4 @@
-"""Work beside a node's own: a few threads, and those who ask take turns."""
+"""A small thread pool for long work of a node, shared fairly between clients."""
 
 from __future__ import annotations
 
@@ -14,32 +14,32 @@ R = TypeVar("R")
 
 _EACH: Final = 64
 _ALL: Final = 256
-"""Pieces of work of one asker, and of all, that wait at most."""
+"""Largest number of waiting work items of one client, and of all."""
 
 
 class FairPool:
     """Like a ThreadPoolExecutor. `submit` is called by one thread."""
 
     def __init__(self, workers: int, asker: Callable[[], str] = str) -> None:
-        """`asker()` is who wants what is submitted."""
+        """`asker()` returns the client of the submitted work."""
         self._asker = asker
         self._queue: FairQueue[tuple[Future[Any], Callable[[], Any]]] = FairQueue(each=_EACH, everyone=_ALL)
         self._pool = ThreadPoolExecutor(workers, thread_name_prefix="beside")
 
     def submit(self, function: Callable[..., R], *arguments: Any) -> Future[R]:
-        """The result of `function(*arguments)`. Raises Busy when too much waits."""
+        """Schedule `function(*arguments)` and return its future result. Raises Busy if too much waits."""
         future: Future[R] = Future()
         again_s = self._queue.put(self._asker(), (future, partial(function, *arguments)))
         if again_s is not None:
             raise errors.Busy(
-                f"{len(self._queue)} questions that take long wait already; try again in {again_s:.1f} s",
+                f"{len(self._queue)} long requests are waiting; try again in {again_s:.1f} s",
                 again_s=again_s,
             )
         self._pool.submit(self._work)
         return future
 
     def close(self) -> None:
-        """Begin nothing more."""
+        """Begin no more work."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
     def _work(self) -> None:

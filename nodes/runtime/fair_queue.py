@@ -1,6 +1,6 @@
-"""What waits for a busy node: bounded, and taken from those who wait by turns.
+"""A bounded queue of requests that is fair between clients.
 
-Whoever sends a thousand requests waits for them himself; another one's first comes next.
+The clients take turns, so one with a thousand requests does not delay the first request of another.
 """
 
 from __future__ import annotations
@@ -13,22 +13,22 @@ from typing import Final, Generic, TypeVar
 T = TypeVar("T")
 
 EACH: Final = 1000
-"""How many things of one asker may wait."""
+"""Largest number of items of one client."""
 ALL: Final = 4000
-"""How many things of all askers may wait."""
+"""Largest number of items of all clients."""
 ALL_BYTES: Final = 64 << 20
-"""How much memory the things that wait may take; a single larger one is let in where nothing else waits."""
+"""Largest total size of the items; a single larger item is accepted if nothing else waits."""
 SOONEST_S: Final = 0.1
 LATEST_S: Final = 10.0
-"""Who finds it full is told to come again after as long as the first one has waited, within these [s]."""
+"""If the queue is full, the suggested pause is the age of the first item, within these limits [s]."""
 
 
 _Waiting = tuple[T, int, float]
-"""An item, its size, and since when it waits."""
+"""An item, its size, and the time since when it waits."""
 
 
 class FairQueue(Generic[T]):
-    """Each asker has a queue, and these take turns. Any thread may use it."""
+    """Each client has a queue, and these take turns. Any thread may use it."""
 
     def __init__(self, *, each: int = EACH, everyone: int = ALL, size: int = ALL_BYTES) -> None:
         """`size` is in bytes."""
@@ -36,23 +36,23 @@ class FairQueue(Generic[T]):
         self._urgent: deque[_Waiting[T]] = deque()
         self._by_asker: dict[str, deque[_Waiting[T]]] = {}
         self._next: deque[str] = deque()
-        """The askers of whom something waits, in the order of their turns."""
+        """The clients with waiting items, in the order of their turns."""
         self._count = self._bytes = 0
         self._lock = threading.Lock()
 
     def __len__(self) -> int:
-        """How many things wait, urgent ones apart."""
+        """Return the number of items, without urgent ones."""
         return self._count
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing waits, not even something urgent."""
+        """Whether no item waits, not even an urgent one."""
         return not self._count and not self._urgent
 
     def put(self, asker: str, item: T, *, size: int = 0, urgent: bool = False) -> float | None:
-        """Let `item`, of `size` bytes, wait; or, when it is full, after how long [s] to come again.
+        """Add `item` of `size` bytes; return None, or the pause [s] before a retry if the queue is full.
 
-        What is `urgent` comes before everything else.
+        An `urgent` item comes before all others.
         """
         waiting = (item, size, time.monotonic())
         with self._lock:
@@ -75,7 +75,7 @@ class FairQueue(Generic[T]):
         return None
 
     def take(self, *, urgent_only: bool = False) -> T | None:
-        """The next one, if there is one."""
+        """Return the next item, if there is one."""
         with self._lock:
             if self._urgent:
                 return self._urgent.popleft()[0]

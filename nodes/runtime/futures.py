@@ -1,4 +1,4 @@
-"""Futures: those of a node's own thread, resolving one, and chaining a function to one."""
+"""Futures of a node's own thread, and functions to resolve and chain them."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ T = TypeVar("T")
 U = TypeVar("U")
 
 
-class OwnFuture(Future[T]):
-    """A future that one thread both resolves and reads: it has no lock, and nobody can wait for it.
+class SingleThreadFuture(Future[T]):
+    """A future that one thread both resolves and reads. It has no lock and cannot be waited for.
 
-    A command passes through several; one with a lock takes four times as long.
+    A command passes through several futures; with locks this takes four times as long.
     """
 
     def __init__(self) -> None:
@@ -26,7 +26,7 @@ class OwnFuture(Future[T]):
         self._callbacks: list[Callable[[Future[T]], object]] = []
 
     def done(self) -> bool:
-        """Is it resolved?"""
+        """Return whether it is resolved."""
         return self._is_done
 
     def cancelled(self) -> bool:
@@ -34,7 +34,7 @@ class OwnFuture(Future[T]):
         return False
 
     def running(self) -> bool:
-        """Nobody says when it is begun."""
+        """Always False: the start is not recorded."""
         return False
 
     def cancel(self) -> bool:
@@ -42,19 +42,19 @@ class OwnFuture(Future[T]):
         return False
 
     def result(self, timeout: float | None = None) -> T:
-        """The value. Raises the error it was resolved with; InvalidStateError before that: no waiting."""
+        """Return the value. Raises its error, or InvalidStateError if it is not resolved; never waits."""
         self._require_done()
         if self._error is not None:
             raise self._error
         return self._value
 
     def exception(self, timeout: float | None = None) -> BaseException | None:
-        """The error, if it was resolved with one. Raises InvalidStateError before that: no waiting."""
+        """Return the error, if any. Raises InvalidStateError if it is not resolved; never waits."""
         self._require_done()
         return self._error
 
     def add_done_callback(self, fn: Callable[[Future[T]], object]) -> None:
-        """Call `fn(future)` when it is resolved, at once if it is. What `fn` raises is logged."""
+        """Call `fn(future)` when it is resolved, or immediately if it is. An exception in `fn` is logged."""
         if self._is_done:
             self._call(fn)
         else:
@@ -70,7 +70,7 @@ class OwnFuture(Future[T]):
 
     def _resolve(self, value: Any, error: BaseException | None) -> None:
         if self._is_done:
-            raise InvalidStateError("it is resolved already")
+            raise InvalidStateError("the future is already resolved")
         self._is_done, self._value, self._error = True, value, error
         callbacks, self._callbacks = self._callbacks, []
         for callback in callbacks:
@@ -80,15 +80,15 @@ class OwnFuture(Future[T]):
         try:
             callback(self)
         except Exception:
-            log.exception("what was to follow a future failed")
+            log.exception("callback of a future failed")
 
     def _require_done(self) -> None:
         if not self._is_done:
-            raise InvalidStateError("it is not resolved yet, and its own thread cannot wait for that")
+            raise InvalidStateError("the future is not resolved, and its own thread cannot wait for it")
 
 
 def settle(future: Future[T], execute: Callable[[], T | Future[T]]) -> None:
-    """Resolve `future` with what `execute()` returns (or, if that is a future, with its result) or raises."""
+    """Resolve `future` with the result or error of `execute()`, or of the future that it returns."""
     try:
         result = execute()
     except Exception as error:
@@ -101,8 +101,8 @@ def settle(future: Future[T], execute: Callable[[], T | Future[T]]) -> None:
 
 
 def then(future: Future[T], function: Callable[[T], U]) -> Future[U]:
-    """The future of `function(result)`; errors pass through."""
-    following: Future[U] = OwnFuture() if isinstance(future, OwnFuture) else Future()
+    """Return a future of `function(result)`; errors pass through."""
+    following: Future[U] = SingleThreadFuture() if isinstance(future, SingleThreadFuture) else Future()
 
     def on_done(done: Future[T]) -> None:
         try:
@@ -115,10 +115,10 @@ def then(future: Future[T], function: Callable[[T], U]) -> Future[U]:
 
 
 def and_then(future: Future[T], function: Callable[[T], U | Future[U]]) -> Future[U]:
-    """The future of `function(result)`, which may be a future itself; errors pass through.
+    """Return a future of `function(result)`, which may return a future itself; errors pass through.
 
     Both belong to one thread.
     """
-    following: Future[U] = OwnFuture()
+    following: Future[U] = SingleThreadFuture()
     future.add_done_callback(lambda done: settle(following, lambda: function(done.result())))
     return following

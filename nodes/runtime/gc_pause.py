@@ -1,4 +1,4 @@
-"""When no garbage is collected: a large change of the map makes many objects, and drops few."""
+"""Pauses garbage collection during large changes of the map, which create many objects."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ _MANY = 100_000
 
 @contextmanager
 def uncollected(*, freeze: bool = False) -> Iterator[None]:
-    """No garbage is collected meanwhile, and what was made is taken to stay.
+    """Pause garbage collection; objects created in the meantime are assumed to stay.
 
-    Looking through millions of objects would stop the whole process, Zenoh's keep-alive included, for longer
-    than a lease. So when there are many new ones, or with `freeze`, all that are there by then are frozen.
+    A collection over millions of objects would stop the whole process, including Zenoh's keep-alive, for
+    longer than a lease. If there are many new objects, or with `freeze`, all present objects are therefore
+    frozen.
     """
     was_on = gc.isenabled()
     gc.disable()

@@ -1,4 +1,4 @@
-"""Memory that is free but still held, given back to the machine."""
+"""Returns free heap memory to the operating system."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ import ctypes
 
 
 def trim() -> None:
-    """Give it back. Work on a large map leaves holes of a third of the process behind; takes milliseconds.
+    """Return free memory to the system; takes milliseconds.
 
-    Only glibc can do that; elsewhere nothing is done.
+    Work on a large map leaves a third of the process's memory fragmented. Only glibc can release it;
+    elsewhere this does nothing.
     """
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).malloc_trim(0)

@@ -21,11 +21,11 @@ _ERROR_SHOWN_S = 3600.0
 
 
 class Heartbeat:
-    """Beats for the thread that owns the node's state, and on it: when that hangs, it falls silent."""
+    """Publishes heartbeats on the thread that owns the node's state: if that hangs, the heartbeat stops."""
 
     def __init__(self, name: str, session: bus.Session) -> None:
         self.due_s = 0.0
-        """When it beats next, by the monotonic clock."""
+        """Time of the next heartbeat, by the monotonic clock."""
         self._name = name
         self._host = socket.gethostname()
         self._session = session
@@ -64,33 +64,33 @@ class Heartbeat:
         self._health.put(codec.encode(health))
 
     def ready(self, detail: str) -> None:
-        """Say so, at once, and let the liveliness token appear."""
+        """Mark the node as ready: publish a heartbeat immediately, and declare the liveliness token."""
         if self._state != "ready":
             self._state = "ready"
-            self._token = bus.appear(self._session, self._name)
+            self._token = bus.declare_presence(self._session, self._name)
             log.info("ready: %s", detail)
             self.due_s = 0.0
         self.describe(detail)
         self.beat()
 
     def describe(self, detail: str | Callable[[], str]) -> None:
-        """Say this of the node's state, from the next beat on; a function is asked at each beat."""
+        """Set the detail of the next heartbeats; a function is called for each heartbeat."""
         self._detail = detail if callable(detail) else lambda: detail
 
     def head(self, head: Callable[[], tuple[int, str]]) -> None:
-        """Tell the number and the digest of the last commit with each beat, from the next one on."""
+        """Add the number and digest of the last commit to the heartbeats."""
         self._head = head
 
     def ignore(self) -> None:
-        """Count a publication that is no message. Any thread may do so: a count that is lost is no harm."""
+        """Count a malformed publication. Any thread may call this: a lost count does no harm."""
         self._ignored += 1
 
     def note(self, notes: tuple[str, ...]) -> None:
-        """Say this of what the node works with, from now on."""
+        """Set the notes of the node, from now on."""
         self._notes, self.due_s = notes, 0.0
 
     def report(self, text: str) -> None:
-        """Log an error, and say it with the time of the day, from now on and for an hour."""
+        """Log an error, and show it in the heartbeats with the time of day for an hour."""
         log.error("%s", text)
         self._last_error, self.due_s = f"{time.strftime('%H:%M:%S')} {text}", 0.0
         self._error_shown_until_s = time.monotonic() + _ERROR_SHOWN_S

@@ -1,9 +1,10 @@
 """The event loop of every node: one thread that owns the node's state, and the queues that feed it.
 
-Callbacks of Zenoh's threads only queue: requests in one that is bounded, and fair to those who ask; what they
-find full is answered with Busy at once. Everything else that happens follows from requests, or is bounded by
-itself, and comes first. Whatever fails in a handler is caught here and nowhere else:
-it is logged, answered, shown in the heartbeat, and the node lives on.
+Callbacks on Zenoh's threads only queue. Requests go to a bounded queue that is fair between clients; if it is
+full, the reply is Busy. All other events follow from requests or are bounded by themselves, and come first.
+
+An exception in a handler is caught here and nowhere else: it is logged, sent as the reply, shown in the
+heartbeat, and the node keeps running.
 """
 
 from __future__ import annotations
@@ -31,50 +32,51 @@ from semmap.schemas.calls import Call, Handler, Relay, largest, reply_type
 
 log = logging.getLogger(__name__)
 
-_AGAIN_S = 0.05
-_FOLLOWED = 20_000
-"""Publications of a topic that wait at most; then the oldest go, and are missed."""
+_RETRY_S = 0.05
+_MAX_WAITING = 20_000
+"""Largest number of waiting publications of a topic; then the oldest are dropped."""
 
 R = TypeVar("R")
 
 Handlers = Mapping[str, tuple[Any, Callable[[Any], Any]]]
-"""Verb to (type of the message, function of the message). A function may return a Future, or a Relay.
+"""Maps a verb to the type of its message and a function, which may return a Future or a Relay.
 
-`calls.by_verb(Get.answered_by(function), ...)` makes them, and has mypy check the types of the functions.
+They are made by `calls.by_verb(Get.answered_by(function), ...)`, so that mypy checks the types of the
+functions.
 """
 
 _Work = Callable[[], None]
 
 Admit = Callable[[str, Any], Any]
-"""Of who asks (nothing where the key does not say) and a message, the message to handle."""
+"""Returns the message to handle, given the client ("" if the key does not name it) and the message."""
 
 
 class Node:
-    """A running node: bind handlers, then `run`. Use `open_node`."""
+    """A running node: register handlers, then call `run`. Created by `open_node`."""
 
     def __init__(self, name: str, session: bus.Session, commands: str = keys.CMD) -> None:
-        """`commands` is the prefix under which it asks for commands."""
+        """`commands` is the prefix of the commands that it sends."""
         self.name = name
         self.session = session
         self._commands = commands
         self._events: queue.SimpleQueue[_Work] = queue.SimpleQueue()
         self._requests: FairQueue[_Work] = FairQueue()
         self._has_room: Callable[[], bool] = lambda: True
-        self._in_hand: bus.Request | None = None
-        self._is_at_once = False
-        """A request that found nobody waiting is on its way among the events."""
+        self._current: bus.Request | None = None
+        self._is_immediate = False
+        """An immediate request is among the events."""
         self._timers: list[tuple[float, int, Callable[[], None]]] = []
         self._timer_numbers = count()
         self._idle: list[Callable[[], None]] = []
         self._afterwards: list[Callable[[], None]] = []
         self._stopping = False
         self._heartbeat = Heartbeat(name, session)
-        self._lifelines = bus.Lifelines(session)
+        self._liveliness = bus.LivelinessMonitor(session)
 
     @property
     def asker(self) -> str:
-        """Who asks for what is being handled, as far as they can be told apart."""
-        return "" if self._in_hand is None else self._in_hand.asker
+        """The client of the request that is being handled, as far as it can be identified."""
+        return "" if self._current is None else self._current.asker
 
     def serve(
         self,
@@ -86,11 +88,11 @@ class Node:
         admit: Admit = lambda who, message: message,
         urgent: Container[str] = (),
     ) -> None:
-        """Answer queries on `prefix/<verb>`, and with `puts` execute puts too.
+        """Serve queries on `prefix/<verb>` and, with `puts`, execute puts too.
 
-        A query of which `leave(verb)` holds is left to another node; it is called on a thread of Zenoh's.
-        `admit(who, message)` gives the message to handle, or raises why it is not. The `urgent` verbs, which
-        have to be quick, come before all others.
+        A query with `leave(verb)` is left to another node; `leave` is called on a thread of Zenoh.
+        `admit(who, message)` returns the message to handle, or raises. The `urgent` verbs must be quick, and
+        come before all others.
         """
 
         def receive(request: bus.Request) -> None:
@@ -112,47 +114,47 @@ class Node:
             bus.serve_puts(self.session, prefix, receive)
 
     def serve_one(self, prefix: str, handler: Handler) -> None:
-        """Answer queries on `prefix/<verb>` of one verb; another node serves all others of the prefix.
+        """Serve queries on `prefix/<verb>` of a single verb; another node serves the rest of the prefix.
 
-        `prefix` may stand for everybody's own: `semmap/as/*/cmd`.
+        `prefix` may be a pattern for all clients: `semmap/as/*/cmd`.
         """
         verb = handler.kind.VERB
 
         def receive(request: bus.Request) -> None:
-            if request.verb == verb:  # and not one to all verbs
+            if request.verb == verb:  # not a query to all verbs
                 self._queue(request, lambda: self._handle(request, {verb: handler}))
 
         bus.serve(self.session, prefix, receive, verb=verb, most=lambda _: largest(handler.kind))
 
     def while_there_is_room(self, has_room: Callable[[], bool]) -> None:
-        """Let requests wait, the urgent ones apart, while `has_room()` does not hold; events go on."""
+        """Hold requests back while `has_room()` is false, except urgent ones; events continue."""
         self._has_room = has_room
 
     def _queue(self, request: bus.Request, handle: _Work, *, urgent: bool = False) -> None:
-        """On a thread of Zenoh's: let a request wait, or refuse it; where nobody waits, it is an event."""
-        if not self._is_at_once and not len(self._requests) and self._has_room():
-            self._is_at_once = True
-            self._events.put(partial(self._handle_at_once, handle))
+        """Queue a request, or reply Busy; on a thread of Zenoh. If none waits, it becomes an event."""
+        if not self._is_immediate and not len(self._requests) and self._has_room():
+            self._is_immediate = True
+            self._events.put(partial(self._handle_immediate, handle))
             return
-        size = min(len(request.payload), bus.PIECE)  # what came in pieces is bounded by itself
+        size = min(len(request.payload), bus.FRAGMENT_BYTES)  # fragmented requests have their own limit
         again_s = self._requests.put(request.asker, handle, size=size, urgent=urgent)
         if again_s is None:
             self._events.put(_wake)
         else:
             request.refuse(
                 errors.Busy(
-                    f"{self.name} is busy: {len(self._requests):,} requests wait already;"
+                    f"{self.name} is busy: {len(self._requests):,} requests are waiting;"
                     f" try again in {again_s:.1f} s",
                     again_s=again_s,
                 )
             )
 
     def follow(self, topic: keys.Topic, handle: Callable[[Any], None]) -> None:
-        """Call `handle(message)` for each publication, unless so many wait that the oldest have to go."""
-        self._follow(topic, handle, _FOLLOWED)
+        """Call `handle(message)` for each publication, unless too many wait and the oldest are dropped."""
+        self._follow(topic, handle, _MAX_WAITING)
 
     def follow_newest(self, topic: keys.Topic, handle: Callable[[Any], None]) -> None:
-        """Call `handle(message)` for publications; of those that wait, a busy node sees only the newest."""
+        """Call `handle(message)` for publications; a busy node gets only the newest of the waiting ones."""
         self._follow(topic, handle, 1)
 
     def _follow(self, topic: keys.Topic, handle: Callable[[Any], None], most: int) -> None:
@@ -166,18 +168,18 @@ class Node:
 
         def keep(key: str, message: Any) -> None:
             if topic == keys.HEALTH and key != keys.health_key(message.node):
-                self._heartbeat.ignore()  # a heart beats for itself: who may publish one may not another's
+                self._heartbeat.ignore()  # forged: a heartbeat under the key of another node
                 return
             with lock:
                 is_full = len(waiting) == most
                 waiting.append(message)
-            if not is_full:  # else the event of the one that went is for this one
+            if not is_full:  # otherwise the event of the dropped message handles this one
                 self._events.put(take)
 
         bus.follow(self.session, topic, keep, self._heartbeat.ignore)
 
     def every(self, period_s: float, handle: Callable[[], None]) -> None:
-        """Call `handle()` each `period_s`, as well as the load allows."""
+        """Call `handle()` every `period_s`, as far as the load allows."""
         due_s = time.monotonic()
 
         def repeat() -> None:
@@ -189,14 +191,14 @@ class Node:
         self._at(due_s, repeat)
 
     def later(self, delay_s: float, handle: Callable[[], None]) -> None:
-        """Call `handle()` once, after that time, as well as the load allows."""
+        """Call `handle()` once after a delay, as far as the load allows."""
         self._at(time.monotonic() + delay_s, handle)
 
     def _at(self, due_s: float, handle: Callable[[], None]) -> None:
         heapq.heappush(self._timers, (due_s, next(self._timer_numbers), handle))
 
     def when_idle(self, handle: Callable[[], None]) -> None:
-        """Call `handle()` each time that no event waits: what handlers have put off is done then."""
+        """Call `handle()` whenever no event waits, to do deferred work."""
         self._idle.append(handle)
 
     def ask(
@@ -208,8 +210,8 @@ class Node:
         patience_s: float = bus.PATIENCE_S,
         beating: bool = False,
     ) -> R:
-        """`bus.ask` on this node's session; the heart stops meanwhile, or goes on if `beating` (slower)."""
-        meanwhile = self.beat if beating else None
+        """Call `bus.ask` on this node's session; heartbeats pause, or continue (slower) if `beating`."""
+        on_wait = self.beat if beating else None
         answer: R = bus.ask(
             self.session,
             self._prefix(prefix),
@@ -218,8 +220,8 @@ class Node:
             reply_type(type(call)),
             timeout_s=timeout_s,
             patience_s=patience_s,
-            meanwhile=meanwhile,
-            lifelines=self._lifelines,
+            on_wait=on_wait,
+            liveliness=self._liveliness,
         )
         return answer
 
@@ -228,7 +230,7 @@ class Node:
     ) -> Future[R]:
         """Like `ask`, without waiting; the future is resolved on this node's own thread.
 
-        It is asked again until `patience_s` (0 unless given) ends while nobody serves the key.
+        The query is repeated while no node serves the key, for up to `patience_s`.
         """
         return self._ask_later(prefix, call, timeout_s=timeout_s, patience_s=patience_s, decoded=True)
 
@@ -242,16 +244,17 @@ class Node:
         decoded: bool,
         asked_by: bus.Request | None = None,
     ) -> Future[Any]:
-        """The result is the message, or, unless `decoded`, as it came.
+        """Send a query; the result is the message or, unless `decoded`, its encoded form.
 
-        With `asked_by` it is asked in that one's name, who is told himself where somebody is busy.
+        With `asked_by`, the query is forwarded in the name of that client, which itself repeats it if a node
+        is busy.
         """
         future: Future[Any] = Future()
-        patience: list[bus.Patience] = []
+        patience: list[bus.BusyBackoff] = []
         deadline_s = time.monotonic() + patience_s
         round_s = bus.first_round_s(call, timeout_s)
 
-        def send(everybody: bool = False) -> None:
+        def send(ask_all: bool = False) -> None:
             try:
                 bus.ask_later(
                     self.session,
@@ -261,11 +264,11 @@ class Node:
                     reply_type(type(call)),
                     answer,
                     timeout_s=round_s,
-                    lifelines=self._lifelines,
-                    everybody=everybody,
+                    liveliness=self._liveliness,
+                    ask_all=ask_all,
                     source=None if asked_by is None else asked_by.source,
                 )
-            except Exception as error:  # whoever waits for the future would wait for ever
+            except Exception as error:  # otherwise the future would never be resolved
                 future.set_exception(error)
 
         def answer(read: Callable[[], bus.Encoded]) -> None:
@@ -281,13 +284,13 @@ class Node:
                     future.set_exception(error)
                     return
                 self.report(error.text)
-                self._at(time.monotonic() + _AGAIN_S, partial(send, everybody=True))
+                self._at(time.monotonic() + _RETRY_S, partial(send, ask_all=True))
             except errors.Busy as error:
                 if asked_by is not None:
                     future.set_exception(error)
                     return
                 if not patience:
-                    patience.append(bus.Patience())
+                    patience.append(bus.BusyBackoff())
                 try:
                     self._at(time.monotonic() + patience[0].pause_s(error), send)
                 except errors.Busy:
@@ -300,7 +303,7 @@ class Node:
                     send()
             except errors.NoAnswer as error:
                 if (now_s := time.monotonic()) < deadline_s:
-                    self._at(now_s + _AGAIN_S, send)
+                    self._at(now_s + _RETRY_S, send)
                 else:
                     future.set_exception(error)
             except Exception as error:
@@ -313,15 +316,15 @@ class Node:
         return self._commands if prefix == keys.CMD else prefix
 
     def is_there(self, node: str) -> bool:
-        """Is a process of another node ready? Any thread may ask."""
-        return self._lifelines.is_there(node)
+        """Return whether a process of another node is ready. Any thread may call this."""
+        return self._liveliness.is_there(node)
 
     def afterwards(self, handle: Callable[[], None]) -> None:
-        """Call `handle()` after the handler in hand has replied, and before any other event."""
+        """Call `handle()` after the current handler has replied, and before any other event."""
         self._afterwards.append(handle)
 
     def soon(self, handle: Callable[[], None]) -> None:
-        """Call `handle()` on this node's own thread. Other threads hand over their results so."""
+        """Call `handle()` on this node's own thread; used by other threads to deliver their results."""
         self._events.put(handle)
 
     def beat(self) -> None:
@@ -329,38 +332,38 @@ class Node:
         self._heartbeat.beat()
 
     def ready(self, detail: str) -> None:
-        """Tell the others: the liveliness token appears and the next heartbeat says so."""
+        """Mark the node as ready by its liveliness token and the next heartbeat."""
         self._heartbeat.ready(detail)
 
     def describe(self, detail: str | Callable[[], str]) -> None:
-        """What the heartbeats say of the node's state, from the next one on; a function is asked by each."""
+        """Set the detail of the heartbeats, from the next one on; a function is called for each."""
         self._heartbeat.describe(detail)
 
     def head(self, head: Callable[[], tuple[int, str]]) -> None:
-        """Let the heartbeats tell the number and the digest of the last commit."""
+        """Add the number and digest of the last commit to the heartbeats."""
         self._heartbeat.head(head)
 
     def note(self, notes: tuple[str, ...]) -> None:
-        """What the heartbeats say of what the node works with, from now on."""
+        """Set the notes of the node in the heartbeats, from now on."""
         self._heartbeat.note(notes)
 
     def report(self, text: str) -> None:
-        """Log an error and show it in the heartbeat, with the time of the day, for an hour."""
+        """Log an error and show it in the heartbeats with the time of day, for an hour."""
         self._heartbeat.report(text)
 
     def stop(self) -> None:
-        """End `run` after the event in hand."""
+        """End `run` after the current event."""
         self._events.put(self._stop)
 
     def tick(self) -> None:
-        """Do what the clock says is due, the heartbeat too. Work that takes seconds calls this meanwhile."""
+        """Run due timers and the heartbeat. Work that takes seconds calls this regularly."""
         now = time.monotonic()
         while self._timers and self._timers[0][0] <= now:
             self._guard(heapq.heappop(self._timers)[-1])
         self._heartbeat.beat()
 
     def run(self) -> None:
-        """Handle events until stopped, and a request between each two."""
+        """Handle events until stopped, and one request between every two events."""
         heartbeat = self._heartbeat
         while not self._stopping:
             self.tick()
@@ -371,7 +374,7 @@ class Node:
             if self._events.empty():
                 for handle in self._idle:
                     self._guard(handle)
-                if len(self._requests) and not self._is_at_once and self._has_room():
+                if len(self._requests) and not self._is_immediate and self._has_room():
                     continue
             due_s = min(heartbeat.due_s, self._timers[0][0] if self._timers else math.inf)
             wait_s = max(0.0, due_s - time.monotonic())
@@ -380,13 +383,13 @@ class Node:
             except queue.Empty:
                 continue
 
-    def _handle_at_once(self, handle: _Work) -> None:
-        self._is_at_once = False
+    def _handle_immediate(self, handle: _Work) -> None:
+        self._is_immediate = False
         handle()
 
     def _take_request(self) -> bool:
-        """Handle the request whose turn it is, if there is one, and room for it."""
-        if self._is_at_once or self._requests.is_empty:  # what is at once came before those that wait
+        """Handle the next request, if there is one and room for it. Returns whether there was one."""
+        if self._is_immediate or self._requests.is_empty:  # the immediate request came first
             return False
         handle = self._requests.take(urgent_only=not self._has_room())
         if handle is not None:
@@ -410,11 +413,11 @@ class Node:
     def _handle(
         self, request: bus.Request, handlers: Handlers, admit: Admit = lambda who, message: message
     ) -> None:
-        self._in_hand = request
+        self._current = request
         try:
             if request.verb not in handlers:
                 raise errors.UnknownVerb(
-                    f"unknown verb '{request.verb}'; there are: {', '.join(sorted(handlers))}"
+                    f"unknown command '{request.verb}'; available: {', '.join(sorted(handlers))}"
                 )
             kind, function = handlers[request.verb]
             result = function(admit(request.who, request.read(kind)))
@@ -433,7 +436,7 @@ class Node:
             request.reply(result)
 
     def _relay(self, request: bus.Request, relay: Relay[Any]) -> None:
-        """Pass a reply on as it comes, also from a node that is just being restarted."""
+        """Forward a request and its reply without decoding, also to a node that is being restarted."""
         future = self._ask_later(
             relay.prefix,
             relay.call,
@@ -462,13 +465,13 @@ class Node:
 
 
 def _wake() -> None:
-    """An event that says that a request has come."""
+    """An event that only wakes the loop for a waiting request."""
 
 
 @contextmanager
 def open_node(name: str, network: bus.Network) -> Iterator[Node]:
-    """A node with an open session that stops on SIGTERM and SIGINT."""
-    bus.read_links_apart()
+    """Open a node's session; the node stops on SIGTERM and SIGINT."""
+    bus.set_reader_threads()
     with bus.open_session(network) as session:
         node = Node(name, session, network.commands)
         for number in (signal.SIGTERM, signal.SIGINT):

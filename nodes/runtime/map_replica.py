@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from typing import Final, Generic, TypeVar
 
-from semmap.nodes.runtime.shared_parts import SharedParts
+from semmap.nodes.runtime.interning import EntityInterner
 from semmap.schemas import errors
 from semmap.schemas.bridge import SnapshotQuery
 from semmap.schemas.commits import Commit, Effects, Snapshot
 from semmap.schemas.entities import Entity
 
 PAGE: Final = 5000
-"""Entities in a page of a snapshot: some megabytes, and some milliseconds of the knowledge base."""
+"""Entities in a page of a snapshot: some megabytes, and some milliseconds of the knowledge base's time."""
 _DIGESTS: Final = 1000
-"""Commits whose digests are remembered."""
+"""Number of commits whose digests are stored."""
 
 
 _MOST_AHEAD: Final = 100
-"""Commits that are kept for when those before them have come."""
+"""Largest number of commits that wait for earlier ones."""
 
 
 class SnapshotPages:
@@ -26,18 +26,18 @@ class SnapshotPages:
     def __init__(self) -> None:
         self.query = SnapshotQuery(limit=PAGE)
         self.are_complete = False
-        self._shared = SharedParts()
+        self._shared = EntityInterner()
         self._seq: int | None = None
         self._digest = ""
         self._entities: list[Entity] = []
 
     @staticmethod
     def after(page: Snapshot) -> SnapshotQuery:
-        """What asks for the page that follows `page`, which has more after it."""
+        """Return the query for the page after `page`, which must not be the last."""
         return SnapshotQuery(after=page.entities[-1].name, limit=PAGE)
 
     def take(self, page: Snapshot) -> None:
-        """The reply to `query`, which asks for the next page from then on."""
+        """Add the reply to `query`, which is then the query for the next page."""
         if self._seq is None:
             self._seq, self._digest = page.seq, page.digest
         self._entities += map(self._shared.entity, page.entities)
@@ -47,7 +47,7 @@ class SnapshotPages:
 
     @property
     def snapshot(self) -> Snapshot:
-        """All that was fetched, with the number of the first page: what came later is taken again."""
+        """The fetched entities, with the number of the first page; later commits are applied again."""
         if self._seq is None:
             raise errors.InternalError("no page of the map was fetched")
         return Snapshot(seq=self._seq, entities=tuple(self._entities), digest=self._digest)
@@ -57,109 +57,109 @@ C = TypeVar("C", Commit, Effects)
 
 
 class MapReplica(Generic[C]):
-    """The entities by name, as of commit `seq`; -1 before a first snapshot.
+    """The entities by name, as of commit `seq`; -1 before the first snapshot.
 
-    Anybody may publish what looks like a commit. So it remembers the digests of those that it took, and
-    compares: where the knowledge base says another one, all of it is in doubt, and a snapshot counts.
+    Any program may publish messages that look like commits. The replica therefore stores the digests of its
+    commits. If the knowledge base reports another digest, the replica is in doubt until the next snapshot.
     """
 
     def __init__(self) -> None:
         self.seq = -1
         self.entities: dict[str, Entity] = {}
-        self._heard = -1
-        self._lacking = -1
-        self._doubted = self._doubted_meanwhile = False
+        self._announced = -1
+        self._missing = -1
+        self._doubted = self._doubted_during_pages = False
         self._ahead: dict[int, C] = {}
-        """Commits that came before those they follow: a reply may be read while others wait to be."""
+        """Commits that arrived before earlier ones: a reply may be processed while publications wait."""
         self._during_pages: dict[int, C] | None = None
         self._digests: dict[int, str] = {}
         self._confirmed = -1
 
     @property
     def is_confirmed(self) -> bool:
-        """Is it current, and does the knowledge base say so itself: in a reply, a snapshot, a heartbeat?"""
+        """Whether it is current, and confirmed by a reply, snapshot or heartbeat of the knowledge base."""
         return self.is_current and self._confirmed == self.seq
 
     @property
     def is_current(self) -> bool:
-        """Whether it is in force and has every commit that was heard of.
+        """Whether it is valid and includes every commit that has arrived.
 
-        One may be heard of before a snapshot that was made without it.
+        A commit may arrive before a snapshot that does not include it.
         """
-        return self.seq >= 0 and self._heard <= self.seq and not self._doubted
+        return self.seq >= 0 and self._announced <= self.seq and not self._doubted
 
     @property
     def is_being_fetched(self) -> bool:
-        """Whether somebody is fetching a snapshot in pages."""
+        """Whether a snapshot is being fetched."""
         return self._during_pages is not None
 
     def begin_pages(self) -> SnapshotPages:
-        """A snapshot in pages, to `begin` with when they are complete; commits are kept in mind meanwhile.
+        """Start a paged snapshot for `begin`; commits that arrive in the meantime are stored.
 
-        Who cannot complete them says so by `give_up_pages`.
+        Call `cancel_pages` if it cannot be completed.
         """
         self._during_pages = {}
         return SnapshotPages()
 
-    def give_up_pages(self) -> None:
-        """The pages that were begun do not come."""
+    def cancel_pages(self) -> None:
+        """Cancel a paged snapshot."""
         self._during_pages = None
 
     def begin(self, snapshot: Snapshot) -> bool:
-        """Take over a snapshot, and the commits that came while its pages did.
+        """Load a snapshot, and apply the commits that arrived while it was fetched.
 
-        False, and nothing is taken, if it is older than what is known and that is not in doubt.
+        Returns False, and loads nothing, if it is older than the replica and that is not in doubt.
         """
         if snapshot.seq < self.seq and not self._doubted:
             self._during_pages = None
             return False
-        self._doubted, is_doubted_anew = False, self._doubted_meanwhile
-        self._doubted_meanwhile = False
+        self._doubted, is_doubted_again = False, self._doubted_during_pages
+        self._doubted_during_pages = False
         self.seq = self._confirmed = snapshot.seq
         self._digests = {snapshot.seq: snapshot.digest}
         self.entities = {entity.name: entity for entity in snapshot.entities}
-        self._forget_what_never_was(snapshot.seq)
+        self._forget_unmade(snapshot.seq)
         since, self._during_pages = {**self._ahead, **(self._during_pages or {})}, None
         self._ahead.clear()
         for _, commit in sorted(since.items()):
             self.take(commit)
-        if is_doubted_anew:  # one of those may be forged, and hide what the next snapshot shows
+        if is_doubted_again:  # one of these commits may be forged: fetch another snapshot
             self.doubt()
         return True
 
-    def _forget_what_never_was(self, seq: int) -> None:
-        """A commit that was heard of and that two snapshots lack was never made."""
-        if self._heard > seq and self._heard == self._lacking:
-            self._heard = seq
+    def _forget_unmade(self, seq: int) -> None:
+        """Forget an announced commit that two snapshots lack: it was never made."""
+        if self._announced > seq and self._announced == self._missing:
+            self._announced = seq
             self._ahead.clear()
-        self._lacking = self._heard
+        self._missing = self._announced
 
     def take(self, commit: C) -> bool:
-        """Take over a commit. False if a snapshot is needed.
+        """Apply a commit. Returns False if a snapshot is needed.
 
-        That is so if the commit is abridged, one before it was missed, or all of it is in doubt.
+        A snapshot is needed if the commit is abridged, an earlier one is missing, or the replica is in doubt.
         """
         if commit.seq <= self.seq:
             self._compare(commit.seq, commit.digest)
-        self._heard = max(self._heard, commit.seq)
+        self._announced = max(self._announced, commit.seq)
         if self._during_pages is not None:
-            self._keep(self._during_pages, commit)
+            self._store(self._during_pages, commit)
         following: C | None = commit
         if commit.seq > self.seq + 1 and len(self._ahead) < _MOST_AHEAD:
-            self._keep(self._ahead, commit)
+            self._store(self._ahead, commit)
         while following is not None and following.seq == self.seq + 1 and following.abridged is None:
             self._apply(following)
             following = self._ahead.pop(self.seq + 1, None)
         return commit.seq <= self.seq and not self._doubted
 
-    def _keep(self, waiting: dict[int, C], commit: C) -> None:
-        """Let it wait; all is in doubt if another one of its number does."""
+    def _store(self, waiting: dict[int, C], commit: C) -> None:
+        """Store a commit that has to wait; a different one with the same number puts the replica in doubt."""
         other = waiting.setdefault(commit.seq, commit)
         if commit.digest and other.digest != commit.digest:
             self.doubt()
 
     def _apply(self, commit: C) -> None:
-        """Let the entities be as the next commit leaves them."""
+        """Apply the next commit to the entities."""
         self.seq = commit.seq
         self._digests[commit.seq] = commit.digest
         self._digests.pop(commit.seq - _DIGESTS, None)
@@ -169,23 +169,24 @@ class MapReplica(Generic[C]):
             self.entities[entity.name] = entity
 
     def confirm(self, seq: int, digest: str) -> None:
-        """The knowledge base itself says that this is commit `seq`, and with it all that came before."""
+        """Note that the knowledge base has confirmed commit `seq` and all earlier ones."""
         if self._compare(seq, digest):
             self._confirmed = max(self._confirmed, seq)
 
     def _compare(self, seq: int, digest: str) -> bool:
-        """Is it known that this is commit `seq`? All is in doubt if another one is known."""
+        """Return whether commit `seq` has this digest; another digest puts the replica in doubt."""
         known = self._digests.get(seq)
         if known is not None and digest and known != digest:
             self.doubt()
         return bool(known) and known == digest
 
     def doubt(self) -> None:
-        """Another knowledge base may know less, after a repair: its snapshot counts, whatever its number.
+        """Put the replica in doubt: the next snapshot is loaded, whatever its number.
 
-        So it is when commits contradict one another.
+        This is needed after a repair of the knowledge base, which may lose commits, and for contradictory
+        commits.
         """
-        self._heard = -1
+        self._announced = -1
         self._doubted = True
-        self._doubted_meanwhile = self._during_pages is not None
+        self._doubted_during_pages = self._during_pages is not None
         self._ahead.clear()

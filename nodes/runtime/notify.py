@@ -1,7 +1,7 @@
-"""Tells the supervisor of this process how it is, past the network: a datagram to the socket it was given.
+"""Reports this process's health to its supervisor, as a datagram on a unix socket.
 
-The supervisor judges a node by these alone. So neither another node that hangs, nor a cut network, nor
-anybody who publishes heartbeats under a node's name has a say in whether it is replaced.
+The supervisor judges a node only by these datagrams. Other hanging nodes, a broken network or forged
+heartbeats therefore do not affect whether it is restarted.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from semmap.schemas import codec
 from semmap.schemas.health import Health
 
 NOTIFY_VARIABLE = "SEMMAP_NOTIFY"
-"""The path of the supervisor's datagram socket; unset where nobody supervises."""
+"""The path of the supervisor's datagram socket; unset without a supervisor."""
 
 
 def notify(health: Health) -> None:
-    """Tell the supervisor, if there is one, how this node is; never waits: one that is busy misses it."""
+    """Send the health of this node to the supervisor, if there is one; never waits."""
     path = os.environ.get(NOTIFY_VARIABLE)
     if not path:
         return

@@ -7,8 +7,8 @@ from functools import cache
 
 @cache
 def version() -> str:
-    """As it is installed; empty where it is not, as in a checkout that is only on the path."""
-    from importlib.metadata import PackageNotFoundError  # takes a tenth of what a command line takes to begin
+    """Return the installed version; empty in a checkout that is not installed."""
+    from importlib.metadata import PackageNotFoundError  # slow: a tenth of the start of a command line
     from importlib.metadata import version as installed
 
     try:
@@ -18,9 +18,9 @@ def version() -> str:
 
 
 def difference(system: str) -> str:
-    """`the system runs semmap 0.3.0, this client is 0.2.0`; nothing when they are the same.
+    """Return a note if the versions of system and client differ, else "".
 
-    `system` is what its status says, where versions before 0.2.0 say nothing.
+    `system` is the version in its status; systems before 0.2.0 have none.
     """
     ours = version()
     if not ours or system == ours:

@@ -1,4 +1,4 @@
-"""The token that opens the page: chosen by the environment, or one that nobody can guess."""
+"""The token of the web page: from the environment, or generated."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
 SHORTEST: Final = 16
 
 
-def new_token(said: str = "") -> str:
-    """The token that somebody chose, or one that nobody can guess. Raises BadRequest for one too short."""
-    if not said:
+def new_token(given: str = "") -> str:
+    """Return the given token, or a random one. Raises BadRequest if it is too short."""
+    if not given:
         return secrets.token_urlsafe(24)
-    if len(said) < SHORTEST or not re.fullmatch(r"[A-Za-z0-9_.~-]*", said):
+    if len(given) < SHORTEST or not re.fullmatch(r"[A-Za-z0-9_.~-]*", given):
         raise errors.BadRequest(
             f"{WEB_TOKEN_VARIABLE} must have at least {SHORTEST} letters, digits, '-', '_', '.' or '~'"
         )
-    return said
+    return given

@@ -82,7 +82,7 @@ class Simulator:
         self._paused = config.still
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
-        self._renderer = VideoRenderer(config.cameras, bus.watched(node.session, keys.SEGMENTS))
+        self._renderer = VideoRenderer(config.cameras, bus.subscriber_check(node.session, keys.SEGMENTS))
         self._planes: dict[str, Any] = {}
         self._driving: dict[str, Future[Driven]] = {}
         """The pending replies to drive commands, by robot."""

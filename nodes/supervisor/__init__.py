@@ -1,5 +1,5 @@
 """Starts, watches and stops the processes: `semmap up`, `semmap down`, `semmap node`.
 
-`settings.py` is what one may set, `launch.py` runs one node in this process, `control.py` is supervisord,
-`up.py` is the foreground.
+`settings.py` defines the settings, `launch.py` runs one node in this process, `control.py` controls
+supervisord, and `up.py` is the foreground process.
 """

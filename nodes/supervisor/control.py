@@ -1,4 +1,4 @@
-"""supervisord: its configuration, and control over its unix socket."""
+"""The configuration of supervisord, and its control over a unix socket."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ GROUP = "semmap"
 _SOCKET = f"semmap-{os.getuid()}-{{}}{{}}"
 _STOP_WAIT_S = 3
 _ANSWER_S = 3.0
-"""Seconds: supervisord answers within milliseconds, or it hangs."""
+"""Seconds: supervisord replies within milliseconds, unless it hangs."""
 _NO_ANSWER = (OSError, HTTPException, xmlrpc.client.ProtocolError, xmlrpc.client.ResponseError)
-"""A fault is an answer: that of a supervisord that is waiting for its nodes to stop."""
+"""An XML-RPC fault is a reply: supervisord is waiting for its nodes to stop."""
 _STOP_WAITS_S = {"kb_node": 30}
-"""Longer for those who may be writing: a checkpoint of a million entities takes some time."""
+"""Longer for nodes that may be writing: a checkpoint of a million entities takes some time."""
 LONGEST_STOP_S = max(_STOP_WAITS_S.values()) + _STOP_WAIT_S
-"""Until supervisord itself has ended."""
+"""Longest time until supervisord has ended."""
 SILENT_S = 10.0
-"""For no longer is nothing said of what takes long."""
-_WONT_MEND = "0,1,2"
-"""Exit statuses after which a restart would fail the same way: stopped, refused, bad request."""
+"""Longest time without a progress message."""
+_NO_RESTART = "0,1,2"
+"""Exit statuses after which a restart would fail again: stopped, rejected, bad request."""
 
 
 class Supervisor:
@@ -56,26 +56,26 @@ class Supervisor:
 
     @property
     def socket(self) -> Path:
-        """Its control socket."""
+        """Path of the control socket."""
         return self._temporary(".sock")
 
     @property
     def notices(self) -> Path:
-        """The socket on which its nodes tell `semmap up` how they are."""
+        """The socket on which its nodes report their health to `semmap up`."""
         return self._temporary(".notices")
 
     @property
     def lock(self) -> Path:
-        """The file that `semmap up` holds a lock of."""
+        """The file that `semmap up` locks."""
         return self.data / "up.lock"
 
     @property
     def settings(self) -> Settings:
-        """What it was started with."""
+        """The settings it was started with."""
         return codec.decode(self._settings_path.read_bytes(), Settings)
 
     def start(self, settings: Settings, *, web_token: str = "") -> subprocess.Popen[bytes]:
-        """Start it and, through it, the nodes; `web_token` opens the page, and is on no disk."""
+        """Start supervisord and the nodes; `web_token` opens the page, and is not written to disk."""
         self.logs.mkdir(parents=True, exist_ok=True)
         self._settings_path.write_bytes(codec.encode_json(settings))
         self._conf_path.write_text(self._conf(settings))
@@ -104,9 +104,9 @@ class Supervisor:
             )
 
     def seed(self, settings: Settings, waiting: Callable[[float], None] = lambda since_s: None) -> str:
-        """Make the journal; what was done, in words. Raises the reason why it could not be made.
+        """Create the journal and return in words what was done. Raises the reason if that fails.
 
-        While that takes long, `waiting` is told now and then for how long it has taken.
+        While it takes long, `waiting` is called regularly with the elapsed seconds.
         """
         try:
             make_private(self.data)
@@ -126,7 +126,7 @@ class Supervisor:
             begun_s = time.monotonic()
             while True:
                 try:
-                    made, said = run.communicate(timeout=SILENT_S)
+                    made, stderr = run.communicate(timeout=SILENT_S)
                     break
                 except subprocess.TimeoutExpired:
                     waiting(time.monotonic() - begun_s)
@@ -134,12 +134,12 @@ class Supervisor:
                     run.kill()
                     raise
         if run.returncode != 0:
-            reason = said.strip().removeprefix("seed: ") or f"seeding failed with status {run.returncode}"
+            reason = stderr.strip().removeprefix("seed: ") or f"seeding failed with status {run.returncode}"
             raise (errors.BadFile if run.returncode == 2 else errors.Refused)(reason)
         return made.strip()
 
     def is_running(self) -> bool:
-        """Does it answer?"""
+        """Return whether it replies."""
         try:
             with self._rpc() as rpc, contextlib.suppress(xmlrpc.client.Fault):
                 rpc.supervisor.getPID()
@@ -148,9 +148,9 @@ class Supervisor:
         return True
 
     def processes(self) -> dict[str, dict[str, Any]]:
-        """State of each node's process, by node; empty while all are being stopped.
+        """Return the state of each node's process, by node; empty while all are being stopped.
 
-        Raises NoAnswer when supervisord does not answer.
+        Raises NoAnswer if supervisord does not reply.
         """
         try:
             with self._rpc() as rpc:
@@ -158,17 +158,17 @@ class Supervisor:
         except xmlrpc.client.Fault:
             return {}
         except _NO_ANSWER:
-            raise errors.NoAnswer("supervisord does not answer") from None
+            raise errors.NoAnswer("no response from supervisord") from None
 
     def replace(self, pid: int) -> None:
-        """Kill a node's process and those that it has started; supervisord starts it again."""
+        """Kill a node's process and its children; supervisord restarts the node."""
         with contextlib.suppress(ProcessLookupError):
             os.killpg(pid, signal.SIGKILL)
 
     def shut_down(self) -> None:
-        """Stop the nodes and supervisord itself, and what was left behind by one that was killed.
+        """Stop the nodes and supervisord, and processes left behind by a killed one.
 
-        Raises NoAnswer when nothing of it runs.
+        Raises NoAnswer if none is running.
         """
         try:
             with self._rpc() as rpc, contextlib.suppress(xmlrpc.client.Fault):
@@ -184,25 +184,25 @@ class Supervisor:
             time.sleep(0.1)
         deadline = time.monotonic() + _STOP_WAIT_S
         while orphans.processes_with(self._conf_path) and time.monotonic() < deadline:
-            time.sleep(0.1)  # it does not answer any more, and is about to end
+            time.sleep(0.1)  # it no longer replies, and is about to end
         self.end_leftovers()
 
     def end_leftovers(self) -> int:
-        """End the processes of this data folder that run without `semmap up`; how many there were."""
+        """End the processes of this data folder that run without `semmap up`, and return their number."""
         return orphans.end_all(self._conf_path, self._settings_path)
 
-    def last_words(self, node: str) -> str:
-        """The last line that a node wrote to its log."""
+    def last_log_line(self, node: str) -> str:
+        """Return the last line of a node's log."""
         path = self.log_of(node)
         lines = path.read_text(errors="replace").strip().splitlines() if path.exists() else []
         return lines[-1].removeprefix(f"{node}: ") if lines else "(its log is empty)"
 
     def log_of(self, node: str) -> Path:
-        """The file that a node writes to."""
+        """Return the log file of a node."""
         return self.logs / f"{node}.log"
 
     def _temporary(self, suffix: str) -> Path:
-        """A socket in the temporary folder, because paths of sockets must be short."""
+        """Return the path of a socket in the temporary folder, because socket paths must be short."""
         digest = hashlib.sha256(str(self.data.resolve()).encode()).hexdigest()[:12]
         return Path(tempfile.gettempdir()) / _SOCKET.format(digest, suffix)
 
@@ -238,7 +238,7 @@ class Supervisor:
                 "startsecs": "0",
                 "startretries": "10",
                 "autorestart": "unexpected",
-                "exitcodes": _WONT_MEND,
+                "exitcodes": _NO_RESTART,
                 "stopwaitsecs": str(_STOP_WAITS_S.get(node, _STOP_WAIT_S)),
                 "stopasgroup": "true",
                 "killasgroup": "true",
@@ -253,7 +253,7 @@ class Supervisor:
 
 
 class _Transport(SupervisorTransport):  # type: ignore[misc]
-    """Over the unix socket, without waiting longer than a supervisord takes that is well."""
+    """XML-RPC over the unix socket, with a short time-out."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(serverurl=f"unix://{path}")

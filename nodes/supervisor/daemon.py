@@ -1,4 +1,4 @@
-"""supervisord that ends when `semmap up` does: `python -m semmap.nodes.supervisor.daemon -n -c CONF`."""
+"""Runs supervisord until `semmap up` ends: `python -m semmap.nodes.supervisor.daemon -n -c CONF`."""
 
 from __future__ import annotations
 

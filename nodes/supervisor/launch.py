@@ -1,6 +1,6 @@
 """Runs one node in this process: `python -m semmap.nodes.supervisor.launch NODE SETTINGS`.
 
-`seed` in place of a node makes the journal and ends.
+With `seed` instead of a node, it creates the journal and exits.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
     from semmap.nodes.sim_node.config import RobotConfig
 
 _RECORDED = "SEMMAP_RECORDED"
-"""Handed from a recorder to itself: the last commit that is in its file."""
+"""Passed by a recorder to its successor: the last commit in its file."""
 
 
 def run_node(name: str, settings: Settings) -> None:
-    """Run a node until it is stopped. Raises what keeps it from starting."""
+    """Run a node until it is stopped. Raises the error that prevents its start."""
     if name not in _LAUNCHERS:
-        raise errors.BadRequest(f"there is no node '{name}'; there are: {', '.join(sorted(_LAUNCHERS))}")
+        raise errors.BadRequest(f"unknown node '{name}'; available: {', '.join(sorted(_LAUNCHERS))}")
     _LAUNCHERS[name](settings)
 
 
 def seed(settings: Settings) -> None:
-    """Create the journal, or report on stdout that it exists; validates the world and reads models first.
+    """Create the journal, or print that it exists; first validate the world and read the models.
 
     Without the knowledge base there is no journal, and nothing is printed.
     """
@@ -63,10 +63,10 @@ def seed(settings: Settings) -> None:
     if "kb_node" not in settings.nodes:
         return
     if (replay := settings.replay) is not None:
-        print(f"a replay of {replay.of}, from commit {replay.since} to {replay.until}; it cannot be changed")
+        print(f"replay of {replay.of}, from commit {replay.since} to {replay.until}; read-only")
         return
-    if not settings.fresh and (told := existing_map(Path(settings.data))) is not None:
-        print(told)
+    if not settings.fresh and (summary := existing_map(Path(settings.data))) is not None:
+        print(summary)
         return
     from semmap.nodes.coordinator.files.content import kind_of
     from semmap.nodes.kb_node.storage.seed import seed as seed_journal
@@ -76,7 +76,7 @@ def seed(settings: Settings) -> None:
         load = f"semmap load {shlex.quote(str(abox))}"
         raise errors.BadFile(f"{abox.name} is not an ABox; start with --abox none, then: {load}")
     imports = {iri: Path(file) for iri, file in settings.imports.items()}
-    told = seed_journal(
+    summary = seed_journal(
         Path(settings.data),
         settings.tboxes,
         abox,
@@ -84,11 +84,11 @@ def seed(settings: Settings) -> None:
         spatial_root=settings.spatial_root,
         fresh=settings.fresh,
     )
-    print(told)
+    print(summary)
 
 
 def _own_shapes(settings: Settings) -> Path:
-    """Where the shapes of the models in `--models` are, for the nodes that do not read such files."""
+    """Return the file with the shapes of the models in `--models`, for nodes that cannot read model files."""
     return Path(settings.data) / "model_shapes.json"
 
 
@@ -121,7 +121,7 @@ def _coordinator(settings: Settings) -> None:
 
 
 def _robot(settings: Settings) -> RobotConfig | None:
-    """The robot of the world, if there is one."""
+    """Return the configuration of the robot, if there is one."""
     from semmap.nodes.sim_node.config import RobotConfig
 
     if settings.robot is None:
@@ -140,7 +140,7 @@ def _sim_node(settings: Settings) -> None:
     )
     models = Path(settings.models) if settings.models is not None else None
     network = settings.network("sim_node")
-    patience_s = FOREVER_S if settings.only else RESTART_S  # another host may not be up yet
+    patience_s = FOREVER_S if settings.only else RESTART_S  # another host may start later
     data = Path(settings.data)
     still = settings.replay is not None
     world, robot = Path(settings.world), _robot(settings)
@@ -172,7 +172,7 @@ def _recorder(settings: Settings) -> None:
         keep=KEEP_ALL if settings.record_keep is None else Retention.read(settings.record_keep),
         after=None if after is None else int(after),
     )
-    if (recorded := run(config)) is not None:  # begin another file, in the same process
+    if (recorded := run(config)) is not None:  # continue in another file, in the same process
         os.environ[_RECORDED] = str(recorded)
         os.execv(sys.executable, sys.orig_argv)
 
@@ -185,7 +185,7 @@ def _web(settings: Settings) -> None:
 
 
 def _log_address(address: str) -> None:
-    """The address without its token: logs are read by more people than a terminal is."""
+    """Print the address without its token: logs are read by more people than a terminal."""
     print(f"web: serving {address.partition('?')[0]}", flush=True)
 
 
@@ -209,7 +209,7 @@ _LAUNCHERS: dict[str, Callable[[Settings], None]] = {
 
 
 def main(argv: list[str]) -> int:
-    """Exit status: 0 after a stop, 1 or 2 for an error that a restart would not mend."""
+    """Run the node or `seed`. Returns 0 after a stop, 1 or 2 for an error that a restart would not fix."""
     name, settings_path = argv
     end_when_orphaned()
     os.umask(UMASK)

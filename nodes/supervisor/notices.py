@@ -1,4 +1,4 @@
-"""What the nodes tell `semmap up` of themselves, as datagrams on a unix socket of this user's."""
+"""Health reports of the nodes to `semmap up`, as datagrams on a unix socket of this user."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Notices:
     """The receiving end. Owned by the thread that reads it."""
 
     def __init__(self, path: Path) -> None:
-        """Listen at `path`, which is replaced. Raises Refused when that cannot be done."""
+        """Listen at `path`, which is replaced. Raises Refused if that fails."""
         self.path = path
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         try:
@@ -27,11 +27,11 @@ class Notices:
             path.chmod(0o600)
         except OSError as error:
             self._socket.close()
-            raise errors.Refused(f"cannot listen to the nodes at {path}: {error.strerror}") from None
+            raise errors.Refused(f"cannot open the socket {path}: {error.strerror}") from None
         self._socket.setblocking(False)
 
     def wait(self, timeout_s: float) -> Iterator[Health]:
-        """What has come, after waiting up to `timeout_s` for a first one. What is no heartbeat is dropped."""
+        """Yield the received reports after waiting up to `timeout_s`; invalid datagrams are dropped."""
         select.select([self._socket], [], [], timeout_s)
         while True:
             try:

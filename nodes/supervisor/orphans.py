@@ -1,8 +1,8 @@
-"""Nothing is left serving when whoever supervises it is gone.
+"""Ends processes whose supervisor is gone.
 
-A process of a system ends itself when its parent ends: supervisord when `semmap up` is killed, a node when
-supervisord is. What cannot (it is stopped, or hangs) is found by its command line, and killed, by the next
-`semmap up` or `semmap down` of the same data folder.
+A process of a system exits when its parent does: supervisord with `semmap up`, a node with supervisord. A
+process that cannot (it is stopped or hangs) is found by its command line and killed by the next `semmap up`
+or `semmap down` of the same data folder.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ import psutil  # type: ignore[import-untyped]
 
 _LOOK_S = 0.25
 _STOP_S = 5.0
-"""Seconds for what was left behind to stop; then it is killed, which loses nothing that was acknowledged."""
+"""Seconds for a leftover process to stop before it is killed; acknowledged changes are not lost."""
 _STOP_ALONE_S = 40.0
 """Seconds for an orphan to stop by itself: it may be writing a checkpoint."""
 
 
 def end_when_orphaned() -> None:
-    """From now on, stop this process (SIGTERM to itself) when its parent is gone."""
+    """Stop this process (SIGTERM to itself) when its parent ends."""
     parent = os.getppid()
 
     def watch() -> None:
@@ -38,7 +38,7 @@ def end_when_orphaned() -> None:
 
 
 def processes_with(path: Path) -> list[psutil.Process]:
-    """This user's processes of a system whose command line names the file `path`, other than this one."""
+    """Return this user's other semmap processes whose command line contains the file `path`."""
     found = []
     for process in psutil.process_iter():
         with contextlib.suppress(psutil.Error):
@@ -50,9 +50,9 @@ def processes_with(path: Path) -> list[psutil.Process]:
 
 
 def end_all(*paths: Path) -> int:
-    """End the processes whose command line names one of these files, and their children; how many there were.
+    """End the processes whose command line contains one of these files, with their children.
 
-    They are given time to stop, then killed.
+    They are terminated, then killed after a time-out. Returns their number.
     """
     found = [process for path in paths for process in processes_with(path)]
     family = {*found}

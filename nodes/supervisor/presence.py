@@ -1,8 +1,8 @@
-"""Announces to programs on this machine that a system runs at an endpoint, even while nothing listens there.
+"""Announces on this machine that a system runs at an endpoint, even before it listens.
 
-`semmap up` holds a lock from before it seeds until everything has stopped. A connection that is refused
-meanwhile is worth trying again: the coordinator is about to listen, at first or after a restart. Where
-nobody holds the lock, the refusal is the answer. The kernel releases it however the process ends.
+`semmap up` holds a lock from before seeding until all processes have stopped. While the lock is held, a
+client retries a refused connection, because the coordinator is starting or restarting. The kernel releases
+the lock however the process ends.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ _LOOPBACK = re.compile(r"(?:tcp|tls)/(?:127\.\d+\.\d+\.\d+|localhost|\[::1\]):(\
 
 @contextlib.contextmanager
 def announced(endpoint: str) -> Iterator[None]:
-    """While this is open, `is_announced` holds of `endpoint`, if that is a port of loopback."""
+    """Announce `endpoint`, if it is a loopback port, while the context is open."""
     if (lock := _lock_of(endpoint)) is None:
         yield
         return
     try:
         held = os.open(lock, _READ | os.O_CREAT, 0o644)
-    except PermissionError:  # another user's, left behind
+    except PermissionError:  # left behind by another user
         held = os.open(lock, _READ)
     try:
         fcntl.flock(held, fcntl.LOCK_SH)
         yield
     finally:
-        with contextlib.suppress(OSError):  # others hold it too, or it is another user's
+        with contextlib.suppress(OSError):  # another process holds it, or another user owns it
             fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
             lock.unlink()
         os.close(held)
 
 
 def is_announced(endpoint: str) -> bool:
-    """Is a system run at `endpoint`, as far as this machine knows?"""
+    """Return whether a system is announced at `endpoint` on this machine."""
     if (lock := _lock_of(endpoint)) is None:
         return False
     try:
@@ -56,12 +56,12 @@ def is_announced(endpoint: str) -> bool:
 
 
 def is_loopback(endpoint: str) -> bool:
-    """Is it a port of loopback? Then a system that is run there is announced."""
+    """Return whether it is a loopback port, which is announced."""
     return _LOOPBACK.fullmatch(endpoint) is not None
 
 
 def is_listening(endpoint: str) -> bool:
-    """Does anybody listen at this port of loopback just now?"""
+    """Return whether a process listens at this loopback port."""
     if (match := _LOOPBACK.fullmatch(endpoint)) is None:
         return False
     import socket
@@ -73,7 +73,7 @@ def is_listening(endpoint: str) -> bool:
 
 
 def _lock_of(endpoint: str) -> Path | None:
-    """The file of the lock: one for a port, whoever uses it."""
+    """Return the lock file of a loopback port, shared by all users."""
     import tempfile
 
     match = _LOOPBACK.fullmatch(endpoint)

@@ -1,4 +1,4 @@
-"""A system's files are its user's own: folders 0700, files 0600."""
+"""Restricts the files of a system to its user: folders 0700, files 0600."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import Final
 
 UMASK: Final = 0o077
-"""For the processes that write them."""
+"""The umask of the processes that write them."""
 _FILES: Final = ("journal.sqlite*", "*.closure", "settings.json", "supervisord.*")
 _FOLDERS: Final = ("logs", "recordings", "kept", "sparql")
 
 
 def make_private(data: Path) -> None:
-    """Make the data folder, if need be, and take away others' access to it and to semmap's files in it.
+    """Create the data folder if needed, and remove other users' access to it and semmap's files.
 
-    Raises OSError when it cannot be made. What belongs to another user is left as it is.
+    Raises OSError if it cannot be created. Files of other users are not changed.
     """
     data.mkdir(mode=0o700, parents=True, exist_ok=True)
     for path in (data, *_own(data)):
@@ -27,7 +27,7 @@ def make_private(data: Path) -> None:
 
 
 def _own(data: Path) -> Iterator[Path]:
-    """What semmap has written there: the folder may have other things in it."""
+    """Yield the files of semmap: the folder may contain others."""
     for pattern in _FILES:
         yield from data.glob(pattern)
     for name in _FOLDERS:

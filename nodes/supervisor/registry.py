@@ -1,7 +1,7 @@
-"""The systems that run on this machine for this user: a file that `semmap up` enters them in.
+"""The registry of systems that run on this machine for this user, a file written by `semmap up`.
 
-It is replaced as a whole, under a lock, so whoever reads it sees all of one state. An entry counts as long as
-its supervisord runs: a process with its number that started at the same time.
+The file is replaced atomically under a lock. An entry is valid while its supervisord runs: a process with the
+same id and start time.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ _LOCK = "systems.lock"
 
 
 class System(msgspec.Struct, frozen=True, kw_only=True):
-    """A running system: its folder, the endpoints it listens on and is reached at, and its supervisord."""
+    """A running system: its folder, its endpoints, and its supervisord."""
 
     data: str
     listen: str
     reachable: str
     pid: int
     namespace: str = ""
-    """Its robot's name, if it has one."""
+    """The name of its robot, if it has one."""
     started: str
-    """When the process started, as the system tells it: another process may get the same number later."""
+    """Start time of the process as reported by the system: process ids are reused."""
 
 
 class _Registry(msgspec.Struct, frozen=True):
@@ -40,7 +40,7 @@ class _Registry(msgspec.Struct, frozen=True):
 
 @contextlib.contextmanager
 def entered(*, data: Path, listen: str, reachable: str, pid: int, namespace: str = "") -> Iterator[None]:
-    """While this is open the system is in the registry. Raises Refused when that cannot be written."""
+    """Register the system while the context is open. Raises Refused if that fails."""
     system = System(
         data=str(data.resolve()),
         listen=listen,
@@ -58,7 +58,7 @@ def entered(*, data: Path, listen: str, reachable: str, pid: int, namespace: str
 
 
 def systems() -> tuple[System, ...]:
-    """Those that run, in the order in which they were started."""
+    """Return the running systems in the order of their start."""
     return tuple(system for system in _read() if _runs(system))
 
 
@@ -69,7 +69,7 @@ def _folder() -> Path:
 
 
 def _read() -> tuple[System, ...]:
-    """What the file says, if there is one that this user wrote and that can be understood."""
+    """Return the content of the file, if this user wrote it and it is valid."""
     path = _folder() / _FILE
     try:
         if path.stat().st_uid != os.getuid():
@@ -84,7 +84,7 @@ def _change(change: Callable[[tuple[System, ...]], tuple[System, ...]]) -> None:
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
         if folder.stat().st_uid != os.getuid():
-            raise Refused(f"{folder} belongs to another user; remove it, or set TMPDIR")
+            raise Refused(f"{folder} belongs to another user; remove it or set TMPDIR")
         with (folder / _LOCK).open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             content = msgspec.json.encode(_Registry(change(systems())))
@@ -92,7 +92,7 @@ def _change(change: Callable[[tuple[System, ...]], tuple[System, ...]]) -> None:
             new.write_bytes(content)
             new.replace(folder / _FILE)
     except OSError as error:
-        raise Refused(f"the running systems cannot be listed in {folder}: {error.strerror}") from None
+        raise Refused(f"cannot write the list of running systems in {folder}: {error.strerror}") from None
 
 
 def _runs(system: System) -> bool:
@@ -100,7 +100,7 @@ def _runs(system: System) -> bool:
 
 
 def _started(pid: int) -> str | None:
-    """When a process started; None when there is none of that number, or it has ended already."""
+    """Return the start time of a process; None if there is none with this id or it has ended."""
     try:
         state, *fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
         return fields[18] if state not in "ZX" else None
@@ -109,7 +109,7 @@ def _started(pid: int) -> str | None:
             return None
     except OSError:
         return None
-    import subprocess  # takes a while, and is needed where there is no /proc only
+    import subprocess  # slow to import, and needed only without /proc
 
-    told = subprocess.run(["ps", "-o", "lstart=", "-p", str(pid)], capture_output=True, text=True)
-    return told.stdout.strip() or None
+    output = subprocess.run(["ps", "-o", "lstart=", "-p", str(pid)], capture_output=True, text=True)
+    return output.stdout.strip() or None

@@ -1,4 +1,4 @@
-"""`semmap up`: seeds the map, starts the nodes, reports when they are ready, watches and stops them."""
+"""`semmap up`: seeds the map, starts the nodes, reports when they are ready, monitors and stops them."""
 
 from __future__ import annotations
 
@@ -37,35 +37,35 @@ from semmap.schemas.health import Health
 
 _START_TIMEOUT_S = 120.0
 _ANSWERS_WITHIN_S = 5.0
-"""A supervisord that does not answer for so long hangs."""
+"""A supervisord that does not reply for this time hangs."""
 _LIVE_PORT = 9876
 _COLUMN = max(map(len, keys.NODES))
 _LOOK_S = 0.2
-_INTRODUCED_S = 3.0
-"""Seconds: hearts beat once a second."""
+_COMPLETE_WITHIN_S = 3.0
+"""Seconds; a heartbeat is published once a second."""
 _WAITS_S = 3.0
-"""Seconds: whoever waits for longer may do so for something on another host."""
+"""Seconds; a node that waits longer may wait for another host."""
 _RUNS = ("STARTING", "RUNNING")
 
 
 def up(settings: Settings, say: Callable[[str], None]) -> None:
-    """Run the system in the foreground until SIGINT or SIGTERM, or until it is told to go `down`.
+    """Run the system in the foreground until SIGINT, SIGTERM or `semmap down`.
 
-    Raises the reason when a node cannot start, and InternalError when supervisord ends by itself. Nothing is
-    left running then. What an `up` that was killed has left behind is ended first.
+    Raises the reason if a node cannot start, and InternalError if supervisord ends by itself. All processes
+    are stopped at the end. Processes left behind by a killed `up` are ended first.
     """
     supervisor = Supervisor(Path(settings.data))
     with alone(supervisor.data):
         if supervisor.end_leftovers():
-            say(f"{'before':<{_COLUMN}} ended what an earlier semmap up had left running")
+            say(f"{'cleanup':<{_COLUMN}} ended processes left running by an earlier semmap up")
         _require_free(settings.listen)
-        if settings.record and settings.secure is None:  # anybody on this machine may look at a live view
+        if settings.record and settings.secure is None:  # all users of this machine can open a live view
             settings = structs.replace(settings, live_view=_live_view())
         token = new_token(os.environ.get(WEB_TOKEN_VARIABLE, "")) if settings.web else ""
         if settings.web:
             settings = structs.replace(settings, web_port=_web_port(settings.web_port))
         with presence.announced(settings.reachable):
-            if seeded := supervisor.seed(settings, lambda since_s: say(_being_made(settings, since_s))):
+            if seeded := supervisor.seed(settings, lambda since_s: say(_describe_seeding(settings, since_s))):
                 say(f"{'map':<{_COLUMN}} {seeded}")
             notices = Notices(supervisor.notices)
             process = supervisor.start(settings, web_token=token)
@@ -89,7 +89,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
 def alone(data: Path) -> Iterator[None]:
     """Hold the lock of the data folder, which the kernel releases however this process ends.
 
-    Raises Refused when another `semmap up` has it, BadFile when there can be none.
+    Raises Refused if another `semmap up` has it, BadFile if it cannot be created.
     """
     supervisor = Supervisor(data)
     try:
@@ -110,7 +110,7 @@ def alone(data: Path) -> Iterator[None]:
 
 
 class _Foreground:
-    """Watches the processes and their heartbeats."""
+    """Monitors the processes and their heartbeats."""
 
     def __init__(
         self,
@@ -134,44 +134,44 @@ class _Foreground:
         self._deadline_s = time.monotonic() + _START_TIMEOUT_S
         self._waits_from_s = time.monotonic() + _WAITS_S
         self._waits: set[tuple[str, str]] = set()
-        """What was said of a node that waits."""
+        """The messages already printed about nodes that wait."""
         self._is_replayed = False
-        self._begun_s = self._told_s = time.monotonic()
+        self._begun_s = self._reported_s = time.monotonic()
 
     def run(self) -> None:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, self._on_signal)
         greeted = False
         while not self._stopping and self._process.poll() is None:
-            self._look()
+            self._check_processes()
             for health in self._notices.wait(_LOOK_S):
-                self._hear(health)
+                self._on_health(health)
             if not greeted and set(self._pids) == set(self._settings.nodes):
                 greeted = True
-                self._introduce()
-                self._greet()
+                self._wait_until_complete()
+                self._print_summary()
             if not greeted and time.monotonic() > self._deadline_s:
                 late = sorted(set(self._settings.nodes) - set(self._pids))
                 raise errors.NoAnswer(f"not ready after {_START_TIMEOUT_S:g} s: {', '.join(late)}")
-            self._replace_what_hangs()
+            self._restart_hanging()
         if not self._stopping and self._process.returncode != 0:
             raise errors.InternalError(
                 f"supervisord {_ending(self._process.returncode)}, and the nodes were stopped with it;"
-                " start again with: semmap up"
+                " restart with: semmap up"
             )
 
     def _on_signal(self, *_: object) -> None:
         self._stopping = True
 
-    def _hear(self, health: Health) -> None:
+    def _on_health(self, health: Health) -> None:
         if not self._watchdog.heard(health.node, health.pid):
             return
-        if health.state == "starting":  # a large map takes its time, and tells so
+        if health.state == "starting":  # a large map takes time to load, with heartbeats
             self._deadline_s = time.monotonic() + _START_TIMEOUT_S
-            self._tell_of_waiting(health)
-            self._tell_what_takes_long(health)
+            self._report_waiting(health)
+            self._report_progress(health)
         if health.node == "kb_node" and self._settings.replay is not None:
-            self._tell_of_replay(self._settings.replay, health)
+            self._report_replay(self._settings.replay, health)
         if health.state == "ready" and self._pids.get(health.node) != health.pid:
             again = " again" if health.node in self._pids else ""
             self._pids[health.node] = health.pid
@@ -179,14 +179,14 @@ class _Foreground:
             for note in health.notes:
                 self._say(f"{'TBox':<{_COLUMN}} {note}")
 
-    def _tell_of_replay(self, replay: Replay, health: Health) -> None:
-        """Say once that all of it has been replayed."""
+    def _report_replay(self, replay: Replay, health: Health) -> None:
+        """Print once that the replay is complete."""
         if health.commit == replay.until and not self._is_replayed:
             self._is_replayed = True
-            self._say(f"{'map':<{_COLUMN}} is as it was after commit {replay.until}, and stays so")
+            self._say(f"{'map':<{_COLUMN}} replay complete at commit {replay.until}")
 
-    def _tell_of_waiting(self, health: Health) -> None:
-        """In a part of a system, say once for what a node waits: it may be on a host that is not up yet."""
+    def _report_waiting(self, health: Health) -> None:
+        """In a part of a system, print once what a node waits for: it may be on a host that starts later."""
         said = health.node, health.detail
         is_long = time.monotonic() > self._waits_from_s
         if (
@@ -198,18 +198,18 @@ class _Foreground:
             self._waits.add(said)
             self._say(f"{health.node:<{_COLUMN}} {health.detail}")
 
-    def _tell_what_takes_long(self, health: Health) -> None:
-        """Say now and then what a node does that is not ready yet."""
+    def _report_progress(self, health: Health) -> None:
+        """Print regularly what a node does that is not ready yet."""
         now_s = time.monotonic()
-        if health.detail and now_s - self._told_s > SILENT_S:
-            self._told_s = now_s
+        if health.detail and now_s - self._reported_s > SILENT_S:
+            self._reported_s = now_s
             self._say(f"{health.node:<{_COLUMN}} {health.detail} ({now_s - self._begun_s:.0f} s)")
 
-    def _look(self) -> None:
-        """See which processes there are.
+    def _check_processes(self) -> None:
+        """Check the processes.
 
-        A node that ended with an error which no restart mends ends the start, with its last words; so does a
-        supervisord that hangs.
+        Raises if a node has ended with an error that a restart would not fix, with its last log line, and if
+        supervisord hangs.
         """
         try:
             processes = self._supervisor.processes()
@@ -217,8 +217,7 @@ class _Foreground:
         except errors.NoAnswer:
             if time.monotonic() - self._answered_s > _ANSWERS_WITHIN_S:
                 raise errors.InternalError(
-                    "supervisord does not answer any more, and was ended with the nodes; start again with:"
-                    " semmap up"
+                    "supervisord: no response; it was ended with the nodes; restart with: semmap up"
                 ) from None
             return
         self._watchdog.run_as(
@@ -228,11 +227,11 @@ class _Foreground:
             self._require_alive(node, info)
 
     def _require_alive(self, node: str, info: dict[str, Any]) -> None:
-        # Killed by a signal it is "exited", too, for the moment until it is restarted.
+        # A process killed by a signal is also "exited" until it is restarted.
         gave_up = info["statename"] == "EXITED" and int(info["exitstatus"]) >= 0
         ended = gave_up or info["statename"] == "FATAL"
         if ended and not self._stopping and self._process.poll() is None:
-            words = self._supervisor.last_words(node)
+            words = self._supervisor.last_log_line(node)
             raise errors.Refused(f"{node} exited: {words} (log: {self._supervisor.log_of(node)})")
 
     def _network(self) -> bus.Network:
@@ -245,27 +244,27 @@ class _Foreground:
             own_config=self._settings.zenoh_config,
         )
 
-    def _replace_what_hangs(self) -> None:
+    def _restart_hanging(self) -> None:
         for hang in self._watchdog.hanging():
             self._say(f"{hang.node:<{_COLUMN}} {hang.reason}: restarting it")
             self._supervisor.replace(hang.pid)
 
-    def _introduce(self) -> None:
-        """Let the coordinator know every node, and bodies stand, before anybody is told that all is ready.
+    def _wait_until_complete(self) -> None:
+        """Wait until the coordinator knows every node and the bodies are placed, before reporting ready.
 
-        Not for long: where there are many bodies, or one cannot be as the map says, it is ready before.
+        The wait is short: with many bodies, or a body that cannot be placed, the system is ready earlier.
         """
         with (
             contextlib.suppress(errors.SemmapError, OSError),
             bus.open_session(self._network()) as session,
         ):
-            deadline_s = time.monotonic() + _INTRODUCED_S
+            deadline_s = time.monotonic() + _COMPLETE_WITHIN_S
             waits_for: tuple[str, ...] = ()
             while time.monotonic() < deadline_s:
                 status = bus.ask(session, keys.CMD, Status.VERB, Status(), reply_type(Status))
                 known = {node.pid for node in status.nodes if node.state == "ready"}
                 keeps = status.truth != "perceived" and "sim_node" in self._pids
-                waits_for = status.pending if keeps else ()  # bodies that move hold nothing up
+                waits_for = status.pending if keeps else ()  # moving bodies are not waited for
                 stands = not keeps or (status.in_agreement is not None and not waits_for)
                 if stands and known >= {pid for node, pid in self._pids.items() if node != keys.WEB}:
                     break
@@ -273,21 +272,21 @@ class _Foreground:
             else:
                 for waited in waits_for:
                     self._say(f"{'scene':<{_COLUMN}} not complete yet: {waited}")
-            self._tell_of_truth(status.truth)
-            self._tell_of_models(session)
-            self._tell_of_robot(session)
+            self._report_truth(status.truth)
+            self._report_models(session)
+            self._report_robot_position(session)
 
-    def _tell_of_truth(self, truth: str) -> None:
-        """Say where perception looks at what the map itself has placed, as the coordinator elsewhere says."""
+    def _report_truth(self, truth: str) -> None:
+        """Warn if perception uses the simulator's cameras while the map defines the scene."""
         sees_the_simulator = {"sim_node", "perception_node"} <= {*self._settings.only}
         if sees_the_simulator and self._settings.camera_hz and truth != "perceived":
             self._say(
-                f"{'perception':<{_COLUMN}} with --truth {truth}, as the coordinator runs, the simulator's"
-                " cameras only show what the map already says; start it with --truth perceived"
+                f"{'perception':<{_COLUMN}} the coordinator runs with --truth {truth}, so the simulator's"
+                " cameras only show the content of the map; start it with --truth perceived"
             )
 
-    def _tell_of_robot(self, session: bus.Session) -> None:
-        """Say where a robot stands that is not new to the map, where another place was said for a new one."""
+    def _report_robot_position(self, session: bus.Session) -> None:
+        """Report the position of a robot that the map already has at another place than `--robot-at`."""
         name, at = self._settings.robot_name, self._settings.robot_at
         if self._settings.robot is None or at is None or not self._settings.sim:
             return
@@ -297,12 +296,12 @@ class _Foreground:
                 stands = ", ".join(f"{value:g}" for value in robot.pose.position_m)
                 there = " ".join(f"{value:g}" for value in at)
                 self._say(
-                    f"{name:<{_COLUMN}} stands where it last stood, at ({stands}), not at --robot-at;"
-                    f" to put it there: semmap move {name} --at {there}"
+                    f"{name:<{_COLUMN}} is at its last committed position ({stands}), not at --robot-at;"
+                    f" to move it: semmap move {name} --at {there}"
                 )
 
-    def _tell_of_models(self, session: bus.Session) -> None:
-        """Say which of the files in `--models` are nobody's model, and what models could not bring along."""
+    def _report_models(self, session: bus.Session) -> None:
+        """Report files in `--models` that no class uses, and features of models that are not supported."""
         if self._settings.models is None or not self._settings.sim:
             return
         from semmap.nodes.sim_node.models.sources import ignored_files  # and with it MuJoCo
@@ -321,7 +320,7 @@ class _Foreground:
             for note in own_notes(folder, names):
                 self._say(f"{'models':<{_COLUMN}} {note}")
 
-    def _greet(self) -> None:
+    def _print_summary(self) -> None:
         usual = self._settings.reachable == bus.DEFAULT_ENDPOINT
         connect = "" if usual else f" --connect {self._settings.reachable}"
         if self._settings.secure is not None:
@@ -341,17 +340,17 @@ class _Foreground:
             self._say(f"{what:<{_COLUMN}} {value}")
 
 
-def _being_made(settings: Settings, since_s: float) -> str:
-    """What is done before any node runs, and for how long it has been."""
+def _describe_seeding(settings: Settings, since_s: float) -> str:
+    """Return the progress message before any node runs."""
     world = Path(settings.world)
-    doing = "reading the map"
+    doing = "loading the map"
     if settings.sim and world not in (FLAT_WORLD, EMPTY_WORLD):
-        doing = f"compiling the world {world.name}, and reading the map"
+        doing = f"compiling the world {world.name} and loading the map"
     return f"{'map':<{_COLUMN}} {doing} ({since_s:.0f} s)"
 
 
 def _require_free(endpoint: str) -> None:
-    """Refuse an endpoint that another system of this machine listens on, rather than take it for ours."""
+    """Raise Refused for an endpoint on which another program of this machine listens."""
     match = re.fullmatch(r"(?:tcp|tls)/(.+):(\d+)", endpoint)
     if match is None:
         return
@@ -362,32 +361,32 @@ def _require_free(endpoint: str) -> None:
             probe.bind((host, port))
         except OSError as error:
             raise errors.Refused(
-                f"cannot listen on {endpoint}: {error.strerror}; choose another, such as"
+                f"cannot listen on {endpoint}: {error.strerror}; use another endpoint, for example"
                 f" --listen tcp/{match[1]}:{port + 1}"
             ) from None
 
 
 def _web_port(port: int) -> int:
-    """The port of the page: this one, if it is free, or for 0 any that is. Raises Refused."""
+    """Return the port of the page: `port` if it is free, or for 0 any free one. Raises Refused."""
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             probe.bind(("127.0.0.1", port))
         except OSError as error:
             raise errors.Refused(
-                f"the page cannot listen on 127.0.0.1:{port}: {error.strerror}; choose another with"
-                " --web-port, or --web-port 0 for any that is free"
+                f"the page cannot listen on 127.0.0.1:{port}: {error.strerror}; use another port with"
+                " --web-port, or --web-port 0 for any free one"
             ) from None
         return int(probe.getsockname()[1])
 
 
 def _ending(status: int) -> str:
-    """How a process ended, as a predicate."""
+    """Return in words how a process ended."""
     return f"was killed (signal {-status})" if status < 0 else f"ended with status {status}"
 
 
 def _live_view() -> str:
-    """The port on which Rerun viewers look for a live recording, or another one when that is taken."""
+    """Return the default address of Rerun's live view, or one with a free port if that is taken."""
     for port in (_LIVE_PORT, 0):
         with socket.socket() as probe, contextlib.suppress(OSError):
             probe.bind(("127.0.0.1", port))
@@ -396,7 +395,7 @@ def _live_view() -> str:
 
 
 def _stop(process: subprocess.Popen[bytes]) -> None:
-    """Stop supervisord and with it the nodes: within 5 seconds, unless the knowledge base is writing."""
+    """Stop supervisord and the nodes: within 5 seconds, unless the knowledge base is writing."""
     if process.poll() is None:
         process.terminate()
         try:

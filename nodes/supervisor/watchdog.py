@@ -1,4 +1,4 @@
-"""Which nodes hang: those that are silent and do nothing, or that are silent for far too long."""
+"""Detects hanging nodes: silent and idle, or silent for far too long."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from typing import Final, NamedTuple
 import psutil  # type: ignore[import-untyped]
 
 SILENT_S: Final = 4.0
-"""A node that has not been heard of for so long hangs, unless it is at work."""
+"""A node without a heartbeat for this time hangs, unless it is working."""
 UNHEARD_S: Final = 30.0
-"""The same for a process that has not been heard of yet: it may wait for others to start."""
+"""The same for a process before its first heartbeat: it may wait for others to start."""
 ENDLESS_S: Final = 900.0
-"""Nothing that a node does without a word takes this long."""
+"""No work of a node takes this long without a heartbeat."""
 _LOOK_AFTER_S: Final = 1.5
-"""A heart beats once a second. Who is silent for longer is looked at from then on."""
+"""A heartbeat is published once a second. After this silence, the CPU time of a node is measured."""
 _LOOKED_AT_S: Final = 2.0
-"""For so long at least, to tell whether it works."""
+"""Shortest measurement of the CPU time."""
 _HELD_UP_S: Final = 2.0
-"""Whoever watches was held up himself if he looks so long after he looked last: the silence may be his."""
+"""If the checks are this far apart, the watchdog itself was delayed, and silence is not counted."""
 _AT_WORK: Final = 0.03
-"""The share of a core that a process at work uses at least, however busy the machine is."""
+"""The CPU share that a working process uses at least, however busy the machine is."""
 
 
 class Hang(NamedTuple):
-    """A node whose process is to be replaced, and why."""
+    """A node whose process is to be restarted, and the reason."""
 
     node: str
     pid: int
@@ -36,19 +36,19 @@ class Hang(NamedTuple):
 
 @dataclass
 class _Watched:
-    """Times are by the monotonic clock."""
+    """A monitored process; times are by the monotonic clock."""
 
     pid: int
     heard_s: float
     has_beaten: bool = False
     looked: tuple[float, float] | None = None
-    """While it is silent: when it was first looked at, and the CPU time that it had used by then."""
+    """While it is silent: the time of the first measurement, and its CPU time then."""
 
 
 def work_seconds(pid: int) -> float:
-    """CPU time that a process has used, and that its main thread has waited for a core, as others had them.
+    """Return the CPU time of a process, including the time that its main thread waited for a core.
 
-    Without end while it waits for a disk, 0 for one that is gone.
+    Infinite while it waits for a disk, 0 for a process that is gone.
     """
     try:
         process = psutil.Process(pid)
@@ -61,7 +61,7 @@ def work_seconds(pid: int) -> float:
 
 
 def _starved_s(pid: int) -> float:
-    """How long the main thread of a process could have run and was not let, on Linux."""
+    """Return how long the main thread of a process was runnable but not running, on Linux."""
     try:
         _, waited_ns, _ = Path(f"/proc/{pid}/schedstat").read_text().split()
         return int(waited_ns) * 1e-9
@@ -70,7 +70,7 @@ def _starved_s(pid: int) -> float:
 
 
 class Watchdog:
-    """Processes and their heartbeats go in; those that hang come out. Long work is no hang."""
+    """Takes processes and heartbeats, and returns hanging nodes. Long work does not count as hanging."""
 
     def __init__(
         self,
@@ -84,7 +84,7 @@ class Watchdog:
         self._looked_s = clock()
 
     def run_as(self, pids: Mapping[str, int]) -> None:
-        """These are the processes of the nodes that run now, as supervisord says."""
+        """Set the processes of the running nodes, as reported by supervisord."""
         now_s = self._clock()
         for node in self._watched.keys() - pids.keys():
             del self._watched[node]
@@ -93,7 +93,7 @@ class Watchdog:
                 self._watched[node] = _Watched(pid, now_s)
 
     def heard(self, node: str, pid: int) -> bool:
-        """A heartbeat came. False, and it says nothing, if that is not the node's process."""
+        """Note a heartbeat. Returns False, and ignores it, if it is not from the node's process."""
         watched = self._watched.get(node)
         if watched is None or watched.pid != pid:
             return False
@@ -101,7 +101,7 @@ class Watchdog:
         return True
 
     def hanging(self) -> Iterator[Hang]:
-        """Each node that hangs; then it is given as much time again. To be called several times a second."""
+        """Yield each hanging node, and restart its time-out. Must be called several times a second."""
         now_s = self._clock()
         held_up_s, self._looked_s = now_s - self._looked_s, now_s
         for node, watched in self._watched.items():
@@ -129,5 +129,5 @@ class Watchdog:
                     watched.pid,
                     f"silent for {silent_s:.0f} s{', though at work' if is_at_work else ''}",
                 )
-            elif now_s - since_s > SILENT_S:  # what it did long ago does not count
+            elif now_s - since_s > SILENT_S:  # old work does not count
                 watched.looked = now_s, worked_s

@@ -1,4 +1,4 @@
-"""Two sessions on loopback, and one who answers."""
+"""Two sessions on loopback, one of which serves."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def pair():
 
 
 def answer(handle):
-    """Serve on the thread of the callback: fit for a test."""
+    """Serve on the thread of the callback, which is sufficient for a test."""
 
     def receive(request: bus.Request) -> None:
         try:

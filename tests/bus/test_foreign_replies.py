@@ -1,4 +1,4 @@
-"""A program that serves a key of a node's, and is not that node."""
+"""A program that serves the key of a node without being that node."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ASKED = (commands.Get(name="x"), replies.Done)
 
 @pytest.fixture
 def three():
-    """A node, a thief and a client; the thief is preferred, because it is nearer."""
+    """A node, a foreign program and a client; the foreign program is preferred, because it is nearer."""
     endpoint = free_endpoint()
     with (
         bus.open_session(bus.Network(mode="peer", listen=(endpoint,), connect=())) as thief,
@@ -39,57 +39,57 @@ def three():
 
 
 def ready(node, client):
-    """The node serves, too, and its token is seen."""
+    """The node also serves, and its token is seen."""
     bus.serve(node, keys.BRIDGE, answer(lambda _: replies.Done(text="true")))
-    lifelines = bus.Lifelines(client)
-    token = bus.appear(node, "kb_node")
-    until(lambda: lifelines.is_there("kb_node"), "the token is seen")
-    return lifelines, token
+    liveliness = bus.LivelinessMonitor(client)
+    token = bus.declare_presence(node, "kb_node")
+    until(lambda: liveliness.is_there("kb_node"), "the token is seen")
+    return liveliness, token
 
 
-def test_its_reply_is_passed_over_for_the_nodes_own(three, caplog):
+def test_a_foreign_reply_is_ignored_if_the_node_replies(three, caplog):
     node, client, stolen = three
-    lifelines, _token = ready(node, client)
+    liveliness, _token = ready(node, client)
     said = "a program that is not kb_node answers on semmap/bridge/get"
     with caplog.at_level(logging.WARNING):
-        for _ in range(300):  # who comes first is not said
-            assert bus.ask(client, keys.BRIDGE, "get", *ASKED, lifelines=lifelines).text == "true"
+        for _ in range(300):  # the order of the replies is not defined
+            assert bus.ask(client, keys.BRIDGE, "get", *ASKED, liveliness=liveliness).text == "true"
             if said in caplog.text:
                 break
     assert stolen
     assert caplog.text.count(said) <= 1
 
 
-def test_it_is_passed_over_before_the_news_of_the_node_has_come(three):
+def test_a_foreign_reply_is_ignored_before_the_token_of_the_node_arrives(three):
     node, client, stolen = three
     bus.serve(node, keys.BRIDGE, answer(lambda _: replies.Done(text="true")))
-    _token = bus.appear(node, "kb_node")
-    probe = bus.Lifelines(client)
+    _token = bus.declare_presence(node, "kb_node")
+    probe = bus.LivelinessMonitor(client)
     until(lambda: probe.is_there("kb_node"), "the token is seen")
     for _ in range(300):
-        lifelines = bus.Lifelines(client)
-        lifelines._instances.clear()  # as if its thread had not run yet
-        assert bus.ask(client, keys.BRIDGE, "get", *ASKED, lifelines=lifelines).text == "true"
+        liveliness = bus.LivelinessMonitor(client)
+        liveliness._instances.clear()  # as if its thread had not run yet
+        assert bus.ask(client, keys.BRIDGE, "get", *ASKED, liveliness=liveliness).text == "true"
         if len(stolen) > 3:
             break
     assert stolen
 
 
-def test_without_the_nodes_own_it_is_told(three):
+def test_without_a_reply_of_the_node_a_foreign_reply_is_an_error(three):
     node, client, _ = three
-    lifelines = bus.Lifelines(client)
-    token = bus.appear(node, "kb_node")
-    until(lambda: lifelines.is_there("kb_node"), "the token is seen")
-    with pytest.raises(bus.ForeignReply, match="its answers are ignored"):
-        bus.ask(client, keys.BRIDGE, "get", *ASKED, lifelines=lifelines, patience_s=0.3)
+    liveliness = bus.LivelinessMonitor(client)
+    token = bus.declare_presence(node, "kb_node")
+    until(lambda: liveliness.is_there("kb_node"), "the token is seen")
+    with pytest.raises(bus.ForeignReply, match="its replies are ignored"):
+        bus.ask(client, keys.BRIDGE, "get", *ASKED, liveliness=liveliness, patience_s=0.3)
     del token
 
 
-def test_who_asks_without_waiting_is_told_and_can_ask_everybody(three):
+def test_ask_later_reports_a_foreign_reply_and_can_query_all(three):
     node, client, _ = three
-    lifelines = bus.Lifelines(client)
-    token = bus.appear(node, "kb_node")
-    until(lambda: lifelines.is_there("kb_node"), "the token is seen")
+    liveliness = bus.LivelinessMonitor(client)
+    token = bus.declare_presence(node, "kb_node")
+    until(lambda: liveliness.is_there("kb_node"), "the token is seen")
 
     def ask(everybody):
         answers, done = [], threading.Event()
@@ -98,32 +98,32 @@ def test_who_asks_without_waiting_is_told_and_can_ask_everybody(three):
             answers.append(read)
             done.set()
 
-        bus.ask_later(client, keys.BRIDGE, "get", *ASKED, take, lifelines=lifelines, everybody=everybody)
+        bus.ask_later(client, keys.BRIDGE, "get", *ASKED, take, liveliness=liveliness, ask_all=everybody)
         assert done.wait(PATIENCE_S)
         return answers[0]
 
     with pytest.raises(bus.ForeignReply):
-        ask(everybody=False)()
+        ask(ask_all=False)()
     bus.serve(node, keys.BRIDGE, answer(lambda _: replies.Done(text="true")))
 
     def is_true():
         with contextlib.suppress(bus.ForeignReply):
-            return ask(everybody=True)().decode().text == "true"
+            return ask(ask_all=True)().decode().text == "true"
 
     until(is_true, "the node is asked, too")
     del token
 
 
-def test_while_no_node_is_ready_nobody_can_tell(three):
+def test_foreign_replies_are_accepted_while_no_node_is_ready(three):
     _, client, stolen = three
-    lifelines = bus.Lifelines(client)
-    reply = until(lambda: bus.ask(client, keys.BRIDGE, "get", *ASKED, lifelines=lifelines), "a reply")
+    liveliness = bus.LivelinessMonitor(client)
+    reply = until(lambda: bus.ask(client, keys.BRIDGE, "get", *ASKED, liveliness=liveliness), "a reply")
     assert (reply.text, bool(stolen)) == ("stolen", True)
 
 
 @pytest.fixture
 def slow():
-    """A node that does not answer, and a client of it that is connected to somebody else."""
+    """A node that does not reply, and a client that is connected to another node."""
     endpoint = free_endpoint()
     with (
         bus.open_session(bus.Network(mode="peer", listen=(endpoint,), connect=())),
@@ -132,29 +132,29 @@ def slow():
     ):
         held = []
         bus.serve(node, keys.BRIDGE, held.append)
-        lifelines = bus.Lifelines(client)
-        token = bus.appear(node, "kb_node")
-        until(lambda: lifelines.is_there("kb_node"), "the token is seen")
-        yield client, lifelines
+        liveliness = bus.LivelinessMonitor(client)
+        token = bus.declare_presence(node, "kb_node")
+        until(lambda: liveliness.is_there("kb_node"), "the token is seen")
+        yield client, liveliness
         del token
 
 
 _OFTEN = 150
-"""Of some ten times that time runs out, one is told by the neighbour before it is noticed here."""
+"""In one of about ten time-outs, the neighbour reports it before the client notices."""
 
 
-def test_a_node_that_is_late_is_no_stranger(slow, caplog):
-    client, lifelines = slow
+def test_a_late_node_is_not_foreign(slow, caplog):
+    client, liveliness = slow
     for _ in range(_OFTEN):
         with pytest.raises(bus.TimedOut, match="did not answer within"):
-            bus.ask(client, keys.BRIDGE, "get", *ASKED, timeout_s=0.01, patience_s=0.1, lifelines=lifelines)
+            bus.ask(client, keys.BRIDGE, "get", *ASKED, timeout_s=0.01, patience_s=0.1, liveliness=liveliness)
     assert "a program that is not kb_node" not in caplog.text
 
 
-def test_nor_is_one_who_is_asked_without_waiting(slow):
-    client, lifelines = slow
+def test_a_late_node_is_not_foreign_with_ask_later(slow):
+    client, liveliness = slow
     answers = queue.SimpleQueue()
     for _ in range(_OFTEN):
-        bus.ask_later(client, keys.BRIDGE, "get", *ASKED, answers.put, timeout_s=0.01, lifelines=lifelines)
+        bus.ask_later(client, keys.BRIDGE, "get", *ASKED, answers.put, timeout_s=0.01, liveliness=liveliness)
         with pytest.raises(bus.TimedOut, match="did not answer within"):
             answers.get(timeout=PATIENCE_S)()

@@ -1,4 +1,4 @@
-"""A door before a real map, without the wire between."""
+"""A dispatcher with a real knowledge base, without Zenoh."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from semmap.nodes.coordinator.door import Door
+from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.nodes.kb_node.answers import answers as kb_answers
 from semmap.nodes.kb_node.answers import trials
 from semmap.nodes.kb_node.answers.pages import Pages
@@ -55,7 +55,7 @@ def semantic_map(tmp_path: Path):
 
 
 @pytest.fixture
-def door(semantic_map):
+def dispatcher(semantic_map):
     answers = {
         "commit": lambda transaction: _changed(
             semantic_map, lambda: semantic_map.commit(transaction), transaction.dry_run
@@ -74,18 +74,18 @@ def door(semantic_map):
             semantic_map, lambda: undo(semantic_map, semantic_map._journal, command), command.dry_run
         ),
     }
-    door = Door(lambda call: answers[call.VERB](call))
-    door.map.classes = ClassNames(semantic_map.class_table())
-    door.map.begin(semantic_map.snapshot())
-    return door
+    dispatcher = CommandDispatcher(lambda call: answers[call.VERB](call))
+    dispatcher.map.classes = ClassNames(semantic_map.class_table())
+    dispatcher.map.begin(semantic_map.snapshot())
+    return dispatcher
 
 
-def at_once(door):
-    """`change(change)` of a door that does it at once."""
+def immediate(dispatcher):
+    """Return `change(change)` of a dispatcher, executed immediately."""
 
     def change(change):
         future = Future()
-        settle(future, lambda: door.change(change))
+        settle(future, lambda: dispatcher.change(change))
         return future
 
     return change

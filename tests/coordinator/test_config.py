@@ -1,4 +1,4 @@
-"""What counts as moved and as stale unless somebody says otherwise: docs and models rely on it."""
+"""Default thresholds of moved and stale, which docs and models rely on."""
 
 import math
 

@@ -13,22 +13,22 @@ def early(monkeypatch):
     return made
 
 
-def test_what_waits_is_executed_once_there_is_a_map(early):
+def test_waiting_commands_are_executed_with_the_map(early):
     done = early.wait(lambda: "done")
-    early.go_on(has_map=False)
+    early.retry(has_map=False)
     assert not done.done()
-    early.go_on(has_map=True)
+    early.retry(has_map=True)
     assert done.result(0) == "done"
 
 
 def test_a_knowledge_base_at_work_is_waited_for(early):
     done = early.wait(lambda: "done")
     for _ in range(3):
-        early.go_on(has_map=False)
+        early.retry(has_map=False)
     assert not done.done()
     early.there = False
-    early.go_on(has_map=False)
-    with pytest.raises(errors.NoAnswer, match="the knowledge base is not answering"):
+    early.retry(has_map=False)
+    with pytest.raises(errors.NoAnswer, match="no response from the knowledge base"):
         done.result(0)
 
 
@@ -36,15 +36,15 @@ def test_one_that_is_restarted_is_waited_for(early, monkeypatch):
     monkeypatch.setattr(bus, "RESTART_S", 10.0)
     early.there = False
     done = early.wait(lambda: "done")
-    early.go_on(has_map=False)
+    early.retry(has_map=False)
     assert not done.done()
 
 
-def test_what_fails_says_why(early):
+def test_a_failure_has_a_reason(early):
     def fail():
         raise errors.Refused("no")
 
     done = early.wait(fail)
-    early.go_on(has_map=True)
+    early.retry(has_map=True)
     with pytest.raises(errors.Refused):
         done.result(0)

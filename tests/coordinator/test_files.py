@@ -1,4 +1,4 @@
-"""Reading scenes in JSON and HuRIC maps, and telling files apart."""
+"""Readers of JSON scenes and HuRIC maps, and the detection of file types."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ def as_bytes(scene: object) -> bytes:
         (b"[] a <http://x#B> .", "abox"),
     ],
 )
-def test_files_are_told_apart_by_content(content, kind):
+def test_the_file_type_is_detected_from_the_content(content, kind):
     assert kind_of(content, "file") == kind
     assert kind_of(gzip.compress(content), "file.gz") == kind
 
 
 @pytest.mark.parametrize("content", [b"", b"  \n", b"{", b'{"chairs": 3}', b"[1, 2]"])
-def test_what_is_nothing_of_the_kind_is_refused(content):
+def test_unknown_content_is_rejected(content):
     with pytest.raises(BadFile):
         kind_of(content, "file.json")
 
 
-def test_a_broken_json_file_is_told_as_such():
+def test_a_broken_json_file_is_reported():
     assert kind_of(b"[1, 2", "x.ttl") == "abox"
     with pytest.raises(BadFile, match=r"x\.json is not valid JSON"):
         kind_of(b"[1, 2", "x.json")
@@ -53,7 +53,7 @@ def test_a_broken_json_file_is_told_as_such():
         kind_of(gzip.compress(b"[1, 2"), "x.json.gz")
 
 
-def test_what_cannot_be_unpacked_is_told_as_such():
+def test_a_broken_archive_is_reported():
     with pytest.raises(BadFile, match=r"x\.gz ends too early"):
         kind_of(gzip.compress(as_bytes(SCENE))[:-9], "x.gz")
 
@@ -99,7 +99,7 @@ def test_a_scene_with_a_fault_names_the_field(change, said):
         ({"at": [0, 0, 1], "lookat": [1, 0, 1]}, "no field 'lookat'; did you mean look_at"),
     ],
 )
-def test_a_camera_with_a_fault_is_told(camera, said):
+def test_an_invalid_camera_is_reported(camera, said):
     with pytest.raises(BadFile, match=said):
         scene_files.read(as_bytes({**SCENE, "cameras": [camera]}), "scene.json")
 

@@ -7,7 +7,7 @@ from semmap.schemas.entities import free_name
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_the_first_free_name_is_found_whatever_came_and_went(seed):
+def test_the_first_free_name_is_found_after_any_changes(seed):
     rng, names, taken = random.Random(seed), FreeNames(), set()
     for _ in range(500):
         class_name = rng.choice(("Cup", "Cup1", "soma:Cup", "3Three"))
@@ -18,7 +18,7 @@ def test_the_first_free_name_is_found_whatever_came_and_went(seed):
         if taken and rng.random() < 0.3:
             gone = rng.choice(sorted(taken))
             taken.remove(gone)
-            names.freed(gone)
+            names.release(gone)
 
 
 class Counted(set):

@@ -7,7 +7,7 @@ import pytest
 
 from semmap.nodes.coordinator.free_places import DEFAULT_POSITION, FreePlaces
 from semmap.schemas.entities import Pose, orientation_from_yaw
-from tests.coordinator.scene.test_reconcile import entity
+from tests.coordinator.reconciler.test_reconcile import entity
 from tests.depth import tries
 
 
@@ -19,7 +19,7 @@ def standing(x, y, size, yaw=0.0):
 
 
 def free_position(entities, size):
-    """As somebody is answered who asks for the first time."""
+    """The result of a first search."""
     named = {f"box{i}": entity for i, entity in enumerate(entities)}
     places = FreePlaces()
     places.touch(named)
@@ -44,7 +44,7 @@ def test_a_place_is_found_for_big_things_and_in_crowds():
         assert math.hypot(x - 2.0, y - 2.0) > 20.0
 
 
-def test_a_rug_is_no_obstacle():
+def test_a_rug_is_not_an_obstacle():
     assert free_position([standing(2.0, 2.0, (2.0, 2.0, 0.01))], None) == DEFAULT_POSITION
 
 
@@ -59,8 +59,8 @@ SIZES = [None, (0.3, 0.3, 0.3), (1.5, 0.2, 1.0), (9.0, 9.0, 1.0)]
 
 
 @pytest.mark.parametrize("seed", range(tries(5)))
-def test_whoever_has_asked_before_is_answered_as_for_the_first_time(seed):
-    """Things come where there is room, move, grow and go between the questions."""
+def test_later_searches_return_the_same_as_a_first_search(seed):
+    """Objects are added, moved, resized and removed between the searches."""
     rng = random.Random(seed)
     places, there, number = FreePlaces(), {}, 0
     for _ in range(50):
@@ -82,8 +82,8 @@ def test_whoever_has_asked_before_is_answered_as_for_the_first_time(seed):
         assert places.find(there, size) == free_position(there.values(), size)
 
 
-def test_another_question_does_not_look_at_everything_again(monkeypatch):
-    """A hundred adds in a crowd try few spots, though the first of them tries thousands."""
+def test_another_search_does_not_start_again(monkeypatch):
+    """A hundred adds in a crowd try few places, though the first one tries thousands."""
     steps = [step / 2 for step in range(-20, 20)]
     crowd = {f"box{x}-{y}": standing(2 + x, 2 + y, None) for x in steps for y in steps}
     tried, is_free = [], FreePlaces._is_free

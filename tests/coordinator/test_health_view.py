@@ -20,7 +20,7 @@ def test_nodes_of_one_name_on_two_hosts_are_two_rows():
     assert [(row.host, row.state) for row in view.nodes()] == [("lab", "ready"), ("robot", "ready")]
 
 
-def test_how_long_a_node_has_run_is_told_by_its_own_clock():
+def test_the_uptime_uses_the_clock_of_the_node():
     view = HealthView()
     view.take(beat("ready", at_s=70))
     assert 70.0 <= view.nodes()[0].uptime_s < 71.0
@@ -35,17 +35,17 @@ def test_a_silent_node_is_not_alive(monkeypatch):
     assert not view.alive("kb_node")
 
 
-def test_just_after_a_start_a_node_that_was_not_heard_of_may_be_there(monkeypatch):
-    assert HealthView().may_be_there("sim_node")
+def test_after_a_start_a_node_without_heartbeat_may_be_alive(monkeypatch):
+    assert HealthView().may_be_alive("sim_node")
     monkeypatch.setattr(health_view, "_HEARD_WITHIN_S", 0.0)
     view = HealthView()
-    assert not view.may_be_there("kb_node")
+    assert not view.may_be_alive("kb_node")
     view.take(beat("starting"))
-    assert view.may_be_there("kb_node")
+    assert view.may_be_alive("kb_node")
 
 
 @pytest.mark.parametrize("client", ["web", "ros"])
-def test_there_may_be_any_number_of_clients_and_one_that_has_ended_is_told_no_more(monkeypatch, client):
+def test_ended_clients_are_not_listed(monkeypatch, client):
     view = HealthView()
     for pid in (7, 8):
         view.take(beat("ready", pid, node=client))

@@ -1,11 +1,11 @@
-"""What the coordinator asks while the knowledge base is away, and is back after a while."""
+"""Requests while the knowledge base is away, and back after a while."""
 
 from __future__ import annotations
 
 import pytest
 
 from semmap.nodes import bus
-from semmap.nodes.coordinator.kb_client import Bridge
+from semmap.nodes.coordinator.kb_client import KbClient
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import errors, keys
 from semmap.schemas.bridge import TakeBack
@@ -24,11 +24,11 @@ def network():
     with bus.open_session(peer) as session, bus.open_session(bus.Network(connect=(endpoint,))) as kb:
         node = Node("coordinator", session)
         with handling(node):
-            yield Bridge(node), kb
+            yield KbClient(node), kb
 
 
 def serve(kb):
-    """Answer, but not the first time."""
+    """Reply, but not the first time."""
     asked = []
 
     def receive(request):
@@ -40,22 +40,22 @@ def serve(kb):
 
 
 @pytest.mark.parametrize("how", ["change", "change_later"])
-def test_a_change_waits_for_the_knowledge_base_and_nothing_stands_still_meanwhile(network, how, monkeypatch):
+def test_a_change_waits_for_the_knowledge_base_without_blocking(network, how, monkeypatch):
     monkeypatch.setattr(bus, "RESTART_S", PATIENCE_S)
     asked = questions_asked(monkeypatch)
     bridge, kb = network
     answer = getattr(bridge, how)(TRANSACTION)
-    until(lambda: len(asked) > 2, "it was asked for in vain")
+    until(lambda: len(asked) > 2, "it was queried without reply")
     assert not answer.done()
     serve(kb)
     assert answer.result(PATIENCE_S) == Effects.of(COMMIT)
 
 
 @pytest.mark.parametrize("how", ["change", "change_later"])
-def test_it_is_told_who_is_missing(network, how, monkeypatch):
+def test_the_missing_node_is_named(network, how, monkeypatch):
     monkeypatch.setattr(bus, "RESTART_S", 0.2)
     answer = getattr(network[0], how)(TRANSACTION)
-    with pytest.raises(errors.NoAnswer, match="kb_node is not running, or is starting"):
+    with pytest.raises(errors.NoAnswer, match="kb_node is not running or still starting"):
         answer.result(PATIENCE_S)
 
 

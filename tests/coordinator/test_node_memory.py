@@ -1,4 +1,4 @@
-"""What a large file leaves behind in the coordinator."""
+"""Memory that a large file leaves in the coordinator."""
 
 import gc
 import weakref
@@ -6,18 +6,18 @@ import weakref
 from semmap.nodes.coordinator import node
 
 
-def test_cycles_with_large_files_are_parted_with():
-    class Dialogue:
-        """Refers to itself, as one that goes on by callbacks does."""
+def test_reference_cycles_with_large_files_are_freed():
+    class RequestCoroutine:
+        """Refers to itself, like a coroutine with callbacks."""
 
-    dialogue = Dialogue()
-    dialogue.itself = dialogue
-    seen = weakref.ref(dialogue)
+    coroutine = RequestCoroutine()
+    coroutine.itself = coroutine
+    seen = weakref.ref(coroutine)
     gc.disable()
     try:
-        del dialogue
+        del coroutine
         assert seen() is not None
-        node._tidy()
+        node._release_memory()
         assert seen() is None
     finally:
         gc.enable()

@@ -64,7 +64,7 @@ def test_the_restart_of_a_node_is_waited_for_where_work_may_be_under_way(monkeyp
     monkeypatch.setattr(
         bus, "ask", lambda session, prefix, verb, *_, patience_s, **how: seen.update({verb: patience_s})
     )
-    monkeypatch.setattr(bus, "Lifelines", lambda session: None)
+    monkeypatch.setattr(bus, "LivelinessMonitor", lambda session: None)
     client = Client(None, source="operator")
     for command in (commands.Load(content=b"x"), commands.Undo(), commands.Clear(), commands.Get(name="a")):
         client.send(command)

@@ -43,7 +43,9 @@ def test_a_client_alone_sends_the_file(file, tmp_path, monkeypatch):
     monkeypatch.setattr(extras, "find_spec", lambda _: None)
     assert ontology(file, {}) == (A.encode(), "a.ttl")
     for path, imports in ((file, {"http://o.org/b": tmp_path / "b.ttl"}), (tmp_path, {})):
-        with pytest.raises(errors.BadRequest, match=r"finding imports needs more than is installed: .*kb"):
+        with pytest.raises(
+            errors.BadRequest, match=r"finding imports: missing optional packages; install: .*kb"
+        ):
             ontology(path, imports)
 
 

@@ -100,7 +100,8 @@ def test_who_has_no_certificate_is_told_at_once(capsys):
 
 
 @pytest.mark.parametrize(
-    ("identity", "told"), [("nobody", "there is no file"), ("ca", "is not an identity: it says no role")]
+    ("identity", "told"),
+    [("nobody", "there is no file"), ("ca", "is not an identity: the certificate has no role")],
 )
 def test_an_identity_that_is_none_is_told(keys, capsys, identity, told):
     assert execute(["list", "--identity", str(keys / identity)]) == 2
@@ -138,6 +139,6 @@ def test_a_node_may_join_a_router_elsewhere(keys, tmp_path, monkeypatch):
 )
 def test_certificates_are_shown_over_tls_only(starting, keys, capsys, endpoint):
     assert execute(["up", "--secure", str(keys), "--listen", endpoint]) == 2
-    assert "at endpoints of TLS only" in capsys.readouterr().err
+    assert "is not a plain TLS endpoint" in capsys.readouterr().err
     assert execute(["list", "--identity", str(keys / "recorder"), "--connect", endpoint]) == 2
-    assert "at endpoints of TLS only" in capsys.readouterr().err
+    assert "is not a plain TLS endpoint" in capsys.readouterr().err

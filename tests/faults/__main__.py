@@ -1,4 +1,4 @@
-"""Do every fault, or those whose names contain a word: `python -m tests.faults [WORD...]`."""
+"""Run all faults, or those whose names contain a word: `python -m tests.faults [WORD...]`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.faults.table import Fault, Row, outcome
 
 
 def main(words: list[str]) -> int:
-    """Exit status 1 if anything was lost or doubled, or another promise was broken."""
+    """Run the faults; returns 1 if a change was lost or doubled, or another guarantee was violated."""
     chosen = [fault for fault in FAULTS if not words or any(word in fault.name for word in words)]
     cuts = [several for several in CUTS if not words or any(word in several.name for word in words)]
     rows = [_row(fault) for fault in chosen]
@@ -24,7 +24,7 @@ def main(words: list[str]) -> int:
         print(f"{several.name} ...", file=sys.stderr, flush=True)
         rows += several.rows()
     console = Console(width=120)
-    table = Table("what was done", "times", "lost", "doubled", "whole after [s]", "")
+    table = Table("fault", "times", "lost", "doubled", "recovered after [s]", "")
     for row in rows:
         remark = row.failed or (f"skipped: {row.skipped}" if row.skipped else "")
         whole = f"{row.whole_s:.1f}" if row.done else ""
@@ -33,7 +33,7 @@ def main(words: list[str]) -> int:
     lost, doubled = sum(row.lost for row in rows), sum(row.doubled for row in rows)
     failed = [row for row in rows if row.failed]
     if failed:
-        print(f"broken promises: {len(failed)}")
+        print(f"violated guarantees: {len(failed)}")
     skipped = sum(bool(row.skipped) for row in rows)
     print(f"faults: {sum(row.done for row in rows)} done, {skipped} skipped, lost {lost}, doubled {doubled}")
     return 1 if failed or lost or doubled else 0
@@ -49,11 +49,11 @@ def _row(fault: Fault) -> Row:
                 raise
             traceback.print_exc()
             return Row(fault.name, failed=str(error) or type(error).__name__)
-    told = (
+    result = (
         row.skipped
-        or f"{row.done} done, lost {row.lost}, doubled {row.doubled}, whole after {row.whole_s:.1f} s"
+        or f"{row.done} done, lost {row.lost}, doubled {row.doubled}, recovered after {row.whole_s:.1f} s"
     )
-    print(f"    {told}", file=sys.stderr, flush=True)
+    print(f"    {result}", file=sys.stderr, flush=True)
     return row
 
 

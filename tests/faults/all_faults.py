@@ -1,4 +1,4 @@
-"""Every fault there is."""
+"""All faults."""
 
 from __future__ import annotations
 

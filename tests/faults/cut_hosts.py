@@ -1,7 +1,7 @@
-"""Cuts each link between the hosts of one system under load, in a process that may have hosts: `unshare -rn`.
+"""Cuts each link between the hosts of a system under load, in its own namespaces: `unshare -rn`.
 
-The knowledge base and the coordinator run on one host, the simulator and perception on a second, the recorder
-on a third that is joined to the second alone. On each somebody adds cups and follows the map.
+The knowledge base and the coordinator run on one host, the simulator and perception on a second. The recorder
+runs on a third, which is linked only to the second. On each host a client adds cups and follows the map.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from tests.faults.table import Row
 _PORT = 7447
 _EXAMPLES = Path(__file__).parents[2] / "examples"
 _ZENOHD = "zenohd"
-"""In place of nodes: a host on which a router runs that is not semmap's."""
+"""Instead of nodes: the host runs a plain Zenoh router."""
 _PARTS = {"lab": "kb,coordinator", "robot": "sim,perception", "desk": "recorder"}
 _SMALL_PARTS = {"lab": "kb,coordinator", "robot": "sim"}
 _SITE_PARTS = {"lab": "kb,coordinator", "site": _ZENOHD, "robot": "sim,recorder"}
@@ -38,18 +38,18 @@ _PATIENCE_S = 900.0
 
 @dataclass(frozen=True)
 class Cuts:
-    """Cuts of every link between the hosts of a system; each is a line of the table."""
+    """Cuts of every link between the hosts of a system; each is a row of the table."""
 
     name: str
     seconds: float
     words: tuple[str, ...] = ()
 
     def rows(self) -> list[Row]:
-        """What came of each."""
+        """Return the result of each cut."""
         if missing := hosts.missing():
             return [Row(self.name, skipped=missing)]
         module = [sys.executable, "-m", "tests.faults.cut_hosts", str(self.seconds)]
-        # Into files: what it has started, and leaves behind when it hangs, would keep pipes open for ever.
+        # Into files, because child processes of a hanging run would keep pipes open.
         with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
             command = ["unshare", "-rn", *module, *self.words]
             process = subprocess.Popen(command, stdout=out, stderr=err, start_new_session=True)
@@ -76,24 +76,24 @@ CUTS = (
 
 
 def main() -> None:
-    """Prints a row of the table of faults, in JSON, for each cut."""
+    """Print a row of the table of faults as JSON for each cut."""
     parser = argparse.ArgumentParser()
     parser.add_argument("seconds", type=float, help="how long each link is cut")
     parser.add_argument("--secure", action="store_true", help="with certificates")
     parser.add_argument("--small", action="store_true", help="two hosts, without perception and recorder")
     parser.add_argument("--site", action="store_true", help="a router of Zenoh's on the host in the middle")
     parser.add_argument("--how", choices=HOWS, nargs="+", default=HOWS)
-    said = parser.parse_args()
-    parts = _SMALL_PARTS if said.small else _SITE_PARTS if said.site else _PARTS
-    with Network() as network, spread_out(network, parts, secure=said.secure) as system:
+    options = parser.parse_args()
+    parts = _SMALL_PARTS if options.small else _SITE_PARTS if options.site else _PARTS
+    with Network() as network, spread_out(network, parts, secure=options.secure) as system:
         for link in system.links:
-            for how in said.how:
-                print(json.dumps(asdict(system.cut(link, how, said.seconds))), flush=True)
+            for how in options.how:
+                print(json.dumps(asdict(system.cut(link, how, options.seconds))), flush=True)
 
 
 @contextlib.contextmanager
 def spread_out(network: Network, parts: dict[str, str], *, secure: bool) -> Iterator[SpreadOut]:
-    """A system on several hosts; stopped on each of them at the end."""
+    """Run a system on several hosts, and stop it at the end."""
     system = SpreadOut(network, parts, secure=secure)
     try:
         system.start()
@@ -104,7 +104,7 @@ def spread_out(network: Network, parts: dict[str, str], *, secure: bool) -> Iter
 
 
 class SpreadOut:
-    """A system on hosts that are joined in a row, each running a part of it."""
+    """A system on hosts that are linked in a row, each running a part of it."""
 
     def __init__(self, network: Network, parts: dict[str, str], *, secure: bool) -> None:
         self.hosts = [network.host(name) for name in parts]
@@ -112,12 +112,12 @@ class SpreadOut:
         self._parts = parts
         self._scheme = "tls" if secure else "tcp"
         self.here = f"{self._scheme}/127.0.0.1:{_PORT}"
-        """Where each host has its router."""
+        """The endpoint of the router on each host."""
         self._loads = count(1)
         self._pids: dict[str, dict[str, int]] = {}
 
     def start(self) -> None:
-        """Start the far end first: it waits for the others."""
+        """Start the hosts, last one first, because it waits for the others."""
         upstream = {link.ends[1].name: link.addresses[0] for link in self.links}
         if self._scheme == "tls":
             self._hand_out_keys(tuple(upstream.values()))
@@ -140,7 +140,7 @@ class SpreadOut:
             host.do(on_a_host.watch, self.here)
 
     def _hand_out_keys(self, addresses: tuple[str, ...]) -> None:
-        """Copy the folder of keys to each host; the authority's own key stays at home."""
+        """Copy the folder of keys to each host, without the authority's own key."""
         home = self.hosts[0].folder.parent / "keys"
         authority.init(home, addresses)
         authority.add(home, "load", "operator")
@@ -153,7 +153,7 @@ class SpreadOut:
             host.do(on_a_host.identify, str(copy / "load"))
 
     def _configured(self, host: Host, upstream: str) -> str:
-        """The file of a router that is not semmap's, as the manual says that one gets it."""
+        """Return the configuration of a plain Zenoh router, created as in the manual."""
         if self._scheme == "tcp":
             return (_EXAMPLES / "zenohd" / "site.json5").read_text().replace("10.0.0.1", upstream)
         words = ["keys", "zenohd", "--dir", host.folder / "keys", "--connect", f"tls/{upstream}:{_PORT}"]
@@ -161,11 +161,11 @@ class SpreadOut:
         return subprocess.run([semmap, *words], check=True, capture_output=True, text=True).stdout
 
     def pids(self) -> dict[str, dict[str, int]]:
-        """The processes of the nodes, by host."""
+        """Return the processes of the nodes, by host."""
         return {host.name: host.do(on_a_host.pids, _data(host)) for host in self.hosts}
 
     def cut(self, link: Link, how: How, seconds: float) -> Row:
-        """Cut a link under load, and mend it: what came of it, when it was whole again."""
+        """Cut a link under load, restore it, and return the result after recovery."""
         for host in self.hosts:
             host.do(on_a_host.load, self.here, next(self._loads))
         self._until_whole()
@@ -175,34 +175,34 @@ class SpreadOut:
         whole_s = self._until_whole()
         name = f"link between {link.ends[0].name} and {link.ends[1].name} {how} for {seconds:g} s"
         row = Row(f"{name}{', with certificates' if self._scheme == 'tls' else ''}", done=1, whole_s=whole_s)
-        broken = list(self._reckon(row))
+        broken = list(self._count(row))
         if self.pids() != self._pids:
             broken.append("nodes were restarted")
         if whole_s > _WHOLE_S:
-            broken.append(f"whole only after {whole_s:.1f} s")
+            broken.append(f"recovered only after {whole_s:.1f} s")
         row.failed = "; ".join(broken)
         return row
 
     def _until_whole(self) -> float:
-        """Seconds until the last of the hosts finds the system whole."""
+        """Return the seconds until the system is complete as seen from every host."""
         nodes = {(node, host) for host, pids in self._pids.items() for node in pids}
         seen = [host.begin(on_a_host.seconds_until_whole, self.here, nodes) for host in self.hosts]
         return max(one.result() for one in seen)
 
-    def _reckon(self, row: Row) -> Iterator[str]:
-        """Stop the load; tell the row what was lost and doubled, and here what else is not as promised."""
+    def _count(self, row: Row) -> Iterator[str]:
+        """Stop the load, count lost and doubled changes in the row, and yield other violations."""
         ended = [host.do(on_a_host.stop_load) for host in self.hosts]
         if refused := [text for one in ended for text in one.refused]:
             yield f"refused: {refused[0]}"
         acknowledged = [name for one in ended for name in one.acknowledged]
         there, last = self.hosts[0].do(on_a_host.cups, self.here)
-        nobodys = len(there) - len(set(acknowledged)) - sum(one.in_doubt for one in ended)
+        unexplained = len(there) - len(set(acknowledged)) - sum(one.in_doubt for one in ended)
         row.lost = len(set(acknowledged) - there)
-        row.doubled = len(acknowledged) - len(set(acknowledged)) + max(0, nobodys)
+        row.doubled = len(acknowledged) - len(set(acknowledged)) + max(0, unexplained)
         for host in self.hosts:
             for seqs in host.do(on_a_host.followed, last):
                 if seqs != list(range(seqs[0], last + 1)):
-                    yield f"on {host.name} commits were missed, or heard of twice"
+                    yield f"on {host.name} commits were missed or received twice"
         self.hosts[0].do(on_a_host.recorded, self.here, last)
         self.hosts[0].do(on_a_host.clear, self.here)
 

@@ -1,4 +1,4 @@
-"""Cuts the links of a whole system under load, in a network of its own (`unshare -rn`)."""
+"""Cuts the links of a whole system under load, in its own network namespace (`unshare -rn`)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _IFF_UP = 1
 
 
 def main(seconds: float) -> None:
-    """Prints what was lost and doubled, and how long it took until the system was whole [s]."""
+    """Print lost and doubled changes, and the time until recovery [s]."""
     _link(up=True)
     with (
         tempfile.TemporaryDirectory(prefix="semmap-cut-") as folder,
@@ -41,7 +41,7 @@ def main(seconds: float) -> None:
 
 
 def _link(*, up: bool) -> None:
-    """Let the loopback interface, over which everything goes here, come up or go down."""
+    """Switch the loopback interface, which carries all traffic here, up or down."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
         request = struct.pack("16sh14x", b"lo", _IFF_UP if up else 0)
         fcntl.ioctl(asked.fileno(), _SIOCSIFFLAGS, request)

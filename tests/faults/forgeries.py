@@ -1,7 +1,7 @@
-"""What a stranger can publish, serve or ask on a system that is not secure.
+"""Messages that an unauthorized client can send to a system without certificates.
 
-Nobody who is let onto such a network can be kept from speaking. What is promised is that the system does not
-end, finds out, and goes by what its own nodes say.
+Such a client cannot be blocked on an open network. The guarantee is that the nodes keep running, detect the
+forgery, and trust only their own nodes.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from tests.faults.processes import ALL, NOTICED_S, _runs, all_pids_of
 from tests.faults.table import Fault
 
 
-def health_of_nobody(ground: Ground) -> None:
-    """A node that there is not says that it lives, and later says nothing."""
+def health_of_unknown_node(ground: Ground) -> None:
+    """A heartbeat of a node that does not exist."""
     pids = all_pids_of(ground.data)
     with _stranger(ground) as session:
         session.put(keys.health_key("x"), codec.encode(_health("x", 1)))
@@ -39,7 +39,7 @@ def health_of_nobody(ground: Ground) -> None:
 
 
 def health_of_a_stopped_node(ground: Ground) -> None:
-    """Forged beats do not keep a node that hangs from being replaced."""
+    """Forged heartbeats do not prevent the restart of a hanging node."""
     pid = all_pids_of(ground.data)["kb_node"]
     with (
         _stranger(ground) as session,
@@ -47,11 +47,11 @@ def health_of_a_stopped_node(ground: Ground) -> None:
     ):
         time.sleep(1.0)
         os.kill(pid, signal.SIGSTOP)
-        wait_for(lambda: not _runs(pid), "the node that hangs is replaced", within_s=NOTICED_S)
+        wait_for(lambda: not _runs(pid), "the hanging node is restarted", within_s=NOTICED_S)
 
 
 def forged_commit(ground: Ground) -> None:
-    """A commit with the next number hides no acknowledged change for long."""
+    """A forged commit with the next number does not hide an acknowledged change for long."""
     with ground.client() as client, _stranger(ground) as session:
         (name,) = client.add("Bowl", at=(4.0, 4.0, 0.0)).names
         gone = (Departed(name=name, types=("Bowl",)),)
@@ -67,14 +67,14 @@ def forged_commit(ground: Ground) -> None:
         def is_removed() -> bool:
             try:
                 return client.remove(name).names == (name,)
-            except errors.UnknownName:  # the last of those that were forged hid it again
+            except errors.UnknownName:  # hidden again by the last forged commit
                 return False
 
         wait_for(is_removed, "what was hidden can be removed")
 
 
 def commit_far_ahead(ground: Ground) -> None:
-    """One with a number that there is not yet: it is looked for, and then forgotten."""
+    """A forged commit with a number far ahead is searched for, and then forgotten."""
     with ground.client() as client, _stranger(ground) as session:
         commit = Commit(seq=10**12, stamp_ns=1, id="far", source="scene", digest="00")
         session.put(keys.UNTOLD.key, codec.encode(Effects.of(commit)))
@@ -82,7 +82,7 @@ def commit_far_ahead(ground: Ground) -> None:
 
 
 def pose_of_the_future(ground: Ground) -> None:
-    """The poses that follow one with a stamp of 2**62 are heard."""
+    """Poses after one with a stamp of 2**62 are still accepted."""
     with ground.client() as client, _stranger(ground) as session:
         heard: list[Poses] = []
         bus.follow(session, keys.POSES, lambda _, poses: heard.append(poses))
@@ -101,7 +101,7 @@ def pose_of_the_future(ground: Ground) -> None:
 
 
 def stolen_acknowledgements(ground: Ground) -> None:
-    """A foreign queryable answers `add`: no acknowledgement is its own, and every change is made."""
+    """A foreign queryable replies to `add`: its replies are ignored, and every change is made."""
     stolen = []
 
     def steal(query: zenoh.Query) -> None:
@@ -121,7 +121,7 @@ def stolen_acknowledgements(ground: Ground) -> None:
 
 
 def files_of_the_host(ground: Ground) -> None:
-    """No order makes the simulator read a file that is none of its models."""
+    """No order makes the simulator read a file that is not one of its models."""
     with _stranger(ground) as session:
         for number, model in enumerate(("/etc/passwd.xml", "../../etc/hosts.obj", "/etc/hostname.stl")):
             name = f"spy{number}"
@@ -140,7 +140,7 @@ def _stranger(ground: Ground) -> Iterator[bus.Session]:
 
 @contextlib.contextmanager
 def _repeated(session: bus.Session, key: str, message: object) -> Iterator[None]:
-    """Say it ten times a second meanwhile."""
+    """Publish a message ten times a second while the context is open."""
     ending = threading.Event()
 
     def repeat() -> None:
@@ -161,7 +161,7 @@ def _health(node: str, pid: int) -> Health:
 
 
 FORGERIES = (
-    Fault("health of a node that there is not", health_of_nobody, often=1),
+    Fault("health of a node that there is not", health_of_unknown_node, often=1),
     Fault("forged heartbeats of a stopped node", health_of_a_stopped_node, often=2, in_short=1),
     Fault("forged commit with the next number", forged_commit, often=5, in_short=1),
     Fault("forged commit with a far number", commit_far_ahead, often=2),

@@ -1,4 +1,4 @@
-"""What a fault is done to: a system under load, whose every acknowledged change is accounted for."""
+"""The system under test: it runs under load, and every acknowledged change is counted."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from tests.conftest import System, running
 
 PATIENCE_S = 60.0
 BREATH_S = 0.05
-"""Between two cups where a simulator makes a body of each: hundreds a second would keep it from all else."""
+"""Pause between two cups if a simulator creates a body of each, so that it is not saturated."""
 
 
 def free_place() -> tuple[float, float, float]:
-    """On the floor of a wide hall, away from the rest: what overlaps is another matter."""
+    """Return a position on the floor of a large hall, away from other objects."""
     return random.uniform(-200.0, 200.0), random.uniform(20.0, 200.0), 0.0
 
 
 class Load(threading.Thread):
-    """Adds cups one after another: by turns with a name, and without one so that a repetition would show."""
+    """Adds cups one after another, alternately with and without a name, so that a repetition shows."""
 
     def __init__(self, endpoint: str, number: int, breath_s: float, *, insists: bool = False) -> None:
-        """`number` tells its cups from those of other loads; it rests for `breath_s` after each.
+        """`number` identifies its cups; it pauses for `breath_s` after each.
 
-        One that `insists` sends a change that was not answered again, under its id, until it is.
+        With `insists`, an unanswered change is sent again under its id until it is answered.
         """
         super().__init__(daemon=True)
         self._insists = insists
         self.in_doubt = False
-        """Has the last change that it asked for not been answered?"""
+        """Whether the last change is unanswered."""
         self._breath_s = breath_s
         self._number = number
         self.added: list[str] = []
@@ -73,9 +73,9 @@ class Load(threading.Thread):
 
 
 class Ground:
-    """A running system, by `semmap up` with some words, that can be started again.
+    """A running system (`semmap up` with options) that can be restarted.
 
-    It is under load from the start until it is reckoned up, and once more after `load_again`.
+    It is under load from the start until `reckon`, and again after `load_again`.
     """
 
     def __init__(self, data: Path, words: tuple[str, ...]) -> None:
@@ -86,15 +86,15 @@ class Ground:
         self.system = self.start()
         self.observed_s = 0.0
         self.may_be_refused: str | None = None
-        """What is said, among other things, where a fault has changes refused; they count as not made."""
+        """A part of the message of expected rejections; rejected changes count as not made."""
         self._acknowledged: set[str] = set()
         self._there: set[str] = set()
-        """The cups as they were reckoned up last."""
+        """The cups at the last count."""
         self._loads = 0
         self.load_again()
 
     def load_again(self) -> None:
-        """Begin another load; one that a fault left going on is reckoned up."""
+        """Begin another load; a running one is counted first."""
         if self._loads and self.load.is_alive():
             self.reckon()
         self._loads += 1
@@ -102,12 +102,12 @@ class Ground:
         self.load.start()
 
     def start(self) -> System:
-        """Start it (again)."""
+        """Start or restart it."""
         self.system = self._stack.enter_context(running(self.data, *self._words, endpoint=self.endpoint))
         return self.system
 
     def observe(self, seconds: float) -> None:
-        """See what happens for a while, which does not count as time that the system takes."""
+        """Wait, without counting the time as recovery time."""
         time.sleep(seconds)
         self.observed_s += seconds
 
@@ -115,12 +115,12 @@ class Ground:
         return self.system.client()
 
     def nodes(self) -> dict[str, NodeStatus]:
-        """The nodes that are heard of, by name."""
+        """Return the ready nodes, by name."""
         with self.client() as client:
             return {node.node: node for node in client.status().nodes if node.state == "ready"}
 
     def seconds_until_whole(self) -> float:
-        """How long it takes until every node is ready, and a change is made by somebody who comes anew."""
+        """Return the time until every node is ready, and a new client can make a change."""
         began_s = time.monotonic()
         wanted = set(self._settings().nodes)
 
@@ -133,9 +133,9 @@ class Ground:
             except errors.NoAnswer:
                 return False
 
-        wait_for(is_whole, "the system is whole again")
+        wait_for(is_whole, "the system has recovered")
         seen = len(self.load.added)
-        wait_for(lambda: len(self.load.added) > seen, "the load goes on")
+        wait_for(lambda: len(self.load.added) > seen, "the load continues")
         return time.monotonic() - began_s
 
     def _settings(self) -> Any:
@@ -144,7 +144,7 @@ class Ground:
         return Supervisor(self.data).settings
 
     def reckon(self) -> tuple[int, int]:
-        """Stop the load; how many acknowledged changes are lost, how many of this load were done twice."""
+        """Stop the load; return the number of lost and of doubled changes."""
         self.load.stop()
         expected = self.may_be_refused
         refused = [text for text in self.load.refused if expected is None or expected not in text]
@@ -153,10 +153,10 @@ class Ground:
             there = {entity.name for entity in client.list("Cup")}
         added = set(self.load.added)
         self._acknowledged |= added
-        said_twice = len(self.load.added) - len(added)
-        nobodys = len(there - self._there) - len(added) - self.load.unanswered
+        repeated = len(self.load.added) - len(added)
+        unexplained = len(there - self._there) - len(added) - self.load.unanswered
         self._there = there
-        return len(self._acknowledged - there), said_twice + max(0, nobodys)
+        return len(self._acknowledged - there), repeated + max(0, unexplained)
 
     def close(self) -> None:
         with contextlib.suppress(AssertionError):
@@ -165,10 +165,10 @@ class Ground:
 
 
 def wait_for(condition: Callable[[], Any], what: str, *, within_s: float = PATIENCE_S) -> Any:
-    """What `condition()` gives as soon as it holds; an AssertionError after a while."""
+    """Return the result of `condition()` as soon as it is true; fail after a time-out."""
     deadline_s = time.monotonic() + within_s
     while time.monotonic() < deadline_s:
         if result := condition():
             return result
         time.sleep(0.05)
-    raise AssertionError(f"waited {within_s:g} s in vain: {what}")
+    raise AssertionError(f"timed out after {within_s:g} s: {what}")

@@ -1,6 +1,6 @@
-"""Hosts of a test: network namespaces of their own in one user namespace, joined by links that can be cut.
+"""Hosts of a test: network namespaces in one user namespace, joined by links that can be cut.
 
-`python -m tests.faults.MODULE` is to run under `unshare -rn`, where one may make namespaces and links.
+`python -m tests.faults.MODULE` must run under `unshare -rn`, which permits namespaces and links.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from typing import Any, Final, Literal, TypeVar, get_args
 _NEW_NETWORK = 0x4000_0000
 _NEW_HOST_NAME = 0x0400_0000
 _NOBODY = "02:00:00:00:00:99"
-"""A link-layer address that nobody has: what is sent there is lost without a sound."""
+"""An unused link-layer address: packets sent to it are lost silently."""
 
 R = TypeVar("R")
 How = Literal["silent", "down"]
@@ -30,7 +30,7 @@ HOWS: Final[tuple[How, ...]] = get_args(How)
 
 
 def missing() -> str:
-    """Why there can be no hosts here; nothing where there can."""
+    """Return why hosts cannot be created here; "" if they can."""
     if _ip() is None:
         return "there is no ip (Debian's iproute2)"
     try:
@@ -41,7 +41,7 @@ def missing() -> str:
 
 
 class Host:
-    """A host: network, name and folder for temporary files of its own, and a process to do things in."""
+    """A host: its own network, name and temporary folder, and a process on it."""
 
     def __init__(self, name: str, folder: Path) -> None:
         self.name = name
@@ -53,32 +53,32 @@ class Host:
 
     @property
     def pid(self) -> int:
-        """Of its process, as soon as that runs."""
+        """The id of its process, once that runs."""
         return self._pid.result()
 
     def do(self, function: Callable[..., R], *arguments: Any) -> R:
-        """What `function` returns, or raises, on this host."""
+        """Run `function` on this host and return its result, or raise its error."""
         return self.begin(function, *arguments).result()
 
     def begin(self, function: Callable[..., R], *arguments: Any) -> Future[R]:
-        """The same, without waiting."""
+        """Run `function` on this host without waiting."""
         return self._process.submit(function, *arguments)
 
     def close(self) -> None:
-        """End its process; what that has started must have ended."""
+        """End its process; its child processes must have ended."""
         self._process.shutdown()
 
 
 @dataclass(frozen=True)
 class Link:
-    """A cable between two hosts, with the address of each end."""
+    """A link between two hosts, with the address of each end."""
 
     ends: tuple[Host, Host]
     addresses: tuple[str, str]
     device: str
 
     def cut(self, how: How) -> None:
-        """From now on nothing comes through: everything is lost silently, or one end is switched off."""
+        """Cut the link: lose all packets silently, or switch off one end."""
         if how == "down":
             self.ends[0].do(_run_ip, "link", "set", self.device, "down")
             return
@@ -87,7 +87,7 @@ class Link:
             end.do(_run_ip, *words)
 
     def mend(self, how: How) -> None:
-        """As it was before it was cut."""
+        """Restore the link."""
         if how == "down":
             self.ends[0].do(_run_ip, "link", "set", self.device, "up")
             return
@@ -95,13 +95,13 @@ class Link:
             end.do(_run_ip, "neigh", "del", other, "dev", self.device)
 
     def sent(self) -> tuple[int, int]:
-        """How many bytes each end has sent."""
+        """Return the number of bytes that each end has sent."""
         one, other = (end.do(_sent, self.device) for end in self.ends)
         return one, other
 
 
 class Network(contextlib.ExitStack):
-    """Hosts and links, which end with it."""
+    """Hosts and links, which exist until it is closed."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -110,11 +110,11 @@ class Network(contextlib.ExitStack):
         self._links = 0
 
     def host(self, name: str) -> Host:
-        """Another host."""
+        """Add a host."""
         return self.enter_context(contextlib.closing(Host(name, self._folder)))
 
     def link(self, one: Host, other: Host) -> Link:
-        """Join two hosts."""
+        """Link two hosts."""
         self._links += 1
         device, addresses = f"to{self._links}", (f"10.0.{self._links}.1", f"10.0.{self._links}.2")
         ends = ("name", device, "netns", str(one.pid)), ("name", device, "netns", str(other.pid))
@@ -126,7 +126,7 @@ class Network(contextlib.ExitStack):
 
 
 def _become_host(name: str, folder: str) -> None:
-    """Let this process, before it has any thread, have a network and a name of its own."""
+    """Give this process its own network and host name; it must not have threads yet."""
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.unshare(_NEW_NETWORK | _NEW_HOST_NAME) != 0:
         raise OSError(ctypes.get_errno(), "cannot make a host")

@@ -1,4 +1,4 @@
-"""A mirror of the robot's map, or the SPARQL server that it writes to, is killed while commits stream in."""
+"""A mirror of the map, or the SPARQL server it writes to, is killed while commits arrive."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _KILLS = 3
 
 
 def _kill_again_and_again(ground: Ground, *, server_too: bool) -> None:
-    """In the end the graph is the robot's export, at the same commit, and its history was never in doubt."""
+    """At the end the graph equals the robot's export, at the same commit, and its history is unbroken."""
     told: list[str] = []
     with tempfile.TemporaryDirectory() as folder, oxigraph(Path(folder)) as server:
         for _ in range(_KILLS):
@@ -45,7 +45,7 @@ def _kill_again_and_again(ground: Ground, *, server_too: bool) -> None:
 
 @contextlib.contextmanager
 def _mirror(ground: Ground, server: Oxigraph, told: list[str]) -> Iterator[None]:
-    """`semmap fleet mirror`, which ends by kill -9."""
+    """Run `semmap fleet mirror`, and end it with kill -9."""
     command = [Path(sys.executable).with_name("semmap"), "fleet", "mirror", "--connect", ground.endpoint]
     where = ["--sparql-update", server.update_url]
     with tempfile.TemporaryFile("w+") as said:

@@ -1,7 +1,6 @@
-"""Payloads that nobody of ours would send, for every key of the table: made of messages, and then broken.
+"""Payloads that no client of ours would send, for every key: valid messages that are mutated.
 
-`python -m tests.faults.mutations [COUNT] [SEED]` sends them to a whole system of its own, and tells what came
-of them.
+`python -m tests.faults.mutations [COUNT] [SEED]` sends them to a system of its own and prints the results.
 """
 
 from __future__ import annotations
@@ -27,11 +26,11 @@ from semmap.schemas.calls import Call
 from tests.conftest import System, running
 
 TIMEOUT_S = 900.0
-"""After so long an answer is lost. A check by owlrl takes half a minute of a core, and waits for others."""
+"""Time-out of a reply: a check by owlrl takes half a minute of a core, and may wait for others."""
 IN_FLIGHT = 16
 _WORDS = ("--no-record",)
 _NOT_SENT = frozenset({"clear", "step"})
-"""Verbs that leave nothing to look at, or take simulated minutes, where they happen to be well-formed."""
+"""Commands that are not sent, because they would empty the map or take minutes."""
 _STRANGE: tuple[Any, ...] = (
     *(None, True, 0, -1, 2**63 - 1, -(2**63), 2**64 - 1, 1e308, -0.0, 5e-324, float("nan"), float("inf")),
     *(
@@ -54,7 +53,7 @@ _STRANGE: tuple[Any, ...] = (
 
 
 def queries() -> dict[str, type[Call]]:
-    """Every key at which something is asked, and the type of its message."""
+    """Return every key of a query, and the type of its message."""
     asked = {f"{keys.CMD}/{verb}": kind for verb, kind in commands.COMMANDS.items() if verb not in _NOT_SENT}
     asked |= {f"{keys.BRIDGE}/{verb}": kind for verb, kind in bridge.BRIDGE.items()}
     asked |= {
@@ -66,18 +65,18 @@ def queries() -> dict[str, type[Call]]:
 
 
 def topics() -> dict[str, Any]:
-    """Every key on which something is published, its wildcards filled in, and the type of its message."""
+    """Return every key of a publication, without wildcards, and the type of its message."""
     return {topic.key.replace("*", "x"): topic.message for topic in (*keys.TOPICS, keys.SEGMENTS)}
 
 
 class Mutator:
-    """Random broken payloads; the same ones for the same seed."""
+    """Random mutated payloads, reproducible by the seed."""
 
     def __init__(self, seed: int) -> None:
         self._random = random.Random(seed)
 
     def payload(self, kind: Any) -> bytes:
-        """One that may or may not be a message of type `kind`."""
+        """Return a payload that may be a valid message of type `kind`."""
         pick = self._random.choice
         content = self._value(inspect.type_info(kind), 0)
         for _ in range(self._random.choice((0, 1, 1, 2, 5))):
@@ -89,7 +88,7 @@ class Mutator:
         )(payload)
 
     def _value(self, info: inspect.Type, depth: int) -> Any:
-        """Plain data like a message of that type, more or less."""
+        """Return data that resembles a message of that type."""
         choose = self._random
         match info:
             case inspect.Metadata(type=inner):
@@ -128,7 +127,7 @@ class Mutator:
                 return choose.choice(_STRANGE)
 
     def _broken(self, content: Any) -> Any:
-        """With one thing in it another, gone, or too many."""
+        """Return the data with one element changed, removed or added."""
         choose = self._random
         if isinstance(content, dict) and content and choose.random() < 0.9:
             key = choose.choice(list(content))
@@ -183,14 +182,14 @@ class Mutator:
 
 @dataclass
 class Outcome:
-    """What came of so many payloads."""
+    """The result of a number of payloads."""
 
     sent: int = 0
     published: int = 0
     answered: Counter[str] = field(default_factory=Counter)
-    """By `ok` or the code of the error."""
+    """Counts by `ok` or the error code."""
     wrong: list[str] = field(default_factory=list)
-    """What must not be: no answer, an internal error, a text that is none."""
+    """Failures: no reply, an internal error, or an invalid text."""
 
     def __str__(self) -> str:
         answers = ", ".join(f"{count} {code}" for code, count in self.answered.most_common())
@@ -198,7 +197,7 @@ class Outcome:
 
 
 def send(endpoint: str, count: int, seed: int) -> Outcome:
-    """Ask and publish `count` payloads, over all keys."""
+    """Send `count` payloads to all keys."""
     outcome, mutator = Outcome(), Mutator(seed)
     asked, published = list(queries().items()), list(topics().items())
     free, lock = threading.Semaphore(IN_FLIGHT), threading.Lock()
@@ -254,13 +253,13 @@ def _told(reply: zenoh.Reply) -> str:
 
 
 def pids(system: System) -> dict[str, int]:
-    """Those of the nodes."""
+    """Return the process ids of the nodes."""
     with system.client() as client:
         return {node.node: node.pid for node in client.status().nodes if node.node in keys.NODES}
 
 
 def main(count: int, seed: int) -> int:
-    """Exit status 1 if a node died, or one was not answered as it should be."""
+    """Run it; returns 1 if a node died, or a reply was not as expected."""
     with (
         tempfile.TemporaryDirectory(prefix="semmap-mutations-") as folder,
         running(Path(folder, "d"), *_WORDS) as system,

@@ -1,4 +1,4 @@
-"""What is done on one of several hosts, in its own process: `host.do(up, ...)`."""
+"""Actions on one of several hosts, in its own process: `host.do(up, ...)`."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _BREATH_S = 0.25
 
 
 class Watcher(threading.Thread):
-    """Follows the map, and notes the number of each commit."""
+    """Follows the map, and records the number of each commit."""
 
     def __init__(self, endpoint: str) -> None:
         super().__init__(daemon=True)
@@ -39,22 +39,22 @@ class Watcher(threading.Thread):
 
 
 def identify(identity: str) -> None:
-    """From now on clients on this host show this certificate."""
+    """Use this certificate for clients on this host."""
     os.environ[IDENTITY_VARIABLE] = identity
 
 
 def up(data: str, endpoint: str, words: tuple[str, ...]) -> None:
-    """Start a part of a system; ready when this returns."""
+    """Start a part of a system, and return when it is ready."""
     _stack.enter_context(running(Path(data), *words, endpoint=endpoint))
 
 
 def route(configuration: str) -> None:
-    """Run a router that is not semmap's from its configuration file, as zenohd would."""
+    """Run a plain Zenoh router from its configuration file, as zenohd would."""
     _stack.enter_context(zenoh.open(zenoh.Config.from_json5(configuration)))
 
 
 def load(endpoint: str, number: int) -> None:
-    """Begin to add cups; a load before has ended."""
+    """Begin to add cups; an earlier load must have ended."""
     _loads[:] = [Load(endpoint, number, _BREATH_S, insists=True)]
     _loads[0].start()
 
@@ -66,15 +66,15 @@ def watch(endpoint: str) -> None:
 
 
 def pids(data: str) -> dict[str, int]:
-    """The processes of the nodes on this host."""
+    """Return the processes of the nodes on this host."""
     return all_pids_of(Path(data)) if Path(data).is_dir() else {}  # a router of Zenoh has no nodes
 
 
 def seconds_until_whole(endpoint: str, nodes: set[tuple[str, str]]) -> float:
-    """How long it takes until all is as it should be, as seen from here.
+    """Return the time until the system is complete, as seen from this host.
 
-    All nodes (each with its host) are ready, somebody new has a plate made that gets its body, the load goes
-    on, and what follows the map has all of it.
+    All nodes (each with its host) are ready, a new client can add a plate that gets its body, and the load
+    and the watcher continue.
     """
     began_s = time.monotonic()
     added, seen = [len(one.added) for one in _loads], [len(one.seqs) for one in _watchers]
@@ -99,11 +99,11 @@ def seconds_until_whole(endpoint: str, nodes: set[tuple[str, str]]) -> float:
 
 
 class Ended(NamedTuple):
-    """What came of a load."""
+    """The result of a load."""
 
     acknowledged: list[str]
     unanswered: int
-    """How often it was not answered, and asked again."""
+    """Number of changes that were not answered and sent again."""
     in_doubt: bool
     refused: list[str]
 
@@ -116,13 +116,13 @@ def stop_load() -> Ended:
 
 
 def followed(until: int) -> list[list[int]]:
-    """What each watcher has heard, when it has come to commit `until`."""
-    wait_for(lambda: all(w.seqs and w.seqs[-1] >= until for w in _watchers), f"commit {until} is heard of")
+    """Return what each watcher has received up to commit `until`."""
+    wait_for(lambda: all(w.seqs and w.seqs[-1] >= until for w in _watchers), f"commit {until} is received")
     return [list(watcher.seqs) for watcher in _watchers]
 
 
 def cups(endpoint: str) -> tuple[set[str], int]:
-    """The cups there are, and the last commit, when the scene has all of them where the map says."""
+    """Return the cups and the last commit, when all cups are placed in the scene."""
 
     def agreed() -> tuple[set[str], int] | None:
         with connect(endpoint) as client:
@@ -136,14 +136,14 @@ def cups(endpoint: str) -> tuple[set[str], int]:
 
 
 def clear(endpoint: str) -> None:
-    """Let the map be empty: what is measured next is not how long many bodies take."""
+    """Clear the map, so that the number of bodies does not affect the next measurement."""
     with connect(endpoint) as client:
         client.clear()
         wait_for(lambda: client.status().bodies == 0, "the bodies are gone")
 
 
 def recorded(endpoint: str, until: int) -> None:
-    """Return when the recorder, wherever it runs, says that it has all commits."""
+    """Return when the recorder, on any host, reports that it has all commits."""
 
     def has_all() -> bool:
         with connect(endpoint) as client:

@@ -1,4 +1,4 @@
-"""More than a system can do: what was acknowledged stays, and every command is answered."""
+"""Overload: acknowledged changes are kept, and every command is answered."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from tests.faults.table import Fault
 
 _PUTS = 5000
 _STATUS_S = 5.0
-"""What `status` may take on a machine that is busy with all of this."""
+"""Longest time of `status` on an overloaded machine."""
 
 
 def flood_of_puts(ground: Ground) -> None:
-    """Two senders put as fast as they can: each put is done or refused, and others are still answered.
+    """Two senders send puts as fast as they can: each is executed or rejected, others are still served.
 
     The senders' sessions stay open until the last acknowledgement. A Zenoh (1.10.2) session that is closed
-    drops what its link has not taken within half a second, even with congestion control "block".
+    drops what its link has not accepted within half a second, even with congestion control "block".
     """
     with ground.client() as client, contextlib.ExitStack() as stack:
         sessions = [stack.enter_context(_session(ground)) for _ in range(3)]
@@ -39,11 +39,11 @@ def flood_of_puts(ground: Ground) -> None:
                     congestion_control=zenoh.CongestionControl.BLOCK,
                 )
 
-        def told(_: str, ack: Ack) -> None:
+        def on_ack(_: str, ack: Ack) -> None:
             acks[ack.id] = "done" if ack.error is None else ack.error.code
 
         senders = [f"{who} {time.time_ns()} " for who in "ab"]
-        bus.follow(sessions[0], keys.ACK, told)
+        bus.follow(sessions[0], keys.ACK, on_ack)
         ground.observe(1.0)
         threads = [
             threading.Thread(target=flood, args=both) for both in zip(sessions[1:], senders, strict=True)
@@ -53,7 +53,7 @@ def flood_of_puts(ground: Ground) -> None:
         while any(thread.is_alive() for thread in threads) or not acks:
             began_s = time.monotonic()
             client.status()
-            assert time.monotonic() - began_s < _STATUS_S, "the status is told meanwhile"
+            assert time.monotonic() - began_s < _STATUS_S, "status is answered during the flood"
         with contextlib.suppress(AssertionError):
             wait_for(lambda: len(acks) == 2 * _PUTS, "each put is answered")
         unanswered = {who: _gaps(acks, who) for who in senders if _gaps(acks, who)}
@@ -62,7 +62,7 @@ def flood_of_puts(ground: Ground) -> None:
 
 
 def _gaps(acks: dict[str, str], who: str) -> list[range]:
-    """The numbers of the puts that were not acknowledged."""
+    """Return the numbers of the puts without acknowledgement."""
     gaps: list[range] = []
     for number in range(_PUTS):
         if f"{who}{number}" in acks:

@@ -29,22 +29,24 @@ def kill(node: str, ground: Ground) -> None:
 
 
 def stop(node: str, ground: Ground) -> None:
-    """It hangs: it is replaced within seconds, and nobody else is."""
+    """A hanging node is restarted within seconds, and no other node is."""
     before = all_pids_of(ground.data)
     os.kill(before[node], signal.SIGSTOP)
     began_s = time.monotonic()
-    wait_for(lambda: not _runs(before[node]), f"{node}, which hangs, is ended")
+    wait_for(lambda: not _runs(before[node]), f"{node} hangs and is ended")
     noticed_s = time.monotonic() - began_s
     assert noticed_s < NOTICED_S, f"{node} hung for {noticed_s:.1f} s"
     wait_for(lambda: node in pids_of(ground.data), f"{node} is back")
     ground.observe(NOTICED_S)
     now = all_pids_of(ground.data)
     others = {other: (pid, now.get(other)) for other, pid in before.items() if other != node}
-    assert all(was == is_ for was, is_ in others.values()), f"besides {node} others were replaced: {others}"
+    assert all(was == is_ for was, is_ in others.values()), (
+        f"other nodes than {node} were restarted: {others}"
+    )
 
 
 def kill_supervisord(ground: Ground) -> None:
-    """`semmap up` ends with an error, and nothing is left."""
+    """`semmap up` ends with an error, and no process is left."""
     pids, up = all_pids_of(ground.data), ground.system.process
     os.kill(_supervisord(ground), signal.SIGKILL)
     assert up.wait(30) not in (0, None)
@@ -53,7 +55,7 @@ def kill_supervisord(ground: Ground) -> None:
 
 
 def kill_up(ground: Ground) -> None:
-    """Nothing is left serving for long."""
+    """No process is left running for long."""
     pids, up = all_pids_of(ground.data), ground.system.process
     up.kill()
     up.wait(30)
@@ -62,7 +64,7 @@ def kill_up(ground: Ground) -> None:
 
 
 def kill_up_and_start_at_once(ground: Ground) -> None:
-    """The next `semmap up` takes over, also from a node that hangs."""
+    """The next `semmap up` takes over, also from a hanging node."""
     pids, up = all_pids_of(ground.data), ground.system.process
     os.kill(pids["kb_node"], signal.SIGSTOP)
     up.kill()
@@ -72,7 +74,7 @@ def kill_up_and_start_at_once(ground: Ground) -> None:
 
 
 def kill_everybody_above_and_go_down(ground: Ground) -> None:
-    """`semmap down` finds a node that hangs and has been left behind."""
+    """`semmap down` finds a hanging node that was left behind."""
     pids, up = all_pids_of(ground.data), ground.system.process
     supervisord = _supervisord(ground)
     up.kill()
@@ -90,7 +92,7 @@ def kill_everybody_above_and_go_down(ground: Ground) -> None:
 
 
 def stop_up(ground: Ground) -> None:
-    """Whoever watches is held up; then nobody is taken to hang because of that."""
+    """If `semmap up` itself is delayed, it does not take nodes for hanging."""
     before = all_pids_of(ground.data)
     ground.system.process.send_signal(signal.SIGSTOP)
     ground.observe(2 * NOTICED_S)
@@ -100,7 +102,7 @@ def stop_up(ground: Ground) -> None:
 
 
 def all_pids_of(data: Path) -> dict[str, int]:
-    """The same, once supervisord has answered and each node runs: a busy machine may let it be late."""
+    """Return the processes once supervisord replies and each node runs, which may take time."""
 
     def all_run() -> dict[str, int]:
         pids = pids_of(data)
@@ -111,7 +113,7 @@ def all_pids_of(data: Path) -> dict[str, int]:
 
 
 def pids_of(data: Path) -> dict[str, int]:
-    """The processes of the nodes that `semmap up` runs on a data folder; none where supervisord is silent."""
+    """Return the processes of the nodes of a data folder; none if supervisord does not reply."""
     with contextlib.suppress(Exception):
         processes = Supervisor(data).processes()
         return {node: info["pid"] for node, info in processes.items() if info["statename"] == "RUNNING"}

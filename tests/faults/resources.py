@@ -1,4 +1,4 @@
-"""Resources that give out: the disk, the memory, the network; and disks that return something else."""
+"""Exhausted resources: disk, memory, network; and disks that return wrong data."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _SPARE_BYTES = 4 << 20
 
 
 def disk_full(ground: Ground) -> None:
-    """Commits are refused, `status` says so, and they go on when there is room."""
+    """Commits are rejected, `status` reports it, and they continue when there is space."""
     ground.may_be_refused = "could not be written"
     pid = all_pids_of(ground.data)["kb_node"]
     largest = max(path.stat().st_size for path in ground.data.glob("journal.sqlite*"))
@@ -41,7 +41,7 @@ def disk_full(ground: Ground) -> None:
 
 
 def no_memory(ground: Ground) -> None:
-    """What takes memory that there is not is answered as an error, or the node is started again."""
+    """A request that needs too much memory gets an error, or the node is restarted."""
     ground.may_be_refused = ""
     pid = all_pids_of(ground.data)["kb_node"]
     with (
@@ -54,7 +54,7 @@ def no_memory(ground: Ground) -> None:
 
 
 def read_only(ground: Ground) -> None:
-    """A system whose folder is read-only does not start, and says why; nothing is changed."""
+    """A system with a read-only folder does not start and reports the reason; nothing is changed."""
     ground.system.stop()
     data = ground.data
     mounts = f"mount --bind {data} {data} && mount -o remount,ro,bind {data}"
@@ -68,7 +68,7 @@ def read_only(ground: Ground) -> None:
 
 
 def damaged_journal(ground: Ground) -> None:
-    """A commit in the middle is damaged: the start is refused, `repair` keeps all the rest and its effect."""
+    """A damaged commit: the start is rejected, and `repair` keeps all others and its effect."""
     ground.system.stop()
     with contextlib.closing(sqlite3.connect(ground.data / "journal.sqlite")) as db, db:
         (seq,) = db.execute("SELECT max(seq) / 2 FROM commits").fetchone()
@@ -85,7 +85,7 @@ def damaged_journal(ground: Ground) -> None:
 
 
 def restored_backup(ground: Ground) -> None:
-    """A backup that is made under load has what was acknowledged before, and is a map."""
+    """A backup under load contains all earlier acknowledged changes, and can be restored."""
     file, other = ground.data.parent / "backup", ground.data.parent / "restored"
     before = set(ground.load.added)
     with ground.client() as client:
@@ -98,7 +98,7 @@ def restored_backup(ground: Ground) -> None:
 
 
 def links_cut(ground: Ground) -> None:
-    """In a network of its own, a whole system bears that nothing comes through for a while."""
+    """In its own network, a whole system survives an interruption of all links."""
     words = ["unshare", "-rn", sys.executable, "-m", "tests.faults.cut_links", str(_CUT_S)]
     began_s = time.monotonic()
     ended = subprocess.run(words, capture_output=True, text=True, timeout=300)
@@ -110,7 +110,7 @@ def links_cut(ground: Ground) -> None:
 
 @contextlib.contextmanager
 def _limited(pid: int, kind: int, value: int) -> Iterator[None]:
-    """The operating system gives the process no more than so much."""
+    """Limit a resource of a process."""
     limits = resource.prlimit(pid, kind)
     resource.prlimit(pid, kind, (value, limits[1]))
     try:
@@ -121,7 +121,7 @@ def _limited(pid: int, kind: int, value: int) -> Iterator[None]:
 
 
 def _no_namespace(kind: str) -> str:
-    """Why there can be none here."""
+    """Return why a namespace cannot be created here; "" if it can."""
     try:
         ended = subprocess.run(["unshare", f"-r{kind}", "true"], capture_output=True, text=True)
     except OSError as error:

@@ -1,7 +1,7 @@
-"""The table of faults. A line is what is done; what is promised is the same for all of them.
+"""The table of faults: each row is a fault, and the guarantees are the same for all.
 
-Every change that was acknowledged is there once, and the system is whole again by itself. A strike that finds
-a further promise broken raises AssertionError. Add yours to one of the tuples in `FAULTS`.
+Every acknowledged change exists exactly once, and the system recovers by itself. A fault that violates
+another guarantee raises AssertionError. To add a fault, add it to one of the tuples in `FAULTS`.
 """
 
 from __future__ import annotations
@@ -23,34 +23,34 @@ def _nothing() -> str:
 
 @dataclass(frozen=True)
 class Fault:
-    """What is done to a system under load; how often in `make test-faults` and how often in `make test`."""
+    """A fault, and how often it is done in `make test-faults` and in `make test`."""
 
     name: str
     strike: Callable[[Ground], None]
     often: int = 3
     in_short: int = 0
     words: tuple[str, ...] = SMALL
-    """With which it is started."""
+    """The options of the system."""
     missing: Callable[[], str] = field(default=_nothing)
-    """Why it cannot be done here; nothing where it can."""
+    """Returns why it cannot be done here; "" if it can."""
 
 
 @dataclass
 class Row:
-    """What came of one line of the table."""
+    """The result of a row."""
 
     name: str
     done: int = 0
     lost: int = 0
     doubled: int = 0
     whole_s: float = 0.0
-    """The longest that it took."""
+    """The longest recovery."""
     skipped: str = ""
     failed: str = ""
 
 
 def outcome(fault: Fault, data: Path, times: int) -> Row:
-    """Do it so many times, to one system."""
+    """Run a fault repeatedly on one system."""
     if missing := fault.missing():
         return Row(fault.name, skipped=missing)
     with contextlib.closing(Ground(data, fault.words)) as ground:
@@ -58,7 +58,7 @@ def outcome(fault: Fault, data: Path, times: int) -> Row:
 
 
 def done_to(ground: Ground, fault: Fault, times: int) -> Row:
-    """Do it so many times to a system under load, and stop the load."""
+    """Run a fault repeatedly on a system under load, and stop the load."""
     row = Row(fault.name)
     ground.seconds_until_whole()
     for _ in range(times):

@@ -1,4 +1,4 @@
-"""The table of faults in its short form; `make test-faults` does all of it."""
+"""The table of faults (short version; `make test-faults` runs all)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SHORT = [fault for fault in FAULTS if fault.in_short]
 
 @pytest.mark.parametrize("words", [SMALL, ALL, FLEET], ids=["map", "scene", "fleet"])
 def test_nothing_is_lost_or_done_twice(tmp_path, subtests, words):
-    """One system bears all of them in turn: starting one for each takes most of the time."""
+    """One system for all faults: starting one for each takes most of the time."""
     faults = [fault for fault in SHORT if fault.words == words and not fault.missing()]
     with contextlib.closing(Ground(tmp_path / "data", words)) as ground:
         for i, fault in enumerate(faults):

@@ -1,4 +1,4 @@
-"""Broken payloads on every key: no node dies, and each is answered in a sentence or ignored and counted."""
+"""Mutated payloads on every key: no node dies, and each is answered or ignored and counted."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.conftest import running, until
 from tests.faults.mutations import Mutator, pids, queries, send, topics
 
 
-def test_every_key_of_the_table_gets_some():
+def test_every_key_gets_payloads():
     prefixes = {key.rpartition("/")[0] for key in queries()}
     assert prefixes == {keys.CMD, keys.BRIDGE, keys.SIM}
     assert set(topics()) >= {keys.COMMIT.key, keys.POSES.key, keys.ACK.key, keys.health_key("x")}
@@ -26,7 +26,7 @@ def test_no_node_dies_and_every_payload_is_answered_or_counted(tmp_path, count):
         assert outcome.wrong == []
         assert pids(system) == before
         assert set(outcome.answered) > {"ok", "bad-request"}
-        _wait_under_the_id_of_a_change_that_named_nothing(system)
+        _wait_under_the_id_of_a_change_without_names(system)
         with system.client() as client:
             until(
                 lambda: any(
@@ -36,9 +36,9 @@ def test_no_node_dies_and_every_payload_is_answered_or_counted(tmp_path, count):
             )
 
 
-def _wait_under_the_id_of_a_change_that_named_nothing(system):
-    """Found by mutations: it was an internal error."""
+def _wait_under_the_id_of_a_change_without_names(system):
+    """Found by mutations: this was an internal error."""
     with system.client() as client:
-        nobody = Load(content=b"<urn:a> <urn:b> <urn:c> .", filename="a.ttl", id="again")
-        assert client.send(nobody).names == ()
+        empty = Load(content=b"<urn:a> <urn:b> <urn:c> .", filename="a.ttl", id="again")
+        assert client.send(empty).names == ()
         assert client.add("Cup", at=(1.0, 1.0, 0.0), wait=True, id="again").names == ()

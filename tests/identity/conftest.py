@@ -1,4 +1,4 @@
-"""A folder of keys, made once: keys take their time."""
+"""A folder of keys, created once because that is slow."""
 
 from __future__ import annotations
 

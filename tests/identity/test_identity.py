@@ -1,4 +1,4 @@
-"""A certificate is read as the library for certificates reads it, without it."""
+"""Certificates are read without the certificate library, with the same result."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ def test_name_role_and_end_are_those_of_the_certificate(folder):
 
 
 def test_a_certificate_of_the_far_future_is_read(folder):
-    """From 2050 on, times are written in another way."""
+    """From 2050 on, times have another encoding."""
     authority.add(folder, "late", "viewer", days=365 * 40)
     assert certificate.read((folder / "late.crt").read_bytes()).expires.year > 2060
 
 
 @given(st.binary(max_size=300))
-def test_what_is_no_certificate_is_told(content):
-    with pytest.raises(ValueError, match=r"certificate|cut short|unpack"):
+def test_an_invalid_certificate_is_an_error(content):
+    with pytest.raises(ValueError, match=r"certificate|truncated|unpack"):
         certificate.read(content)
 
 
@@ -59,7 +59,7 @@ def test_a_missing_file_is_named(folder, missing):
         Identity.read(folder / "vera")
 
 
-def test_an_expired_certificate_is_told_before_anything_is_asked(folder):
+def test_an_expired_certificate_is_reported_before_any_request(folder):
     authority.add(folder, "old", "viewer", days=0)
     with pytest.raises(errors.NoAnswer, match=r"expired on \d{4}-.*semmap keys renew old"):
         Identity.read(folder / "old").require_valid()
@@ -75,11 +75,11 @@ def test_a_live_register_sees_what_is_added_and_revoked(folder):
     assert live.role_of("vera") is None
     before = live.now
     (folder / "identities.json").write_text("{")
-    assert live.now is before  # what cannot be read changes nothing
+    assert live.now is before  # an unreadable register changes nothing
     assert live.now.members["bob"].expires > datetime.now(UTC)
 
 
-def test_to_show_a_certificate_and_to_run_a_system_takes_no_library(folder):
+def test_neither_clients_nor_nodes_need_the_certificate_library(folder):
     program = (
         "import sys; sys.modules['cryptography'] = None\n"
         "import semmap.nodes.extern.cli.commands.lifecycle, semmap.nodes.extern.client\n"

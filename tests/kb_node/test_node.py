@@ -290,7 +290,7 @@ def test_packed_documents_are_loaded(session):
 @pytest.mark.parametrize(
     ("verb", "payload", "error", "text"),
     [
-        ("destroy", b"\x80", errors.UnknownVerb, "unknown verb 'destroy'; there are: backup, check, "),
+        ("destroy", b"\x80", errors.UnknownVerb, "unknown command 'destroy'; available: backup, check, "),
         ("commit", b"\xc1", errors.BadRequest, "malformed message: it is not valid MessagePack"),
         ("commit", b"\x80", errors.BadRequest, "malformed message: id is missing"),
         (

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from semmap.nodes.coordinator.scene.reconcile import order
+from semmap.nodes.coordinator.reconciler.reconcile import body_order
 from semmap.nodes.kb_node.answers.whereabouts import Now
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -28,7 +28,9 @@ def flat(tmp_path_factory) -> World:
     things = Now(made).entities(Entities())
     home.close(made)
     world = World(base_scene.read_mjcf(FLAT_WORLD))
-    ordered = [order(thing, thing.pose) for thing in things if thing.pose is not None and not thing.place]
+    ordered = [
+        body_order(thing, thing.pose) for thing in things if thing.pose is not None and not thing.place
+    ]
     assert world.spawn(ordered).failed == {}
     world.step(5.0)
     return world

@@ -1,4 +1,4 @@
-"""A router that listens, with a session for somebody of each role."""
+"""A router, and a session for a client of each role."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.conftest import free_endpoint, until
 
 @pytest.fixture(scope="session")
 def folder(tmp_path_factory):
-    """Keys: for each role somebody who is called like it."""
+    """Keys: for each role a member with the same name."""
     folder = tmp_path_factory.mktemp("keys") / "K"
     authority.init(folder)
     for role in ROLES:
@@ -39,8 +39,8 @@ def router_network(folder, endpoint):
 
 @pytest.fixture(scope="session")
 def endpoint(folder):
-    """Where a router listens."""
-    endpoint = bus.over_tls(free_endpoint())
+    """The endpoint of a router."""
+    endpoint = bus.to_tls(free_endpoint())
     with bus.open_session(router_network(folder, endpoint)):
         yield endpoint
 
@@ -55,7 +55,7 @@ def opened(stack, endpoint, identity, **options):
 
 @pytest.fixture(scope="session")
 def sessions(folder, endpoint):
-    """One of each role, and one of a node that serves."""
+    """Sessions of each role, and of a node that serves."""
     with contextlib.ExitStack() as stack:
         yield {
             name: opened(stack, endpoint, Identity.read(folder / name))
@@ -64,13 +64,13 @@ def sessions(folder, endpoint):
 
 
 class Heard:
-    """What came to a session with a mark of this test's own: what others sent may still be on its way."""
+    """Messages with the mark of this test that a session has received; earlier ones may still arrive."""
 
     def __init__(self, session, *key_exprs):
         self._mark = secrets.token_bytes(8)
         self.keys = []
-        """The keys, in the order in which it came."""
-        # on Zenoh's own thread: several subscribers would else hear in another order
+        """The keys in the order of arrival."""
+        # on Zenoh's own thread: otherwise the order of subscribers differs
         callback = zenoh.handlers.Callback(self._hear, indirect=False)
         self._subscribers = [session.declare_subscriber(key_expr, callback) for key_expr in key_exprs]
 
@@ -86,7 +86,7 @@ class Heard:
             self.keys.append(str(sample.key_expr))
 
     def hears(self, session, *keys):
-        """Let a session publish on all keys, again and again, until what it put on the last has come."""
+        """Publish on all keys repeatedly until the message on the last has arrived."""
 
         def heard():
             for key in keys:

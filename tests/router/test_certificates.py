@@ -1,4 +1,4 @@
-"""Who gets no connection, and who gets one that carries nothing."""
+"""Clients without a connection, and those whose connection carries nothing."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def others(tmp_path):
 
 @pytest.fixture
 def changed(folder, tmp_path):
-    """A copy of the keys, of which the router has not heard."""
+    """A copy of the keys that the router does not use."""
     return shutil.copytree(folder, tmp_path / "changed")
 
 
@@ -71,7 +71,7 @@ def test_an_expired_certificate_opens_nothing(changed, endpoint):
 
 
 def test_no_certificate_opens_nothing(folder, endpoint):
-    """With TLS 1.3 it is told after the client's own handshake, by the first thing that comes back."""
+    """With TLS 1.3, the error arrives after the client's own handshake, with the first message."""
     host, _, port = endpoint.removeprefix("tls/").rpartition(":")
     context = ssl.create_default_context(cafile=str(folder / "ca.crt"))
     with (
@@ -87,7 +87,7 @@ def test_plain_tcp_opens_nothing(endpoint):
 
 
 def test_a_certificate_that_is_not_in_the_register_carries_nothing(changed, endpoint, served, sessions):
-    """As one that was revoked: it is of the right authority, so it opens a connection."""
+    """Like a revoked one: the authority is valid, so the connection opens."""
     authority.add(changed, "unheard-of", "admin")
     assert asked(sessions["operator"], "operator") == ["served"]
     with contextlib.ExitStack() as stack:
@@ -99,8 +99,8 @@ def test_a_certificate_that_is_not_in_the_register_carries_nothing(changed, endp
 
 @pytest.mark.parametrize("impostor", ["operator", "node", "kb_node"])
 def test_only_the_router_can_be_a_server(folder, impostor):
-    """Whoever listens with another certificate of the same authority is not taken for the router."""
-    endpoint = bus.over_tls(free_endpoint())
+    """A server with another certificate of the same authority is not accepted as the router."""
+    endpoint = bus.to_tls(free_endpoint())
     posing = bus.Network(
         mode="router", listen=(endpoint,), connect=(), identity=Identity.read(folder / impostor)
     )
@@ -116,7 +116,7 @@ def test_a_router_is_trusted_at_its_own_hosts_only(folder, endpoint):
 
 
 def test_a_link_ends_when_the_certificate_expires(changed, folder, endpoint, served, monkeypatch):
-    """A name of the register, with a certificate that is about to expire."""
+    """A registered name with a certificate that is about to expire."""
     with contextlib.ExitStack() as stack:
         for seconds in (2, 4, 8, 16, 32):
             soon = datetime.now(UTC) + timedelta(seconds=seconds)
@@ -124,7 +124,7 @@ def test_a_link_ends_when_the_certificate_expires(changed, folder, endpoint, ser
                 patched.setattr(authority, "_end", lambda days, soon=soon: soon)
                 authority.renew(changed, "viewer")
             viewer = Identity.read(changed / "viewer")
-            with contextlib.suppress(errors.NoAnswer):  # on a busy machine it expires before it is shown
+            with contextlib.suppress(errors.NoAnswer):  # on a busy machine it expires before it is used
                 session = opened(stack, endpoint, viewer)
                 if asked(session, "viewer") == ["served"]:
                     break
@@ -135,8 +135,8 @@ def test_a_link_ends_when_the_certificate_expires(changed, folder, endpoint, ser
 
 
 @pytest.mark.parametrize("victim", ["operator", "coordinator"])
-def test_another_session_s_id_gains_nothing(folder, endpoint, served, sessions, victim):
-    """Rules go by certificates; and an id that is in use opens no second connection."""
+def test_the_id_of_another_session_has_no_effect(folder, endpoint, served, sessions, victim):
+    """Rules use certificates, and an id in use opens no second connection."""
     config = bus.Network(
         connect=(endpoint,), identity=Identity.read(folder / "viewer"), patience_s=0.5
     ).as_config()

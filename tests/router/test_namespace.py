@@ -1,4 +1,4 @@
-"""The router of a robot with a name: its rules are about whole keys, with the namespace."""
+"""The router of a robot with a name: its rules are for whole keys with the namespace."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def test_with_a_namespace_the_rules_are_about_whole_keys(folder):
 
 @pytest.fixture(scope="module")
 def robot1(folder):
-    """Where the router of robot1 listens, with a coordinator that answers everybody."""
-    endpoint = bus.over_tls(free_endpoint())
+    """The endpoint of the router of robot1, whose coordinator replies to all."""
+    endpoint = bus.to_tls(free_endpoint())
     network = structs.replace(
         router_network(folder, endpoint),
         access=access_control(Register.read(folder).admitted, "robot1"),
@@ -40,7 +40,7 @@ def robot1(folder):
     with bus.open_session(network), contextlib.ExitStack() as stack:
         node = opened(stack, endpoint, Identity.read(folder / "coordinator"), namespace="robot1")
         bus.serve(node, keys.commands_as(), lambda request: request.reply(Done(text=request.who)))
-        token = bus.appear(node, "coordinator")
+        token = bus.declare_presence(node, "coordinator")
         yield endpoint
         token.undeclare()
 
@@ -51,17 +51,17 @@ def asked(folder, endpoint, name, namespace, patience_s=PATIENCE_S):
         return bus.ask(session, keys.commands_as(name), "status", Status(), Done, patience_s=patience_s).text
 
 
-def test_everybody_asks_under_their_own_name_in_it(folder, robot1):
+def test_clients_send_commands_under_their_own_name_in_it(folder, robot1):
     assert asked(folder, robot1, "viewer", "robot1") == "viewer"
 
 
 @pytest.mark.parametrize("namespace", ["", "robot2", "robot1/semmap"])
-def test_nobody_asks_in_another(folder, robot1, namespace):
+def test_no_client_sends_commands_in_another_namespace(folder, robot1, namespace):
     with pytest.raises(errors.NoAnswer):
         asked(folder, robot1, "viewer", namespace, patience_s=0.2)
 
 
-def test_whoever_asks_which_robots_there_are_is_told(folder, robot1):
+def test_a_query_for_all_robots_is_answered(folder, robot1):
     with contextlib.ExitStack() as stack:
         session = opened(stack, robot1, Identity.read(folder / "viewer"))
-        until(lambda: bus.robots(session) == {"robot1": frozenset({"coordinator"})}, "the robot")
+        until(lambda: bus.find_robots(session) == {"robot1": frozenset({"coordinator"})}, "the robot")

@@ -1,4 +1,4 @@
-"""The router's process: it follows the register, and everybody finds it again."""
+"""The router process: it follows the register, and all clients reconnect."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 from semmap.nodes import bus
 from semmap.nodes.identity import Identity, authority
 from semmap.nodes.identity.register import Member, Register
-from semmap.nodes.router.node import in_words
+from semmap.nodes.router.node import describe_certificates
 from semmap.nodes.supervisor.settings import Settings
 from semmap.schemas import codec, keys
 from semmap.schemas.commits import Effects
@@ -25,14 +25,14 @@ from tests.router.conftest import opened
 
 @pytest.fixture
 def own(folder, tmp_path):
-    """Keys of a test's own."""
+    """The keys of one test."""
     return shutil.copytree(folder, tmp_path / "K")
 
 
 @pytest.fixture
 def routed(own, tmp_path):
-    """Where the router's process listens."""
-    endpoint = bus.over_tls(free_endpoint())
+    """The endpoint of the router process."""
+    endpoint = bus.to_tls(free_endpoint())
     settings = Settings(
         data=str(tmp_path), tbox="none", abox=None, world="none", listen=endpoint, secure=str(own)
     )
@@ -47,7 +47,7 @@ def routed(own, tmp_path):
 
 @pytest.fixture
 def joined(own, routed):
-    """Of a name, its session."""
+    """Opens a session for a name."""
     with contextlib.ExitStack() as stack:
         yield lambda name: opened(stack, routed, Identity.read(own / name), patience_s=PATIENCE_S)
 
@@ -68,7 +68,7 @@ def serve(session):
     session.declare_queryable(f"{keys.commands_as()}/*", answer)
 
 
-def test_who_is_added_is_let_in_and_who_is_revoked_is_shut_out(own, joined):
+def test_added_members_are_admitted_and_revoked_ones_rejected(own, joined):
     serve(joined("coordinator"))
     viewer = joined("viewer")
     until(lambda: asked(viewer, "viewer"), "an answer")
@@ -98,7 +98,7 @@ def test_a_follower_loses_no_commit_while_the_register_changes(own, joined):
     until(one_more, "the first commit")
     began = seen[0]
     for n in range(3):
-        authority.add(own, f"guest{n}", "viewer")  # and the router begins anew, between any two of these
+        authority.add(own, f"guest{n}", "viewer")  # and the router restarts between any two of these
         guest, heard = joined(f"guest{n}"), []
         bus.follow(guest, keys.EFFECTS, lambda _, commit, heard=heard: heard.append(commit.seq))
         until(lambda heard=heard: one_more() and heard, "a commit for the guest")
@@ -106,13 +106,13 @@ def test_a_follower_loses_no_commit_while_the_register_changes(own, joined):
     assert seen == list(range(began, seq + 1))
 
 
-def test_it_beats_like_a_node(joined):
+def test_it_publishes_heartbeats(joined):
     beats: list[Health] = []
     bus.follow(joined("viewer"), keys.HEALTH, lambda _, health: beats.append(health))
     until(lambda: any(b.node == keys.ROUTER and b.state == "ready" for b in beats), "a beat")
 
 
-def test_whose_certificate_expires_soon_is_told():
+def test_a_certificate_that_expires_soon_is_reported():
     now = datetime(2026, 11, 22, tzinfo=UTC)
 
     def said(*days):
@@ -120,7 +120,7 @@ def test_whose_certificate_expires_soon_is_told():
             f"m{d}": Member(name=f"m{d}", role="viewer", serial="1", expires=now + timedelta(days=d))
             for d in days
         }
-        return in_words(Register(hosts=(), members=members), now)
+        return describe_certificates(Register(hosts=(), members=members), now)
 
     assert said(365, 31) == "2 certificates"
     assert said(365, 29, 10) == "3 certificates; that of m10 expires on 2026-12-02"

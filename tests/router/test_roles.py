@@ -20,21 +20,21 @@ ASKED = {grant.key: grant.roles for grant in GRANTS if grant.may == "ask"}
 
 
 def concrete(key_expr):
-    """A key of an expression."""
+    """Return a key of a key expression."""
     return key_expr.replace("*", "x")
 
 
 def may(role, key, table):
-    """Does any row of the table grant it?"""
+    """Return whether any row of the table grants it."""
     return any(
         role in granted and zenoh.KeyExpr(row).includes(zenoh.KeyExpr(key)) for row, granted in table.items()
     )
 
 
 BY_EVERYBODY = keys.health_key(keys.WEB)
-"""Everybody may publish it, and everybody may follow it."""
+"""All clients may publish and follow it."""
 BY_A_NODE = keys.health_key("after")
-"""Nodes may publish it, and everybody may follow it."""
+"""Nodes may publish it, and all clients may follow it."""
 
 
 def settle(sessions, *names):
@@ -73,7 +73,7 @@ def test_publishing(sessions, role, key_expr):
 
 @pytest.fixture(scope="module")
 def served(sessions):
-    """Nodes serve all that can be asked, and say by which key."""
+    """Nodes serve all commands, and reply with the key."""
 
     def answer(query):
         with query:
@@ -89,7 +89,7 @@ def served(sessions):
 
 
 def asked(session, key, patience_s=PATIENCE_S):
-    """What is answered to a query."""
+    """Return the replies to a query."""
     return [reply.ok.payload.to_string() for reply in session.get(key, timeout=patience_s) if reply.ok]
 
 
@@ -107,7 +107,7 @@ def test_asking(sessions, served, role, key):
 
 
 @pytest.mark.parametrize("role", ROLES)
-def test_commands_are_asked_under_ones_own_name_only(sessions, served, role):
+def test_commands_are_sent_under_the_own_name_only(sessions, served, role):
     own = f"{keys.commands_as(role)}/get"
     assert asked(sessions[role], own) == [own]
     for other in {*ROLES, "kb_node"} - {role}:
@@ -118,7 +118,7 @@ def test_commands_are_asked_under_ones_own_name_only(sessions, served, role):
 @pytest.mark.parametrize(
     "key_expr", ["semmap/as/*/cmd/get", "semmap/as/**", "semmap/**", "**", "semmap/*/get"]
 )
-def test_a_wildcard_asks_nobody(sessions, served, role, key_expr):
+def test_a_wildcard_reaches_no_queryable(sessions, served, role, key_expr):
     replies = sessions[role].get(key_expr, target=zenoh.QueryTarget.ALL, timeout=PATIENCE_S)
     assert [str(r.ok.key_expr) for r in replies if r.ok and str(r.ok.key_expr).startswith("semmap")] == []
 
@@ -129,7 +129,7 @@ def test_a_wildcard_asks_nobody(sessions, served, role, key_expr):
     [f"{keys.CMD}/add", f"{keys.commands_as()}/add", "semmap/as/operator/cmd/add", f"{keys.BRIDGE}/commit"],
 )
 def test_outsiders_serve_nothing(sessions, served, role, key):
-    """A queryable of theirs, however complete, is never asked."""
+    """Their queryables, even complete ones, are never queried."""
     stolen = []
 
     def steal(query):
@@ -152,12 +152,12 @@ def test_outsiders_serve_nothing(sessions, served, role, key):
 
 
 def there(session):
-    """The nodes that are there, as Zenoh says; now and then it says that nobody is."""
+    """Return the present nodes by Zenoh, which sometimes returns none."""
     return [str(r.ok.key_expr) for r in session.liveliness().get(keys.live_key("*")) if r.ok]
 
 
 @pytest.mark.parametrize("role", [role for role in ROLES if role != "node"])
-def test_outsiders_do_not_pass_for_nodes(sessions, role):
+def test_outsiders_cannot_declare_the_presence_of_nodes(sessions, role):
     forged, true = keys.live_key("sim_node", "forged"), keys.live_key("sim_node", "true")
     tokens = [
         sessions[role].liveliness().declare_token(forged),
@@ -174,7 +174,7 @@ def test_outsiders_do_not_pass_for_nodes(sessions, role):
 
 
 @pytest.mark.parametrize("role", ROLES)
-def test_everybody_sees_which_nodes_are_there(sessions, role):
+def test_all_clients_see_which_nodes_are_there(sessions, role):
     token = sessions["kb_node"].liveliness().declare_token(keys.live_key("kb_node", "1"))
     try:
         settle(sessions, "kb_node")
@@ -185,9 +185,9 @@ def test_everybody_sees_which_nodes_are_there(sessions, role):
 
 
 def test_the_table_has_every_key():
-    """A topic or a prefix that is new must say who may use it."""
+    """A new topic or prefix must define who may use it."""
     topics = {topic.key for topic in keys.TOPICS}
-    of_the_page = {keys.health_key(keys.WEB)}  # whoever it acts for, it says that it is there
+    of_the_page = {keys.health_key(keys.WEB)}  # the page announces itself, for any member it acts for
     assert topics == set(FOLLOWED) == set(PUBLISHED) - of_the_page
     assert {f"{prefix}/*" for prefix in keys.SERVED_BY} <= set(ASKED)
     assert roles.granted("viewer", "publish") == (keys.health_key(keys.WEB),)

@@ -1,4 +1,4 @@
-"""Configuration files for a router that is not semmap's own."""
+"""Configuration files for a plain Zenoh router."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "zenohd" / "site.json5"
 HERE = ("tcp/10.0.0.1:7447",)
 
 
-def test_the_example_says_what_our_own_routers_do():
+def test_the_example_has_the_settings_of_our_own_routers():
     example = zenoh.Config.from_file(str(EXAMPLE))
     ours = bus.Network(mode="router", listen=("tcp/0.0.0.0:7447",), connect=HERE).as_config()
     for path in bus.Network(mode="router").values().keys() - {"scouting/delay"}:  # which no router waits
@@ -43,8 +43,8 @@ def printed(folder, capsys):
     return printed
 
 
-def test_a_router_by_the_printed_file_admits_whom_ours_would(folder, printed):
-    endpoint = bus.over_tls(free_endpoint())
+def test_a_router_with_the_printed_file_admits_the_same_clients(folder, printed):
+    endpoint = bus.to_tls(free_endpoint())
     with contextlib.ExitStack() as stack:
         stack.enter_context(zenoh.open(zenoh.Config.from_json5(printed(endpoint))))
         coordinator, viewer, router = (
@@ -69,10 +69,10 @@ def test_a_router_by_the_printed_file_admits_whom_ours_would(folder, printed):
 def test_a_printed_file_is_for_certificates_only(folder, capsys):
     words = ["keys", "zenohd", "--dir", str(folder), "--connect", "tcp/10.0.0.1:7447"]
     assert execute(words) == 2
-    assert "endpoints of TLS only" in capsys.readouterr().err
+    assert "is not a plain TLS endpoint" in capsys.readouterr().err
 
 
-def test_what_is_routed_for_a_robot_bears_its_name(printed):
+def test_keys_for_a_robot_have_its_name(printed):
     access = json.loads(printed("tls/127.0.0.1:7447", "--namespace", "robot1"))["access_control"]
     key_exprs = {key for rule in access["rules"] for key in rule["key_exprs"]}
     assert {key for key in key_exprs if not key.startswith("robot1/")} == {keys.robots_live()}

@@ -51,9 +51,9 @@ def test_a_name_wins_over_a_label():
     assert names.find("table").name == "Table"
 
 
-def test_a_label_of_several_is_refused_with_the_candidates():
+def test_an_ambiguous_label_is_rejected_with_the_candidates():
     names = ClassNames([info("Cup", italian="tazza"), info("Mug", italian="Tazza")])
-    with pytest.raises(UnknownClass, match="'tazza' is ambiguous: Cup or Mug; say which class"):
+    with pytest.raises(UnknownClass, match="'tazza' is ambiguous: Cup or Mug; use one of these names"):
         names.find("tazza")
 
 
@@ -69,25 +69,25 @@ def twins() -> ClassNames:
 
 
 @pytest.mark.parametrize("word", ["Color", "color"])
-def test_a_name_of_several_classes_is_refused_with_the_candidates(word):
+def test_an_ambiguous_name_is_rejected_with_the_candidates(word):
     with pytest.raises(
-        UnknownClass, match=f"'{word}' is ambiguous: dul:Color or soma:Color; say which class"
+        UnknownClass, match=f"'{word}' is ambiguous: dul:Color or soma:Color; use one of these names"
     ):
         twins().find(word)
 
 
 @pytest.mark.parametrize("word", ["soma:Color", "SOMA:color", "http://som#Color", "<http://som#Color>"])
-def test_a_prefix_or_an_iri_says_which(word):
+def test_a_prefix_or_an_iri_is_unambiguous(word):
     assert twins().find(word).name == "soma:Color"
 
 
-def test_without_classes_of_things_in_space_it_is_said_what_to_do():
+def test_without_spatial_classes_the_error_has_the_next_step():
     names = ClassNames([info("Pizza", spatial=False)])
-    with pytest.raises(UnknownClass, match=r"nothing can be placed: .* --spatial-root CLASS"):
+    with pytest.raises(UnknownClass, match=r"does not define .* --spatial-root CLASS"):
         names.spatial("Pizza")
 
 
-def test_what_was_not_taken_literally_is_said():
+def test_an_inexact_match_gets_a_note():
     assert NAMES.note("LivingRoom", NAMES.find("LivingRoom")) == ("'LivingRoom' is read as Livingroom",)
     assert NAMES.note("Chair", NAMES.find("Chair")) == ()
 
@@ -99,11 +99,11 @@ def test_an_exact_name_wins_over_a_folded_one():
         names.find("tv")
 
 
-def test_an_unknown_class_is_told_with_the_nearest():
+def test_an_unknown_class_is_reported_with_similar_ones():
     with pytest.raises(UnknownClass, match="unknown class 'Chiar'; did you mean Chair"):
         NAMES.find("Chiar")
 
 
 def test_nothing_can_be_of_an_abstract_class():
-    with pytest.raises(UnknownClass, match="is not a class of things in space"):
+    with pytest.raises(UnknownClass, match="is not a spatial class"):
         NAMES.spatial("Color")

@@ -1,4 +1,4 @@
-"""What is not installed is asked for by name, and what is asked for is what the project's extras install."""
+"""Missing extras are reported by name, and extras install the modules that are used."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 NOT_EVERYWHERE = {"open3d", "open3d-cpu"}
 OURS = {"semmap"}
 NOT_ASKED_FOR = {"glfw", "open3d", "rapidfuzz", "typing_extensions"}
-"""What comes with another one, is done without, or is for type checkers only."""
+"""Modules of other packages, optional ones, and those for type checkers only."""
 AREAS = {
     "nodes/bus": (),
     "nodes/coordinator": ("kb",),
@@ -64,7 +64,7 @@ def test_the_modules_of_an_extra_are_what_it_installs():
 
 
 def third_party(path):
-    """What a file imports that neither Python nor this project has."""
+    """Return the third-party imports of a file."""
     for node in ast.walk(ast.parse(path.read_text())):
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
         if isinstance(node, ast.ImportFrom) and node.level == 0:
@@ -96,21 +96,23 @@ def test_with_everything_nothing_is_missing():
     extras.require_nodes(NODES)
 
 
-def test_what_is_missing_is_said_with_how_to_install_it(without):
+def test_missing_packages_are_reported_with_the_install_command(without):
     without("mujoco", "rerun")
     with pytest.raises(errors.BadRequest) as caught:
         extras.require("semmap replay", "record")
-    assert caught.value.text == "semmap replay needs more than is installed: pip install 'semmap[record]'"
+    assert (
+        caught.value.text == "semmap replay: missing optional packages; install: pip install 'semmap[record]'"
+    )
     assert caught.value.exit_status == 2
 
 
-def test_up_says_how_to_do_without(without):
+def test_up_reports_the_options_without_the_extra(without):
     without("mujoco", "rerun")
     with pytest.raises(errors.BadRequest) as caught:
         extras.require_nodes((*NODES[:3], "recorder"))
     assert caught.value.text == (
-        "semmap up needs more than is installed: pip install 'semmap[sim,record]',"
-        " or go without: semmap up --no-sim --no-record"
+        "semmap up: missing optional packages; install: pip install 'semmap[sim,record]',"
+        " or start without: semmap up --no-sim --no-record"
     )
     extras.require_nodes(("coordinator", "kb_node"))
 
@@ -179,4 +181,4 @@ def test_what_was_named_cannot_be_done_without(without):
     without("mujoco")
     with pytest.raises(errors.BadRequest) as caught:
         extras.require_nodes(("sim_node",), named=True)
-    assert caught.value.text == "semmap up needs more than is installed: pip install 'semmap[sim]'"
+    assert caught.value.text == "semmap up: missing optional packages; install: pip install 'semmap[sim]'"

@@ -1,4 +1,4 @@
-"""Work beside the node: by turns, and bounded."""
+"""Work on other threads: fair and bounded."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from semmap.schemas import errors
 from tests.conftest import until
 
 
-def test_askers_take_turns_and_errors_come_back():
+def test_clients_take_turns_and_errors_are_returned():
     asker, done, held = [""], [], threading.Event()
     pool = FairPool(1, lambda: asker[0])
     pool.submit(held.wait, 10)
@@ -27,14 +27,14 @@ def test_askers_take_turns_and_errors_come_back():
     pool.close()
 
 
-def test_too_much_is_refused():
+def test_too_much_work_is_rejected():
     held = threading.Event()
     pool = FairPool(1)
     pool.submit(held.wait, 10)
     until(lambda: len(pool._queue) == 0, "that is in hand")
     for _ in range(64):
         pool.submit(held.wait, 10)
-    with pytest.raises(errors.Busy, match="64 questions that take long wait already"):
+    with pytest.raises(errors.Busy, match="64 long requests are waiting"):
         pool.submit(held.wait, 10)
     held.set()
     pool.close()

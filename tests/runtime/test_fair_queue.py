@@ -1,4 +1,4 @@
-"""What waits is bounded, and askers take turns."""
+"""The queue is bounded, and clients take turns."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def taken(queue):
     return [*iter(queue.take, None)]
 
 
-def test_askers_take_turns_and_keep_their_own_order():
+def test_clients_take_turns_and_keep_their_own_order():
     queue = FairQueue()
     for asker, item in (("a", "a1"), ("a", "a2"), ("a", "a3"), ("b", "b1"), ("c", "c1"), ("b", "b2")):
         assert queue.put(asker, item) is None
@@ -21,7 +21,7 @@ def test_askers_take_turns_and_keep_their_own_order():
     assert len(queue) == 0
 
 
-def test_what_is_urgent_comes_first_and_alone_if_that_is_wanted():
+def test_urgent_items_come_first_or_alone_on_request():
     queue = FairQueue()
     queue.put("a", "late")
     queue.put("a", "soon", urgent=True)
@@ -30,7 +30,7 @@ def test_what_is_urgent_comes_first_and_alone_if_that_is_wanted():
     assert queue.take() == "late"
 
 
-def test_one_asker_fills_his_own_queue_only():
+def test_one_client_fills_its_own_queue_only():
     queue = FairQueue(each=2)
     assert queue.put("a", "a1") is None
     assert queue.put("a", "a2") is None
@@ -61,7 +61,7 @@ def test_one_that_is_larger_than_the_queue_comes_in_alone():
 
 
 @given(st.lists(st.one_of(st.none(), st.tuples(st.sampled_from("abc"), st.integers(0, 9)))))
-def test_whatever_came_in_comes_out_once(steps):
+def test_every_item_is_returned_once(steps):
     queue, came, went = FairQueue(each=4, everyone=6, size=30), [], []
     for number, step in enumerate(steps):
         if step is None:

@@ -1,4 +1,4 @@
-"""Futures that are resolved, and gone on from."""
+"""Futures are resolved and chained."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from concurrent.futures import Future, InvalidStateError
 
 import pytest
 
-from semmap.nodes.runtime.futures import OwnFuture, settle, then
+from semmap.nodes.runtime.futures import SingleThreadFuture, settle, then
 
-KINDS = pytest.mark.parametrize("kind", [Future, OwnFuture])
+KINDS = pytest.mark.parametrize("kind", [Future, SingleThreadFuture])
 
 
 def fail():
@@ -38,7 +38,7 @@ def test_settling_with_a_future_waits_for_it(kind):
 def test_then_passes_results_and_errors_on(kind):
     first = kind()
     doubled = then(first, lambda x: 2 * x)
-    assert type(doubled) is kind  # one that other threads resolve is followed by one of its sort
+    assert type(doubled) is kind  # a future that other threads resolve is followed by one of the same kind
     first.set_result(21)
     assert doubled.result() == 42
     broken = then(doubled, lambda x: x / 0)
@@ -47,7 +47,7 @@ def test_then_passes_results_and_errors_on(kind):
 
 
 def test_one_that_is_not_resolved_cannot_be_waited_for():
-    future: OwnFuture[int] = OwnFuture()
+    future: SingleThreadFuture[int] = SingleThreadFuture()
     for read in (future.result, future.exception):
         with pytest.raises(InvalidStateError, match="cannot wait"):
             read()
@@ -55,7 +55,7 @@ def test_one_that_is_not_resolved_cannot_be_waited_for():
 
 
 def test_one_is_resolved_once():
-    future: OwnFuture[int] = OwnFuture()
+    future: SingleThreadFuture[int] = SingleThreadFuture()
     future.set_result(42)
     with pytest.raises(InvalidStateError, match="already"):
         future.set_result(43)
@@ -65,7 +65,7 @@ def test_one_is_resolved_once():
 
 
 def test_what_follows_is_called_in_order_and_goes_on_after_an_error(caplog):
-    future: OwnFuture[int] = OwnFuture()
+    future: SingleThreadFuture[int] = SingleThreadFuture()
     seen = []
     future.add_done_callback(lambda done: seen.append(done.result()))
     future.add_done_callback(lambda _: fail())

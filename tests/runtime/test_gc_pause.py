@@ -13,7 +13,7 @@ def unfrozen():
     gc.unfreeze()
 
 
-def test_nothing_is_collected_meanwhile():
+def test_nothing_is_collected_during_the_pause():
     with gc_pause.uncollected():
         assert not gc.isenabled()
         with gc_pause.uncollected():
@@ -28,7 +28,7 @@ def test_it_is_collected_again_after_an_error():
     assert gc.isenabled()
 
 
-def test_many_new_objects_are_frozen_and_few_if_it_is_said():
+def test_many_new_objects_are_frozen_and_few_on_request():
     with gc_pause.uncollected():
         few = [[] for _ in range(10)]
     assert gc.get_freeze_count() == 0

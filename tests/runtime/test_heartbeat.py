@@ -1,4 +1,4 @@
-"""What others hear of a node's state."""
+"""The published state of a node."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from tests.conftest import free_endpoint, until
 
 @pytest.fixture
 def heard():
-    """A heartbeat, who listens to it, and what it has heard."""
+    """A heartbeat, its subscriber, and the received messages."""
     endpoint = free_endpoint()
     peer = bus.Network(mode="peer", listen=(endpoint,), connect=())
     with bus.open_session(peer) as session, bus.open_session(bus.Network(connect=(endpoint,))) as client:
         beats: list[Health] = []
         bus.follow(client, keys.HEALTH, lambda _, health: beats.append(health))
         one = Heartbeat("test_node", session)
-        until(lambda: one._health.matching_status.matching, "somebody who listens")
+        until(lambda: one._health.matching_status.matching, "a subscriber")
         yield one, client, beats
 
 
@@ -34,7 +34,7 @@ def count(beats, number):
     return until(lambda: len(beats) == number and beats[-1], f"{number} beats")
 
 
-def test_it_beats_when_it_is_due_and_no_sooner(heard, monkeypatch):
+def test_it_is_published_when_due_and_not_earlier(heard, monkeypatch):
     one, _, beats = heard
     now_s = 100.0
     clock = SimpleNamespace(monotonic=lambda: now_s, time_ns=time.time_ns)
@@ -50,7 +50,7 @@ def test_it_beats_when_it_is_due_and_no_sooner(heard, monkeypatch):
     assert (first.node, first.pid, first.state) == ("test_node", os.getpid(), "starting")
 
 
-def test_that_a_node_is_ready_is_told_at_once(heard):
+def test_ready_is_published_immediately(heard):
     one, client, beats = heard
     one.beat()
     assert not list(client.liveliness().get(keys.live_key("*")))
@@ -60,7 +60,7 @@ def test_that_a_node_is_ready_is_told_at_once(heard):
     assert str(token.ok.key_expr) == keys.live_key("test_node", str(one._session.info.zid()))
 
 
-def test_an_error_is_told_with_the_next_beat_and_for_a_while(heard, monkeypatch):
+def test_an_error_is_in_the_next_heartbeats_for_a_while(heard, monkeypatch):
     one, _, beats = heard
     one.beat()
     one.report("oops")

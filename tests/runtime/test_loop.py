@@ -1,4 +1,4 @@
-"""A node lives on whatever its handlers do."""
+"""A node keeps running whatever its handlers do."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 import zenoh
 
 from semmap.nodes import bus
-from semmap.nodes.bus import asking
+from semmap.nodes.bus import query_client
 from semmap.nodes.runtime import heartbeat, loop
 from semmap.nodes.runtime.fair_queue import FairQueue
 from semmap.nodes.runtime.loop import Node
@@ -32,7 +32,7 @@ class Get(Call[replies.Done]):
 
 
 class Quick(Get):
-    """The same, which may be asked anew."""
+    """A quick variant, which may be repeated."""
 
     is_quick = True
 
@@ -46,7 +46,7 @@ def fail(_):
 
 
 def relay(m):
-    """To the verb that is named, of this node or of nobody."""
+    """Forwards to the given verb, of this node or of none."""
     return Relay(m.predicate, {"get": Get, "fly": Fly}[m.value](name=m.name), 1.0)
 
 
@@ -71,21 +71,21 @@ def network():
             yield node, client
 
 
-def test_a_fault_is_answered_and_the_node_lives_on(network):
+def test_an_error_is_the_reply_and_the_node_keeps_running(network):
     _, client = network
     with pytest.raises(errors.InternalError, match="ZeroDivisionError: oops"):
         bus.ask(client, PREFIX, "check", commands.Check(), replies.Done)
     assert bus.ask(client, PREFIX, "get", commands.Get(name="x"), replies.Done).text == "x"
 
 
-def test_an_unknown_verb_is_told_with_those_that_are_there(network):
+def test_an_unknown_command_is_reported_with_the_available_ones(network):
     _, client = network
     with pytest.raises(errors.UnknownVerb, match="there are: check, explain, get, infer"):
         bus.ask(client, PREFIX, "fly", commands.Get(name="x"), replies.Done)
 
 
 def test_a_verb_is_left_to_the_node_that_serves_it():
-    """Two nodes and one prefix: `get` is the first one's, unless it is away; the rest is the other's."""
+    """Two nodes on one prefix: `get` belongs to the first unless it is away, the rest to the other."""
     endpoint = free_endpoint()
     first = bus.Network(mode="peer", listen=("tcp/127.0.0.1:0",), connect=(endpoint,))
     other = bus.Network(mode="peer", listen=(endpoint,), connect=())
@@ -142,7 +142,7 @@ def test_a_fault_is_in_the_heartbeat(network):
     until(lambda: beats and "check: ZeroDivisionError: oops" in beats[-1].last_error, "the error")
 
 
-def test_a_loop_that_is_blocked_falls_silent(network, monkeypatch):
+def test_a_blocked_loop_publishes_no_heartbeat(network, monkeypatch):
     monkeypatch.setattr(heartbeat, "_PERIOD_S", 0.05)
     node, client = network
     beats: list[str] = []
@@ -155,7 +155,7 @@ def test_a_loop_that_is_blocked_falls_silent(network, monkeypatch):
         node.soon(lambda: is_blocked.set() or release.wait(PATIENCE_S))
         try:
             assert is_blocked.wait(PATIENCE_S)
-            until_one_more(beats, "other_node")  # what the node said before has come by then
+            until_one_more(beats, "other_node")  # earlier messages of the node have arrived by then
             silent_from = len(beats)
             for _ in range(10):
                 until_one_more(beats, "other_node")
@@ -170,7 +170,7 @@ def until_one_more(beats, name):
     until(lambda: beats.count(name) > before, f"another beat of {name}")
 
 
-def test_of_what_waits_a_busy_node_sees_the_newest(network, monkeypatch):
+def test_a_busy_node_gets_the_newest_publication(network, monkeypatch):
     node, client = network
     seen, release = [], threading.Event()
     come = publications_kept(monkeypatch)
@@ -198,7 +198,7 @@ def test_of_what_waits_a_busy_node_sees_the_newest(network, monkeypatch):
     assert [version for version in seen[1:] if version < newest] == []
 
 
-def test_what_is_put_off_is_done_when_no_event_waits(network):
+def test_deferred_work_is_done_when_no_event_waits(network):
     node, client = network
     done: list[int] = []
     put_off: list[Future] = []
@@ -218,7 +218,7 @@ def test_what_is_put_off_is_done_when_no_event_waits(network):
     assert 1 in done
 
 
-def test_what_comes_after_a_reply_does_not_keep_it_waiting_and_precedes_the_next_event(network):
+def test_work_after_a_reply_does_not_delay_it_and_precedes_the_next_event(network):
     node, client = network
     order: list[str] = []
     answered = threading.Event()
@@ -245,13 +245,13 @@ def asking_for(prefix, verb, name="x"):
 
 
 @pytest.mark.parametrize("length", [1, 1000])
-def test_a_reply_of_another_is_passed_on_as_it_comes(network, length):
+def test_a_relayed_reply_is_forwarded_unchanged(network, length):
     _, client = network
     question = asking_for(PREFIX, "get", "x" * length)
     assert bus.ask(client, PREFIX, "explain", question, replies.Done).text == "x" * length
 
 
-def test_a_reply_of_another_in_json(network):
+def test_a_relayed_reply_in_json(network):
     _, client = network
     (reply,) = client.get(f"{PREFIX}/explain?name=x;predicate={PREFIX};value=get;format=json")
     assert json.loads(reply.ok.payload.to_bytes()) == {"text": "x"}
@@ -260,24 +260,24 @@ def test_a_reply_of_another_in_json(network):
 @pytest.mark.parametrize(
     ("prefix", "verb", "error", "said"),
     [
-        (PREFIX, "fly", errors.UnknownVerb, "unknown verb 'fly'"),
-        ("semmap/nobody", "get", errors.NoAnswer, "no answer on semmap/nobody/get: no node serves it"),
+        (PREFIX, "fly", errors.UnknownVerb, "unknown command 'fly'"),
+        ("semmap/nobody", "get", errors.NoAnswer, "no response on semmap/nobody/get: no node serves it"),
     ],
 )
-def test_so_is_an_error(network, monkeypatch, prefix, verb, error, said):
+def test_a_relayed_error_is_forwarded(network, monkeypatch, prefix, verb, error, said):
     monkeypatch.setattr(bus, "RESTART_S", 0.5)
     _, client = network
     with pytest.raises(error, match=said):
         bus.ask(client, PREFIX, "explain", asking_for(prefix, verb), replies.Done)
 
 
-def test_who_is_to_reply_may_come_late(network, monkeypatch):
+def test_a_relayed_request_waits_for_its_server(network, monkeypatch):
     _, client = network
     late = "semmap/late"
     asked = questions_asked(monkeypatch)
 
     def serve():
-        until(lambda: asked.count(f"{late}/get") > 2, "it was asked for in vain")
+        until(lambda: asked.count(f"{late}/get") > 2, "it was queried without reply")
         bus.serve(client, late, lambda request: request.reply(replies.Done(text="here")))
 
     thread = threading.Thread(target=serve)
@@ -286,20 +286,20 @@ def test_who_is_to_reply_may_come_late(network, monkeypatch):
     thread.join()
 
 
-def test_somebody_who_comes_late_is_waited_for(network, monkeypatch):
+def test_ask_later_waits_for_a_late_server(network, monkeypatch):
     node, client = network
     asked = questions_asked(monkeypatch)
     served: list[Future] = []
     node.soon(lambda: served.append(node.ask_later("semmap/late", Get(name="x"), patience_s=PATIENCE_S)))
-    until(lambda: asked.count("semmap/late/get") > 2, "it was asked for in vain")
+    until(lambda: asked.count("semmap/late/get") > 2, "it was queried without reply")
     assert not served[0].done()
     bus.serve(client, "semmap/late", lambda request: request.reply(replies.Done(text="here")))
     assert served[0].result(PATIENCE_S).text == "here"
 
 
-def test_what_is_quick_is_asked_anew_when_it_has_got_lost(network, monkeypatch):
+def test_a_lost_quick_query_is_repeated(network, monkeypatch):
     node, client = network
-    monkeypatch.setattr("semmap.nodes.bus.asking._ROUND_S", 0.3)
+    monkeypatch.setattr("semmap.nodes.bus.query_client._ROUND_S", 0.3)
     asked, answers = [], []
 
     def receive(request):
@@ -344,7 +344,7 @@ def overloaded(node, client, monkeypatch, *, each=3):
         bus.ask_later(session, "semmap/held", verb, message, replies.Done, lambda read: got.put((name, read)))
 
     def fill(names):
-        """Let one question wait among the events, and then one in the queue for each name."""
+        """Let one request wait among the events, and then one in the queue for each name."""
         send()
         until(lambda: node._is_at_once, "it waits among the events")
         for number, name in enumerate(names, start=1):
@@ -357,7 +357,7 @@ def overloaded(node, client, monkeypatch, *, each=3):
     return send, fill, release, got, done
 
 
-def test_what_finds_the_queue_full_is_refused_at_once_and_the_rest_is_done(network, monkeypatch):
+def test_requests_beyond_the_full_queue_are_rejected_and_the_rest_is_done(network, monkeypatch):
     node, client = network
     send, fill, release, got, _ = overloaded(node, client, monkeypatch)
     fill("xxx")
@@ -365,16 +365,16 @@ def test_what_finds_the_queue_full_is_refused_at_once_and_the_rest_is_done(netwo
     name, read = got.get(timeout=PATIENCE_S)
     assert name == "too late"
     with pytest.raises(
-        errors.Busy, match=r"^test_node is busy: 3 requests wait already; try again in "
+        errors.Busy, match=r"^test_node is busy: 3 requests are waiting; try again in "
     ) as busy:
         read()
     assert busy.value.again_s > 0.0
     release.set()
-    for _ in range(5):  # with the one in hand and the one among the events
+    for _ in range(5):  # plus the current one and the one among the events
         assert got.get(timeout=PATIENCE_S)[1]().decode().text == "x"
 
 
-def test_the_urgent_comes_first_and_another_asker_is_not_kept_waiting(network, monkeypatch):
+def test_urgent_requests_come_first_and_other_clients_do_not_wait(network, monkeypatch):
     node, client = network
     send, fill, release, _, order = overloaded(node, client, monkeypatch, each=100)
     with bus.open_session(bus.Network(connect=(f"{client.info.links()[0].dst}",))) as other:
@@ -390,23 +390,23 @@ def test_the_urgent_comes_first_and_another_asker_is_not_kept_waiting(network, m
     assert order.index("other") < order.index("first 5")
 
 
-def test_who_is_told_to_come_again_does_so_by_himself(network, monkeypatch):
+def test_a_busy_reply_is_retried_automatically(network, monkeypatch):
     node, client = network
     _, fill, release, _, _ = overloaded(node, client, monkeypatch)
     fill("xxx")
-    pause_s = asking.Patience.pause_s
-    # who is told to come again finds room when he does
-    monkeypatch.setattr(asking.Patience, "pause_s", lambda *told: release.set() or pause_s(*told))
+    pause_s = query_client.Patience.pause_s
+    # there is room at the retry
+    monkeypatch.setattr(query_client.Patience, "pause_s", lambda *told: release.set() or pause_s(*told))
     question = commands.Get(name="patient")
     assert bus.ask(client, "semmap/held", "get", question, replies.Done).text == "patient"
     assert release.is_set()
 
 
-def test_nobody_comes_again_for_ever(network, monkeypatch):
+def test_retries_end_after_a_while(network, monkeypatch):
     node, client = network
     _, fill, release, _, _ = overloaded(node, client, monkeypatch)
     fill("xxx")
-    monkeypatch.setattr(asking, "BUSY_S", 0.3)
+    monkeypatch.setattr(query_client, "BUSY_S", 0.3)
     with pytest.raises(errors.Busy):
         bus.ask(client, "semmap/held", "get", commands.Get(name="x"), replies.Done)
     release.set()
@@ -429,7 +429,7 @@ def test_without_room_requests_wait_and_urgent_ones_and_events_do_not(network):
     assert got.get(timeout=PATIENCE_S)().decode().text == "x"
 
 
-def test_of_what_is_published_the_newest_are_kept(network, monkeypatch):
+def test_the_newest_publications_are_kept(network, monkeypatch):
     node, client = network
     monkeypatch.setattr(loop, "_FOLLOWED", 5)
     seen, release = [], threading.Event()
@@ -452,7 +452,7 @@ def test_of_what_is_published_the_newest_are_kept(network, monkeypatch):
     assert seen == [0, 16, 17, 18, 19, 20]
 
 
-def test_a_heart_beats_for_itself_alone(network):
+def test_a_heartbeat_under_another_key_is_ignored(network):
     node, client = network
     heard: queue.SimpleQueue[Health] = queue.SimpleQueue()
     node.follow(keys.HEALTH, heard.put)
@@ -466,4 +466,4 @@ def test_a_heart_beats_for_itself_alone(network):
 
     until(beat, "the node's own is heard")
     while not heard.empty():
-        assert heard.get().pid == 1  # never what came by the page's key
+        assert heard.get().pid == 1  # never a message on the page's key

@@ -31,19 +31,19 @@ def test_a_commit_of_the_past_changes_nothing():
     assert "cup1" in view.entities
 
 
-def test_a_gap_is_told_and_changes_nothing():
+def test_a_gap_is_reported_and_changes_nothing():
     view = begun()
     assert not view.take(commit(3, removed=("cup1",)))
     assert (view.seq, set(view.entities)) == (1, {"cup1", "table1"})
 
 
-def test_another_snapshot_counts():
+def test_another_snapshot_is_loaded():
     view = begun()
     view.begin(Snapshot(seq=9, entities=(entity("sink1", "Sink"),)))
     assert (view.seq, set(view.entities)) == (9, {"sink1"})
 
 
-def test_a_commit_heard_of_before_a_snapshot_without_it_is_missed():
+def test_a_commit_announced_before_a_snapshot_without_it_is_missing():
     view = MapReplica()
     view.take(commit(3, entity("sink1", "Sink")))
     view.begin(Snapshot(seq=1, entities=(entity("cup1", "Cup"),)))
@@ -52,7 +52,7 @@ def test_a_commit_heard_of_before_a_snapshot_without_it_is_missed():
     assert view.is_current
 
 
-def test_commits_that_came_too_early_count_when_those_before_them_have_come():
+def test_early_commits_are_applied_after_those_before_them():
     view = begun()
     assert not view.take(commit(4, entity("sink1", "Basin")))
     assert not view.take(commit(3, entity("sink1", "Sink"), removed=("cup1",)))
@@ -62,7 +62,7 @@ def test_commits_that_came_too_early_count_when_those_before_them_have_come():
     assert {name: e.class_ for name, e in view.entities.items()} == {"sink1": "Basin", "table1": "Table"}
 
 
-def test_what_came_too_early_of_another_map_is_forgotten():
+def test_early_commits_of_another_map_are_forgotten():
     view = begun()
     view.take(commit(3, removed=("cup1",)))
     view.doubt()
@@ -120,11 +120,11 @@ def test_commits_between_two_pages_of_a_snapshot_are_taken_in_order():
     assert {name: e.class_ for name, e in view.entities.items()} == {"a": "Bowl", "z": "Bowl"}
 
 
-def test_a_replica_says_whether_its_pages_are_on_their_way():
+def test_a_replica_reports_whether_its_pages_are_being_fetched():
     view = begun()
     pages = view.begin_pages()
     assert view.is_being_fetched
-    view.give_up_pages()
+    view.cancel_pages()
     assert not view.is_being_fetched
     pages = view.begin_pages()
     pages.take(Snapshot(seq=2, entities=()))
@@ -132,7 +132,7 @@ def test_a_replica_says_whether_its_pages_are_on_their_way():
     assert not view.is_being_fetched
 
 
-def test_entities_of_a_page_share_what_they_have_in_common():
+def test_entities_of_a_page_share_equal_parts():
     pages = MapReplica().begin_pages()
     said = msgspec.msgpack.encode(Snapshot(seq=1, entities=(entity("a", "Cup"), entity("b", "Cup"))))
     before = msgspec.msgpack.decode(said, type=Snapshot)
@@ -153,7 +153,7 @@ def known():
     return view
 
 
-def test_what_the_knowledge_base_says_itself_is_confirmed():
+def test_reports_of_the_knowledge_base_confirm_commits():
     view = known()
     assert view.is_confirmed
     view.take(signed(2, "two", entity("cup2")))
@@ -199,14 +199,14 @@ def test_a_commit_without_a_digest_is_in_doubt_when_the_true_one_comes():
 
 
 @pytest.mark.parametrize("digest", ["forged", ""])
-def test_so_does_what_the_knowledge_base_confirms(digest):
+def test_a_contradicting_confirmation_puts_all_in_doubt(digest):
     view = known()
     view.take(signed(2, digest, removed=("cup1",)))
     view.confirm(2, "two")
     assert not view.is_current
 
 
-def test_a_repeated_commit_is_no_contradiction():
+def test_a_repeated_commit_is_not_a_contradiction():
     view = known()
     view.take(signed(2, "two", entity("cup2")))
     assert view.take(signed(2, "two", entity("cup2")))

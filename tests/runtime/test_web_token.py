@@ -4,7 +4,7 @@ from semmap.nodes.runtime.web_token import new_token
 from semmap.schemas import errors
 
 
-def test_a_token_is_made_up_or_long_enough():
+def test_a_token_is_generated_or_long_enough():
     assert new_token() != new_token()
     assert len(new_token()) >= 32
     assert new_token("a" * 16) == "a" * 16

@@ -1,4 +1,4 @@
-"""A stop is waited for: the knowledge base may be writing a checkpoint."""
+"""Stopping waits, because the knowledge base may be writing a checkpoint."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SLOW_S = SILENT_S + 2.0
 """Longer than any process may be silent while the system runs."""
 
 
-def test_a_knowledge_base_that_is_slow_to_stop_is_waited_for(tmp_path):
+def test_stopping_waits_for_a_slow_knowledge_base(tmp_path):
     data = tmp_path / "data"
     with running(data, "--abox", "none", "--no-sim", "--no-record") as system:
         system.cli("add", "Cup", "cup1", "--at", "1", "2", "0")
@@ -27,7 +27,7 @@ def test_a_knowledge_base_that_is_slow_to_stop_is_waited_for(tmp_path):
             down.communicate(timeout=PATIENCE_S)
         assert down.returncode == 0
         assert system.process.wait(timeout=PATIENCE_S) == 0
-        until(lambda: system.said[-1] == "stopped\n", "its last word")
+        until(lambda: system.said[-1] == "stopped\n", "its last log line")
         assert not any("does not answer" in line for line in system.said)
     with closing(sqlite3.connect(data / "journal.sqlite")) as journal:
         ((checkpoint, last),) = journal.execute(

@@ -1,4 +1,4 @@
-"""What takes long before all is ready is told meanwhile, and no world is compiled more often than it must."""
+"""Long starts report their progress, and a world is compiled only when needed."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def starting(detail: str) -> Health:
     return Health(node="sim_node", pid=os.getpid(), started_ns=0, stamp_ns=0, state="starting", detail=detail)
 
 
-def test_seeding_tells_for_how_long_it_has_taken(tmp_path, monkeypatch):
+def test_seeding_reports_the_elapsed_time(tmp_path, monkeypatch):
     monkeypatch.setattr(control, "SILENT_S", 0.05)
     told: list[float] = []
     made = Supervisor(tmp_path / "data").seed(of(tmp_path / "data"), told.append)
@@ -39,27 +39,29 @@ def test_seeding_tells_for_how_long_it_has_taken(tmp_path, monkeypatch):
     assert told == sorted(told)
 
 
-def test_it_is_said_what_world_is_compiled(tmp_path):
+def test_the_compiled_world_is_reported(tmp_path):
     settings = of(tmp_path, "/there/big.xml")
-    assert up._being_made(settings, 12.3).endswith("compiling the world big.xml, and reading the map (12 s)")
+    assert up._describe_seeding(settings, 12.3).endswith(
+        "compiling the world big.xml and loading the map (12 s)"
+    )
     settings = of(tmp_path)
-    assert up._being_made(settings, 12.3).split(maxsplit=1)[1] == "reading the map (12 s)"
+    assert up._describe_seeding(settings, 12.3).split(maxsplit=1)[1] == "loading the map (12 s)"
 
 
-def test_a_node_that_starts_says_now_and_then_what_it_does(tmp_path, monkeypatch):
+def test_a_starting_node_reports_its_progress(tmp_path, monkeypatch):
     said: list[str] = []
     foreground = up._Foreground(Supervisor(tmp_path), of(tmp_path), None, None, said.append)
     foreground._watchdog.run_as({"sim_node": os.getpid()})
-    foreground._hear(starting("compiling the world big.xml"))
+    foreground._on_health(starting("compiling the world big.xml"))
     assert not said
     monkeypatch.setattr(up, "SILENT_S", 0.0)
-    foreground._hear(starting(""))
-    foreground._hear(starting("compiling the world big.xml"))
+    foreground._on_health(starting(""))
+    foreground._on_health(starting("compiling the world big.xml"))
     assert [line.split(maxsplit=1)[1] for line in said] == ["compiling the world big.xml (0 s)"]
 
 
 def test_a_world_is_compiled_no_more_often_than_it_must(tmp_path, monkeypatch):
-    """Of 5 000 bodies each time takes five seconds."""
+    """With 5 000 bodies, each compilation takes five seconds."""
     path = tmp_path / "world.xml"
     path.write_text(WORLD)
     times = []
@@ -71,7 +73,7 @@ def test_a_world_is_compiled_no_more_often_than_it_must(tmp_path, monkeypatch):
     assert len(times) == 1
 
 
-def test_a_world_that_does_not_compile_is_refused_all_the_same(tmp_path):
+def test_a_world_that_does_not_compile_is_still_rejected(tmp_path):
     path = tmp_path / "world.xml"
     path.write_text(WORLD.replace('size="0.1"', 'size="-1"'))
     with pytest.raises(BadFile, match="cannot compile world file"):

@@ -1,4 +1,4 @@
-"""What nodes tell `semmap up` past the network."""
+"""Health reports to `semmap up` without the network."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ def notices(tmp_path, monkeypatch):
     notices.close()
 
 
-def test_what_is_sent_is_heard(notices):
+def test_sent_reports_are_received(notices):
     notify(HEALTH)
     notify(HEALTH)
     assert list(notices.wait(1.0)) == [HEALTH, HEALTH]
     assert list(notices.wait(0.0)) == []
 
 
-def test_only_this_user_may_tell(notices):
+def test_only_this_user_may_send(notices):
     assert stat.S_IMODE(notices.path.stat().st_mode) == 0o600
 
 
-def test_what_is_no_heartbeat_is_dropped(notices):
+def test_invalid_datagrams_are_dropped(notices):
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as sender:
         for said in (b"", b"hello", os.urandom(1000), b"\x81\xa4node\x01"):
             sender.sendto(said, str(notices.path))
@@ -43,7 +43,7 @@ def test_what_is_no_heartbeat_is_dropped(notices):
     assert list(notices.wait(1.0)) == [HEALTH]
 
 
-def test_nobody_who_tells_waits_for_one_who_does_not_listen(notices):
+def test_sending_never_waits(notices):
     for _ in range(5000):
         notify(HEALTH)
     notices.close()

@@ -1,4 +1,4 @@
-"""The names that users give to nodes."""
+"""The short names of nodes."""
 
 import pytest
 
@@ -19,6 +19,6 @@ def test_nodes_by_their_short_and_long_names(text, nodes):
 
 
 @pytest.mark.parametrize("text", ["", " , ", "kb;sim", "KB", "supervisor"])
-def test_what_is_no_list_of_nodes_is_refused_with_what_is_possible(text):
+def test_an_invalid_list_of_nodes_is_rejected_with_the_choices(text):
     with pytest.raises(errors.BadRequest, match=r"kb.*coordinator.*sim.*perception.*recorder.*router"):
         nodes_of(text)

@@ -1,4 +1,4 @@
-"""What the programs of a machine can know of a system that does not listen yet."""
+"""Announcement of a system that does not listen yet."""
 
 import subprocess
 import sys
@@ -21,7 +21,7 @@ def test_an_endpoint_is_announced_until_the_end_also_by_two():
     assert not presence.is_announced(endpoint)
 
 
-def test_what_its_process_left_behind_announces_nothing():
+def test_leftover_files_announce_nothing():
     endpoint = free_endpoint()
     code = f"""if True:
         import os
@@ -37,7 +37,7 @@ def test_what_its_process_left_behind_announces_nothing():
 
 
 @pytest.mark.parametrize("endpoint", ["tcp/10.0.0.1:7447", "udp/127.0.0.1:7447", "unixsock-stream//tmp/x"])
-def test_of_other_endpoints_nothing_is_known(endpoint):
+def test_other_endpoints_are_not_announced(endpoint):
     assert not presence.is_loopback(endpoint)
     with presence.announced(endpoint):
         assert not presence.is_announced(endpoint)

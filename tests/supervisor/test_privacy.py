@@ -9,7 +9,7 @@ def mode(path):
     return stat.S_IMODE(path.stat().st_mode)
 
 
-def test_what_semmap_writes_is_its_users_alone(tmp_path):
+def test_files_are_private_to_the_user(tmp_path):
     data = tmp_path / "d"
     (data / "logs").mkdir(parents=True)
     ours = [
@@ -30,7 +30,7 @@ def test_what_semmap_writes_is_its_users_alone(tmp_path):
     make_private(data)
     assert {mode(path) for path in ours} == {0o600}
     assert {mode(data), mode(data / "logs")} == {0o700}
-    assert (mode(another), mode(linked)) == (0o644, 0o644)  # not ours to change
+    assert (mode(another), mode(linked)) == (0o644, 0o644)  # owned by the user, not by semmap
 
 
 def test_a_new_folder_is_private(tmp_path):

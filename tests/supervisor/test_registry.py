@@ -15,7 +15,7 @@ HERE = "tcp/127.0.0.1:7801"
 
 @pytest.fixture(autouse=True)
 def folder(monkeypatch, tmp_path):
-    """A registry of our own."""
+    """A registry in a temporary folder."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     return tmp_path / f"semmap-{os.getuid()}"
 
@@ -31,7 +31,7 @@ def test_a_system_is_listed_while_it_runs(tmp_path):
     assert registry.systems() == ()
 
 
-def test_one_whose_process_has_ended_is_not_listed_even_if_nobody_took_it_out(tmp_path):
+def test_a_system_whose_process_has_ended_is_not_listed(tmp_path):
     with (
         subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as process,
         ExitStack() as stack,
@@ -43,7 +43,7 @@ def test_one_whose_process_has_ended_is_not_listed_even_if_nobody_took_it_out(tm
         assert registry.systems() == ()
 
 
-def test_another_process_of_the_same_number_does_not_count(tmp_path, folder):
+def test_another_process_with_the_same_id_does_not_count(tmp_path, folder):
     with entered(tmp_path):
         file = folder / "systems.json"
         (system,) = registry.systems()
@@ -59,7 +59,7 @@ def test_many_at_the_same_time_lose_none(tmp_path):
 
 
 @pytest.mark.parametrize("content", ["", "{", '{"systems": [{"data": 1}]}', "[]"])
-def test_a_file_that_cannot_be_understood_is_begun_anew(tmp_path, folder, content):
+def test_an_invalid_file_is_replaced(tmp_path, folder, content):
     with entered(tmp_path):
         (folder / "systems.json").write_text(content)
         assert registry.systems() == ()
@@ -67,7 +67,7 @@ def test_a_file_that_cannot_be_understood_is_begun_anew(tmp_path, folder, conten
             assert [s.data for s in registry.systems()] == [f"{tmp_path}/b"]
 
 
-def test_a_registry_that_cannot_be_written_says_so(folder):
+def test_an_unwritable_registry_is_an_error(folder):
     folder.write_text("in the way")
-    with pytest.raises(errors.Refused, match="cannot be listed"), entered(folder):
+    with pytest.raises(errors.Refused, match="cannot write the list"), entered(folder):
         pass

@@ -28,7 +28,7 @@ def test_the_coordinator_listens_and_the_others_connect_to_it():
         {"only": ("sim_node",), "connect": ("tcp/127.0.0.1:7448",)},
     ],
 )
-def test_where_somebody_may_come_from_elsewhere_all_meet_at_a_router(fields):
+def test_with_remote_clients_all_nodes_connect_to_a_router(fields):
     chosen = settings(**fields)
     router = chosen.network("router")
     assert chosen.nodes[0] == "router"
@@ -48,7 +48,7 @@ def test_a_part_has_the_nodes_that_are_named():
     assert settings(only=("router",)).nodes == ("router",)
 
 
-def test_where_the_truth_is_said_elsewhere_perception_may_see_the_simulator():
+def test_without_a_local_coordinator_perception_may_use_the_simulator():
     part = {"perception": True, "camera_hz": 5.0}
     assert settings(**part, only=("sim_node", "perception_node")).camera_hz == 5.0
     with pytest.raises(ValueError, match="--truth map"):
@@ -59,7 +59,7 @@ def test_where_the_truth_is_said_elsewhere_perception_may_see_the_simulator():
     ("listen", "reachable"),
     [("tcp/0.0.0.0:7447", "tcp/127.0.0.1:7447"), ("tcp/[::]:7447", "tcp/[::1]:7447")],
 )
-def test_who_listens_everywhere_is_reached_on_loopback(listen, reachable):
+def test_a_wildcard_listener_is_reached_on_loopback(listen, reachable):
     assert settings(listen=listen).reachable == reachable
 
 
@@ -76,16 +76,18 @@ def test_settings_survive_the_file_and_are_checked():
         codec.decode(codec.encode_json(settings(angle_threshold_deg=-1.0)), Settings)
 
 
-def test_perception_does_not_look_at_what_the_map_says_itself():
+def test_perception_cannot_use_cameras_that_show_the_map():
     for truth in ("map", "scene"):
-        with pytest.raises(ValueError, match=f"--truth {truth} .* add --truth perceived, or --camera-hz 0"):
+        with pytest.raises(
+            ValueError, match=f"--truth {truth} .* add --truth perceived, or use other cameras"
+        ):
             settings(perception=True, truth=truth, camera_hz=5.0)
         assert settings(perception=True, truth=truth).perception  # frames of other cameras
     assert settings(perception=True, truth="perceived", camera_hz=5.0).perception
 
 
 @pytest.mark.parametrize("endpoint", ["foo", "tcp/", "/127.0.0.1:7447", "tcp/127.0.0.1:65536", ""])
-def test_what_is_no_endpoint_is_refused(endpoint):
+def test_an_invalid_endpoint_is_rejected(endpoint):
     for fields in ({"listen": endpoint}, {"connect": ("tcp/10.0.0.1:7447", endpoint)}):
         with pytest.raises(
             ValueError, match=f"'{endpoint}' is not a valid Zenoh endpoint; example: tcp/127.0.0.1:7447"
@@ -99,7 +101,7 @@ def test_endpoints_of_any_protocol_are_taken(endpoint):
 
 
 @pytest.mark.parametrize("limit", ["", "7", "7w", "0d", "-1GB"])
-def test_how_much_is_kept_of_recordings_is_an_age_or_a_size(limit):
+def test_the_limit_of_recordings_is_an_age_or_a_size(limit):
     with pytest.raises(ValueError, match="examples: 12h, 7d, 500MB, 20GB"):
         settings(record_keep=limit)
     assert settings(record_keep="7d").record_keep == "7d"

@@ -1,4 +1,4 @@
-"""Two parts of a system, each under a supervisor of its own, joined by their routers."""
+"""Two parts of a system, each with its own supervisor, linked by their routers."""
 
 import subprocess
 import sys
@@ -11,7 +11,7 @@ SEMMAP = Path(sys.executable).with_name("semmap")
 
 
 def heard(process, word):
-    """What a process says until a line has `word`."""
+    """Return the output of a process until a line has `word`."""
     lines = []
     for line in process.stdout:
         lines.append(line)
@@ -41,7 +41,7 @@ def test_parts_wait_for_one_another_work_together_and_end_alone(tmp_path):
                 assert far.wait(PATIENCE_S) == 0
                 with near.client() as client:
                     client.add("Cup", "cup2", at=(2.0, 1.0, 0.0))
-                    until(lambda: client.status().in_agreement is None, "no simulator is heard of")
+                    until(lambda: client.status().in_agreement is None, "no simulator is listed")
                 assert near.process.poll() is None
         finally:
             far.terminate()

@@ -1,4 +1,4 @@
-"""What keeps `semmap up` from starting is told in one line, and leaves what is there alone."""
+"""Errors at the start are reported in one line, and existing data is not changed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ BASE = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping"
 
 
 def up(data: Path, *words: str | Path) -> tuple[int, str]:
-    """Exit status and the last line of stderr of `semmap up` that is expected to fail."""
+    """Return the exit status and the last stderr line of a failing `semmap up`."""
     command = [Path(sys.executable).parent / "semmap", "up", "--data", data, "--listen", free_endpoint()]
     run = subprocess.run([*command, *words], capture_output=True, text=True, timeout=2 * PATIENCE_S)
     lines = run.stderr.strip().splitlines()
@@ -28,7 +28,7 @@ def up(data: Path, *words: str | Path) -> tuple[int, str]:
 
 
 def down(*words: str | Path) -> tuple[int, str]:
-    """Exit status of `semmap down`, and what it says."""
+    """Return the exit status and output of `semmap down`."""
     command = [Path(sys.executable).parent / "semmap", "down", *words]
     run = subprocess.run(command, capture_output=True, text=True, timeout=2 * PATIENCE_S)
     return run.returncode, (run.stdout + run.stderr).strip()
@@ -65,7 +65,7 @@ def test_a_fresh_start_that_fails_keeps_the_old_map(tmp_path):
         assert [e.name for e in client.list()] == ["chair1"]
 
 
-def test_a_map_that_cannot_be_read_is_told_before_anything_starts(tmp_path):
+def test_an_unreadable_map_is_reported_before_the_start(tmp_path):
     (tmp_path / JOURNAL).write_bytes(b"")
     status, line = up(tmp_path)
     assert status == 1
@@ -79,7 +79,7 @@ def test_a_system_of_another_version_can_be_stopped(tmp_path):
         assert down("--connect", system.endpoint) == (0, "stopped")
 
 
-def test_a_bad_world_is_told_before_a_map_is_made(tmp_path):
+def test_a_bad_world_is_reported_before_a_map_is_created(tmp_path):
     world = tmp_path / "world.xml"
     world.write_text("<mujoco")
     status, line = up(tmp_path / "data", "--abox", "none", "--world", world)
@@ -88,7 +88,7 @@ def test_a_bad_world_is_told_before_a_map_is_made(tmp_path):
     assert not (tmp_path / "data" / JOURNAL).exists()
 
 
-def test_what_lies_in_the_folder_it_is_started_in_does_not_matter(tmp_path, monkeypatch):
+def test_the_working_directory_does_not_matter(tmp_path, monkeypatch):
     folder = tmp_path / "mine"
     folder.mkdir()
     for module in ("queue", "nodes", "supervisor"):
@@ -101,7 +101,7 @@ def test_what_lies_in_the_folder_it_is_started_in_does_not_matter(tmp_path, monk
         assert client.sparql("ASK { ?s ?p ?o }").verdict
 
 
-def test_a_port_in_use_is_told(tmp_path):
+def test_a_port_in_use_is_reported(tmp_path):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
@@ -129,13 +129,13 @@ def test_a_port_in_use_is_told(tmp_path):
         (("--data", "/etc/hosts"), "/etc/hosts"),
     ],
 )
-def test_bad_options_are_told(tmp_path, words, said):
+def test_bad_options_are_reported(tmp_path, words, said):
     status, line = up(tmp_path, *words)
     assert status == 2
     assert said in line
 
 
-def test_ontologies_come_up_with_their_imports_and_what_is_to_be_known_of_them(tmp_path):
+def test_ontologies_start_with_their_imports_and_notes(tmp_path):
     home, own = tmp_path / "home.ttl", tmp_path / "own"
     home.write_text(HOUSEHOLD_TTL.read_text())
     own.mkdir()
@@ -147,7 +147,7 @@ def test_ontologies_come_up_with_their_imports_and_what_is_to_be_known_of_them(t
     data = tmp_path / "data"
     words = ("--tbox", own, "--import", f"http://o.org/home={home}", "--no-sim", "--no-record")
     note = "1 import was not found; the TBox is used without: http://o.org/nowhere"
-    for also in (words, words[-2:]):  # the second time it goes on with what it has
+    for also in (words, words[-2:]):  # the second time it continues with the existing map
         with running(data, *also) as system, system.client() as client:
             assert any(line.startswith("TBox ") and line.strip().endswith(note) for line in system.said)
             assert {"Barstool", "Pouffe", "Chair"} <= {c.name for c in client.classes()}
@@ -166,14 +166,14 @@ def test_ontologies_come_up_with_their_imports_and_what_is_to_be_known_of_them(t
         ("<urn:a> <urn:b> <urn:c> .", "own.ofn has no class: is it a TBox"),
     ],
 )
-def test_an_ontology_that_cannot_be_read_is_told(tmp_path, text, said):
+def test_an_unreadable_ontology_is_reported(tmp_path, text, said):
     (tmp_path / "own.ofn").write_text(text)
     status, line = up(tmp_path / "data", "--tbox", tmp_path / "own.ofn")
     assert status == 2
     assert said in line
 
 
-def test_a_model_file_of_no_class_is_told(tmp_path):
+def test_a_model_file_without_class_is_reported(tmp_path):
     models = tmp_path / "models"
     models.mkdir()
     for name in ("chair.obj", "chiar.obj"):
@@ -181,7 +181,7 @@ def test_a_model_file_of_no_class_is_told(tmp_path):
     words = ("--models", models, "--abox", "none", "--no-record")
     with running(tmp_path / "data", *words) as system:
         (line,) = [line for line in system.said if line.startswith("models ")]
-    assert "ignored, because no class has a model of that name: chiar.obj (did you mean chair" in line
+    assert "ignored, because no class has a model with this name: chiar.obj (did you mean chair" in line
 
 
 def test_one_system_a_data_folder_that_is_stopped_by_the_endpoint_it_listens_on(tmp_path):

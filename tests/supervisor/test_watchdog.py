@@ -11,7 +11,7 @@ from tests.conftest import PATIENCE_S, until
 
 
 class World:
-    """A clock, and processes that use a share of a core."""
+    """A fake clock, and processes with a given CPU share."""
 
     def __init__(self, share):
         self.now_s = 1000.0
@@ -24,7 +24,7 @@ class World:
         return self.watchdog.heard("kb_node", pid)
 
     def pass_time(self, seconds, step_s=0.25):
-        """Those who hang meanwhile."""
+        """The nodes that hang in the meantime."""
         found = []
         for _ in range(int(seconds / step_s)):
             self.now_s += step_s
@@ -33,14 +33,14 @@ class World:
         return found
 
 
-def test_who_is_heard_of_does_not_hang():
+def test_a_node_with_heartbeats_does_not_hang():
     world = World(0.0)
     for _ in range(100):
         assert world.beat()
         assert world.pass_time(1) == []
 
 
-def test_who_is_silent_and_idle_hangs_within_five_seconds_and_is_given_time_again():
+def test_a_silent_idle_node_hangs_within_five_seconds_and_gets_time_again():
     world = World(0.001)
     world.beat()
     assert world.pass_time(SILENT_S) == []
@@ -49,7 +49,7 @@ def test_who_is_silent_and_idle_hangs_within_five_seconds_and_is_given_time_agai
     assert world.pass_time(SILENT_S - 1) == []
 
 
-def test_a_process_that_was_not_heard_of_yet_has_time_to_start():
+def test_a_new_process_has_time_to_start():
     world = World(0.0)
     assert world.pass_time(UNHEARD_S) == []
     assert [hang.pid for hang in world.pass_time(1)] == [1]
@@ -65,7 +65,7 @@ def test_another_process_has_time_to_start_again():
 
 
 @pytest.mark.parametrize("pid", [2, 0, -1])
-def test_beats_of_another_process_than_supervisords_say_nothing(pid):
+def test_heartbeats_of_another_process_are_ignored(pid):
     world = World(0.0)
     world.beat()
     for _ in range(4):
@@ -75,7 +75,7 @@ def test_beats_of_another_process_than_supervisords_say_nothing(pid):
     assert [hang.pid for hang in world.pass_time(1)] == [1]
 
 
-def test_a_node_that_there_is_not_says_nothing():
+def test_heartbeats_of_an_unknown_node_are_ignored():
     world = World(0.0)
     assert not world.watchdog.heard("x", 1)
     assert world.pass_time(2) == []
@@ -88,13 +88,13 @@ def test_a_node_that_does_not_run_does_not_hang():
     assert world.pass_time(100) == []
 
 
-def test_who_is_silent_over_work_does_not_hang():
+def test_a_silent_working_node_does_not_hang():
     world = World(0.1)  # of a core that others want, too
     world.beat()
     assert world.pass_time(ENDLESS_S - SILENT_S) == []
 
 
-def test_who_waits_for_a_disk_does_not_hang():
+def test_a_node_that_waits_for_a_disk_does_not_hang():
     world = World(0.0)
     world.beat()
     world.worked_s = float("inf")
@@ -116,7 +116,7 @@ def test_no_work_is_endless():
     assert reason.endswith("though at work")
 
 
-def test_whoever_watches_may_have_been_held_up_himself():
+def test_a_delayed_watchdog_counts_no_silence():
     world = World(0.0)
     world.beat()
     world.now_s += 100.0
@@ -129,7 +129,7 @@ def spin():
 
 
 def test_the_work_of_a_process():
-    """One that is at work, and one that sleeps all the while."""
+    """A working process and a sleeping one."""
     fork = multiprocessing.get_context("fork")
     busy = fork.Process(target=spin, daemon=True)
     idle = fork.Process(target=time.sleep, args=(2 * PATIENCE_S,), daemon=True)
@@ -147,7 +147,7 @@ def test_the_work_of_a_process():
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells of waiting for a core")
-def test_a_process_that_others_keep_from_its_core_is_at_work():
+def test_a_process_that_waits_for_a_core_is_working():
     core = min(os.sched_getaffinity(0))
     loop = f"import os; os.sched_setaffinity(0, {{{core}}}); print(flush=True)\nwhile True: pass"
     several = [subprocess.Popen([sys.executable, "-c", loop], stdout=subprocess.PIPE) for _ in range(5)]

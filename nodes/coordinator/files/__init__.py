@@ -1,1 +1,1 @@
-"""Files that say what stands where, told apart by content; JSON scenes are schemas/scene_files.py."""
+"""Readers of map files, whose type is detected from the content; `schemas/scene_files.py` reads scenes."""

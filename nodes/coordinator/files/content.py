@@ -1,4 +1,4 @@
-"""Telling files apart by what is in them."""
+"""Detects the type of a file from its content."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from semmap.schemas.packing import beginning, unpacked
 Kind = Literal["abox", "scene", "huric"]
 
 _HEAD = 4096
-"""Bytes by which XML is told apart."""
+"""Number of bytes that are searched for the XML root."""
 _OF_JSON = (".json", ".jsonld")
 _BOM = b"\xef\xbb\xbf"
 _BLANK = _BOM + b" \t\r\n"
 
 
 def kind_of(content: bytes, filename: str) -> Kind:
-    """What kind of file this is, packed or not. Raises BadFile for an empty one, or JSON that is neither."""
+    """Return the type of a file, packed or not. Raises BadFile for an empty file and for unknown JSON."""
     head = beginning(content, _HEAD, filename)
     start = head.lstrip(_BLANK) or unpacked(content, filename).lstrip(_BLANK)
     if not start:
@@ -36,13 +36,13 @@ def kind_of(content: bytes, filename: str) -> Kind:
 
 
 class _Top(Struct):
-    """The one key by which a scene is known."""
+    """The key that identifies a scene."""
 
     entities: Raw | UnsetType = UNSET
 
 
 def _kind_of_json(content: bytes, filename: str) -> Kind:
-    with suppress(DecodeError, UnicodeDecodeError, RecursionError):  # what it is instead takes a closer look
+    with suppress(DecodeError, UnicodeDecodeError, RecursionError):  # not a scene: see below
         if _json.decode(content.removeprefix(_BOM), type=codec.prepared(_Top)).entities is not UNSET:
             return "scene"
     try:

@@ -1,4 +1,7 @@
-"""Semantic maps of the Human Robot Interaction Corpus (`.hrc`): a house in which a command was spoken."""
+"""Reader of semantic maps of the Human Robot Interaction Corpus (`.hrc`).
+
+Each file has a spoken command and a map of the house in which it was spoken.
+"""
 
 from __future__ import annotations
 
@@ -12,10 +15,10 @@ _ABILITIES = {"contain_ability": "containing", "support_ability": "supporting"}
 
 
 def read(content: bytes, filename: str) -> tuple[Described, ...]:
-    """The entities of the map in a HuRIC example. Raises BadFile naming the entity at fault."""
+    """Return the entities of the map in a HuRIC example. Raises BadFile with the entity that is invalid."""
     name = filename or "the file"
     if b"<!ENTITY" in content or b"<!DOCTYPE" in content:
-        raise BadFile(f"{name} declares XML entities, which no HuRIC map needs")
+        raise BadFile(f"{name} declares XML entities, which are not allowed in HuRIC maps")
     try:
         root = ET.fromstring(content)
     except ET.ParseError as error:

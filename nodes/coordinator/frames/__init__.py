@@ -1,1 +1,1 @@
-"""Frames: a tree of coordinate systems, in any of which positions are given and asked."""
+"""Frames: a tree of coordinate systems, in which positions can be given and requested."""

@@ -1,4 +1,4 @@
-"""The frames of entities and cameras: where they stand just now, and what they are a part of."""
+"""The frames of entities and cameras: their current poses and parent frames."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from semmap.schemas.scenes import Body, CameraPose
 PART_OF = "isDirectPartOf"
 
 
-class _Stand(NamedTuple):
-    """Where an entity is in the map's frame, and how that is known."""
+class _CurrentPose(NamedTuple):
+    """The pose of an entity in the map frame, and its source."""
 
     pose: Pose | None
     source: FrameSource
@@ -25,7 +25,7 @@ class _Stand(NamedTuple):
 
 
 class EntityLinks:
-    """An entity is in the map's frame, or in that of the whole that it is a part of."""
+    """The frame of an entity is relative to the map, or to the entity that it is a part of."""
 
     def __init__(
         self,
@@ -34,45 +34,45 @@ class EntityLinks:
         bodies: Mapping[str, Body],
         body_age_s: Callable[[], float],
     ) -> None:
-        """`live(entity)` is where a tracked one is, `bodies` are those of the scene `body_age_s()` ago."""
+        """`live(entity)` returns the live pose; `bodies` are those of the scene, `body_age_s()` old."""
         self._entities = entities
         self._live = live
         self._bodies = bodies
         self._body_age_s = body_age_s
 
     def link(self, name: str) -> Link | None:
-        """The link of an entity to the frame that it is in; None where there is none of that name.
+        """Return the link of an entity to its parent frame; None if there is no entity of that name.
 
-        A part that nobody tracks is where the map says it is on its whole, and goes with that.
+        A part that is not tracked has its committed pose relative to its whole, and moves with it.
         """
         entity = self._entities.get(name)
         if entity is None:
             return None
-        stand, whole = self._stand(entity), self._whole_of(entity)
-        if stand.pose is None or whole is None:
-            return Link(MAP, stand.pose, stand.source, stand.age_s, stand.stale, stand.problem)
-        above = self._stand(whole).pose if stand.source != "map" else whole.pose
+        current, whole = self._current_pose(entity), self._whole_of(entity)
+        if current.pose is None or whole is None:
+            return Link(MAP, current.pose, current.source, current.age_s, current.stale, current.problem)
+        above = self._current_pose(whole).pose if current.source != "map" else whole.pose
         if above is None:
             above = whole.pose
         if above is None:
             raise errors.InternalError(f"{whole.name} is the parent of a frame, and has no pose")
-        pose = relative(stand.pose, above)
-        return Link(whole.name, pose, stand.source, stand.age_s, stand.stale, stand.problem)
+        pose = relative(current.pose, above)
+        return Link(whole.name, pose, current.source, current.age_s, current.stale, current.problem)
 
-    def _stand(self, entity: Entity) -> _Stand:
+    def _current_pose(self, entity: Entity) -> _CurrentPose:
         name = entity.name
         if entity.tracked:
             return _of_live(entity, self._live(entity))
         body = self._bodies.get(name)
-        if body is not None and body.robot:  # what a robot moves, the map follows only where it stops
-            return _Stand(body.pose, "sim", self._body_age_s())
+        if body is not None and body.robot:  # the map follows a robot only when it stops
+            return _CurrentPose(body.pose, "sim", self._body_age_s())
         problem = (
-            "" if entity.pose is not None else f"{name} has no position, so nothing can be told from there"
+            "" if entity.pose is not None else f"{name} has no position, so it cannot be used as a frame"
         )
-        return _Stand(entity.pose, "map", problem=problem)
+        return _CurrentPose(entity.pose, "map", problem=problem)
 
     def _whole_of(self, entity: Entity) -> Entity | None:
-        """What it is a part of, if that has a position and is not, in turn, a part of it."""
+        """Return the whole of a part, if that has a position and is not itself a part of it."""
         whole = self._above(entity)
         passed, above = {entity.name}, whole
         while above is not None:
@@ -88,26 +88,26 @@ class EntityLinks:
         return whole if whole is not None and whole.pose is not None and not whole.place else None
 
 
-def _of_live(entity: Entity, live: Live | None) -> _Stand:
+def _of_live(entity: Entity, live: Live | None) -> _CurrentPose:
     name = entity.name
     if live is None:
         source: FrameSource = "sim" if entity.tracked == "sim" else "stream"
-        return _Stand(
+        return _CurrentPose(
             entity.pose,
             source,
             stale=True,
-            problem=f"{name} is tracked, but where it is now is not known: no live pose of it has come yet",
+            problem=f"{name} is tracked, but its current pose is unknown: no live pose has been received yet",
         )
     if live.stale:
-        problem = f"the live pose of {name} is stale: nothing has come for {wording.duration(live.age_s)}"
-        return _Stand(live.pose, live.source, live.age_s, stale=True, problem=problem)
-    return _Stand(live.pose, live.source, live.age_s)
+        problem = f"the live pose of {name} is stale: none received for {wording.duration(live.age_s)}"
+        return _CurrentPose(live.pose, live.source, live.age_s, stale=True, problem=problem)
+    return _CurrentPose(live.pose, live.source, live.age_s)
 
 
 def camera_links(cameras: Iterable[CameraPose], carrier: Callable[[str], Pose | None]) -> dict[str, Link]:
-    """The optical frame of each camera, in that of the entity that carries it.
+    """Return the optical frame of each camera, relative to the entity that carries it.
 
-    `carrier(name)` is where an entity is in the map's frame just now; None for what is none, or is stale.
+    `carrier(name)` returns the current pose of an entity in the map frame; None if it is unknown or stale.
     """
     found = {}
     for camera in cameras:

@@ -1,4 +1,4 @@
-"""The tree of frames: which is in which, and where. Knows no wire, no clock and no map."""
+"""The tree of frames. Independent of Zenoh, clocks and the map."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ORIGIN = Pose(position_m=(0.0, 0.0, 0.0))
 
 
 class Link(NamedTuple):
-    """How a frame is tied to its parent. Where `problem` says why it cannot be used, there may be no pose."""
+    """The link of a frame to its parent. If `problem` says why it cannot be used, it may have no pose."""
 
     parent: str
     pose: Pose | None
@@ -24,17 +24,17 @@ class Link(NamedTuple):
 
 
 class Tree:
-    """Links are looked up one by one: nobody goes through a large map to place a single thing."""
+    """Looks up links one by one, so that placing one object does not visit all of a large map."""
 
     def __init__(self, find: Callable[[str], Link | None], names: Callable[[], Iterable[str]]) -> None:
-        """`find(name)` is the link of a frame, None where there is none; `names()` are all there are."""
+        """`find(name)` returns the link of a frame, or None; `names()` returns all frames."""
         self._find = find
         self._names = names
 
-    def known(self, word: str) -> str:
-        """The frame that is meant: of that name, or `robot1_gripper` where somebody writes `robot1/gripper`.
+    def resolve(self, word: str) -> str:
+        """Return the name of a frame; `robot1/gripper` is resolved to `robot1_gripper`.
 
-        Raises UnknownName with those that are near.
+        Raises UnknownName with similar names.
         """
         if self._is_there(word):
             return word
@@ -42,14 +42,14 @@ class Tree:
         if self._is_there(underscored):
             return underscored
         raise errors.UnknownName(
-            f"nobody publishes a frame '{word}', and no entity or camera is called so"
+            f"unknown frame '{word}' (no publisher, entity or camera with this name)"
             f"{errors.did_you_mean(word, (MAP, *self._names())) or '; see: semmap frames'}"
         )
 
     def map_pose(self, name: str) -> Pose:
-        """Where a frame that is there is in the map's.
+        """Return the pose of an existing frame in the map.
 
-        Raises Refused where it, or one above it, is stale, nowhere, or in itself.
+        Raises Refused if the frame or one above it is stale, has no pose, or is in a cycle.
         """
         pose = ORIGIN
         for _, link in self._chain(name):
@@ -58,10 +58,10 @@ class Tree:
             pose = compose(link.pose, pose)
         return pose
 
-    def missing(self, word: str) -> bool:
-        """Does the frame that is meant, or one that it is in, not exist?"""
+    def is_missing(self, word: str) -> bool:
+        """Return whether a frame, or one above it, does not exist."""
         try:
-            for _, link in self._above(self.known(word)):
+            for _, link in self._above(self.resolve(word)):
                 if link is None:
                     return True
         except errors.UnknownName:
@@ -71,31 +71,31 @@ class Tree:
         return False
 
     def frames(self, word: str | None = None) -> Iterator[Frame]:
-        """All frames, or one with those above it and those below it; parents come before their children.
+        """Yield all frames, or one with its ancestors and descendants; parents come before their children.
 
-        Raises UnknownName. A frame whose parents are missing, or in one another, comes last.
+        Frames whose parents are missing or in a cycle come last. Raises UnknownName.
         """
         links = {name: link for name in self._names() if name != MAP and (link := self._find(name))}
-        chosen = None if word is None else self._family(self.known(word), links)
+        chosen = None if word is None else self._family(self.resolve(word), links)
         children: dict[str, list[str]] = {}
         for name in sorted(links):
             if chosen is None or name in chosen:
                 children.setdefault(links[name].parent, []).append(name)
-        told: set[str] = {MAP}
+        listed: set[str] = {MAP}
         yield Frame(name=MAP, parent="", source="map", pose=ORIGIN, map_pose=ORIGIN)
         waiting = [MAP]
         strays = (name for name in sorted(links) if chosen is None or name in chosen)
         while True:
             while waiting:
                 above = waiting.pop()
-                below = [name for name in children.get(above, ()) if name not in told]
+                below = [name for name in children.get(above, ()) if name not in listed]
                 if above != MAP:
                     yield self._frame(above, links[above])
-                told.update(below)
+                listed.update(below)
                 waiting.extend(reversed(below))
-            if (stray := next((name for name in strays if name not in told), None)) is None:
+            if (stray := next((name for name in strays if name not in listed), None)) is None:
                 return
-            told.add(stray)
+            listed.add(stray)
             waiting.append(stray)
 
     def _frame(self, name: str, link: Link) -> Frame:
@@ -116,7 +116,7 @@ class Tree:
         )
 
     def _family(self, name: str, links: dict[str, Link]) -> set[str]:
-        """A frame, those that it is in, and those that are in it."""
+        """Return a frame, its ancestors and its descendants."""
         children: dict[str, list[str]] = {}
         for child, link in links.items():
             children.setdefault(link.parent, []).append(child)
@@ -135,12 +135,12 @@ class Tree:
         return name == MAP or self._find(name) is not None
 
     def _chain(self, name: str) -> Iterator[tuple[str, Link]]:
-        """The links from a frame up to the map, all of which can be used. Raises Refused."""
+        """Yield the links from a frame up to the map. Raises Refused if one cannot be used."""
         below = name
         for above, link in self._above(name):
             if link is None:
                 raise errors.Refused(
-                    f"{below} is in the frame '{above}', which nobody publishes"
+                    f"{below} is in the unknown frame '{above}'"
                     f"{errors.did_you_mean(above, (MAP, *self._names()))}"
                 )
             if link.problem or link.pose is None:
@@ -149,13 +149,13 @@ class Tree:
             below = above
 
     def _above(self, name: str) -> Iterator[tuple[str, Link | None]]:
-        """The links from a frame up to the map; None for the first that there is not. Raises Refused."""
-        passed: dict[str, None] = {}
+        """Yield the links from a frame up to the map, and None for a missing one. Raises Refused."""
+        visited: dict[str, None] = {}
         while name != MAP:
-            if name in passed:
-                circle = [*passed][[*passed].index(name) :]
-                raise errors.Refused(f"{in_one_another([*circle, name])}, so none of them is anywhere")
-            passed[name] = None
+            if name in visited:
+                cycle = [*visited][[*visited].index(name) :]
+                raise errors.Refused(f"{describe_cycle([*cycle, name])}, so none of them has a pose")
+            visited[name] = None
             link = self._find(name)
             yield name, link
             if link is None:
@@ -163,11 +163,11 @@ class Tree:
             name = link.parent
 
 
-def in_one_another(circle: list[str]) -> str:
-    """A cycle in words; the last of it is the first."""
-    return f"frames are in one another in a cycle: {' in '.join(circle)}"
+def describe_cycle(cycle: list[str]) -> str:
+    """Return a cycle in words; the last frame is the first."""
+    return f"the frames form a cycle: {' in '.join(cycle)}"
 
 
-def seen_from(frame: Pose, pose: Pose) -> Pose:
-    """A pose of the map in a frame that is at `frame` in it."""
+def pose_in_frame(frame: Pose, pose: Pose) -> Pose:
+    """Return a pose of the map in the frame that is at `frame`."""
     return rounded(relative(pose, frame))

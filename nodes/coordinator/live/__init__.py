@@ -1,1 +1,1 @@
-"""Live poses of tracked entities: the newest wins, and only where they stop is there a commit."""
+"""Live poses of tracked entities: the newest is used, and poses at rest are committed."""

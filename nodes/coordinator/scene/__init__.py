@@ -1,1 +1,1 @@
-"""Keeping map and scene in agreement, and commands to the scene."""
+"""The coordinator's view of the simulated scene, and the commands to it."""

@@ -1,6 +1,6 @@
-"""Orders to bodies that the map has yet to follow: replies that wait for the commit, and what undo stops.
+"""Orders to bodies whose result is not committed yet: waiting replies, and orders that undo can stop.
 
-An order (`move`, `open`, `close`, `drive`) is under way until its body rests and the map has followed.
+An order (`move`, `open`, `close`, `drive`) is pending until its body rests and the map has followed.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from typing import Protocol, TypeVar
 
 from msgspec import structs
 
+from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.nodes.coordinator.config import Truth
-from semmap.nodes.coordinator.door import Door
-from semmap.nodes.coordinator.scene.reconciler import Keeping
-from semmap.nodes.coordinator.scene.settled import Settled
-from semmap.nodes.runtime.futures import OwnFuture, then
+from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
+from semmap.nodes.coordinator.reconciler.reconciler import Reconciler
+from semmap.nodes.runtime.futures import SingleThreadFuture, then
 from semmap.schemas import errors
 from semmap.schemas.commands import Close, Drive, Move, Open, Undo
 from semmap.schemas.entities import LESSER, Entity, Pose
@@ -29,8 +29,8 @@ Order = Move | Open | Close | Drive
 Answer = Moved | errors.SemmapError
 
 WAIT_S = 30.0
-"""So long a reply waits for a body to rest: what rolls or swings on is committed later."""
-PAUSED = "time is paused: the map follows when it runs again (semmap pause --off)"
+"""Longest wait of a reply for a body to rest; a body that rolls on is committed later."""
+PAUSED = "time is paused: the map is updated when it runs again (semmap pause --off)"
 _DOING = {"move": "the move of", "open": "opening", "close": "closing", "drive": "the drive of"}
 
 
@@ -44,79 +44,79 @@ class Timed(Protocol):
 
 
 @dataclass
-class Underway:
-    """An order that the simulator has carried out, or is carrying out."""
+class PendingOrder:
+    """An order that the simulator has executed or is executing."""
 
     command: Order
     names: frozenset[str]
-    """The body and what is carried with it."""
+    """The body and its carried contents."""
     run: str
-    """Which simulator has the order."""
+    """The id of the simulator's process that has the order."""
     before: int | None
-    """The commit that the pose is from when the order came; None for what is not in the map."""
-    at_once: Moved
-    """The reply to those who do not wait."""
+    """The commit of the pose before the order; None for a body that is not in the map."""
+    immediate: Moved
+    """The immediate reply."""
     tell: Callable[[Body], str]
-    """The reply to those who wait, given the body at rest."""
+    """Returns the text of the final reply from the body at rest."""
     until_s: float
     reply: Future[Moved] | None = None
-    """For those who wait."""
+    """The waiting reply, if any."""
     after_ns: int | None = None
-    """Earlier poses do not count; None while a course is driven, whose end the simulator reports."""
+    """Earlier poses are ignored. None during a drive, whose end the simulator reports."""
     commit: int | None = None
 
     @property
     def name(self) -> str:
-        """The body that the order is about."""
+        """The body of the order."""
         return self.command.name
 
 
 class Completion:
-    """Owned by the coordinator's thread, which calls `answer_waiting` whenever scene or map have changed."""
+    """Owned by the coordinator's thread, which calls `answer_waiting` when scene or map have changed."""
 
-    def __init__(self, truth: Truth, door: Door, keeping: Keeping) -> None:
-        """Nothing is under way."""
+    def __init__(self, truth: Truth, dispatcher: CommandDispatcher, reconciler: Reconciler) -> None:
+        """Start without pending orders."""
         self._truth = truth
-        self._door = door
-        self._keeping = keeping
-        self._underway: list[Underway] = []
+        self._dispatcher = dispatcher
+        self._reconciler = reconciler
+        self._pending: list[PendingOrder] = []
         self._paused = False
         self._stopped: tuple[str, Changed] | None = None
 
     def begin(
         self,
         command: Order,
-        at_once: Moved,
+        immediate: Moved,
         tell: Callable[[Body], str],
         done: Timed | None,
         load: Collection[str] = (),
     ) -> Moved | Future[Moved]:
-        """Reply to an order once the map has followed, or at once if nobody waits or time is paused.
+        """Reply to an order when the map has followed, or immediately if time is paused or no wait is wanted.
 
-        `done` is the simulator's reply, None while a course is driven: `arrive` follows then.
+        `done` is the simulator's reply. It is None during a drive, for which `arrive` is called later.
         """
-        order = self._register(command, at_once, tell, load)
+        order = self._register(command, immediate, tell, load)
         if done is not None:
             order.after_ns, self._paused = done.stamp_ns, done.paused
         if not command.wait:
-            return at_once
+            return immediate
         if done is not None and done.paused:
-            return _paused(at_once)
-        order.reply = OwnFuture()
+            return _paused(immediate)
+        order.reply = SingleThreadFuture()
         return order.reply
 
     def arrive(self, command: Drive, text: str, done: Timed) -> None:
-        """Note that a course has ended: `text` says how, and the reply waits for the commit."""
+        """Note that a drive has ended; the reply waits for the commit and has the text `text`."""
         if (order := self._find(command)) is None:
             return
         order.after_ns, order.until_s = done.stamp_ns, time.monotonic() + WAIT_S
-        order.at_once, order.tell = Moved(name=order.name, text=text), lambda _: text
+        order.immediate, order.tell = Moved(name=order.name, text=text), lambda _: text
         self._paused = done.paused
         if done.paused:
-            self._answer(order, _paused(order.at_once))
+            self._answer(order, _paused(order.immediate))
 
     def fail(self, command: Drive, error: errors.SemmapError, done: Timed | None = None) -> None:
-        """Answer an order that the simulator did not carry out; with `done` the body may have moved."""
+        """Fail an order that the simulator did not execute; with `done`, the body may have moved."""
         if (order := self._find(command)) is None:
             return
         self._answer(order, error)
@@ -125,47 +125,47 @@ class Completion:
         else:
             self._end(order)
 
-    def watching(self, change: Callable[[C], Future[Changed]]) -> Callable[[C], Future[Changed]]:
-        """Return `change`, such that the commits by which the map follows a body are noticed."""
+    def watch(self, change: Callable[[C], Future[Changed]]) -> Callable[[C], Future[Changed]]:
+        """Wrap `change` to notice the commits by which the map follows a body."""
 
         def watched(wanted: C) -> Future[Changed]:
             made = change(wanted)
-            if isinstance(wanted, Settled):
-                orders = [order for order in self._underway if self._is_about(order, wanted)]
+            if isinstance(wanted, ObservedState):
+                orders = [order for order in self._pending if self._is_about(order, wanted)]
                 made.add_done_callback(lambda done: self._on_change(orders, done))
             return made
 
         return watched
 
     def answer_waiting(self) -> None:
-        """Answer those whose body rests and whose map has followed; forget what has ended."""
-        for order in [*self._underway]:
+        """Reply to the orders whose body rests and whose map has followed, and remove ended orders."""
+        for order in [*self._pending]:
             if (answer := self._judge(order)) is None:
                 continue
             self._answer(order, answer)
             self._end(order)
 
     def pause(self) -> None:
-        """Answer those who wait for what does not happen while time stands still."""
+        """Reply to orders that cannot complete while time is paused."""
         self._paused = True
-        for order in self._underway:
-            if order.after_ns is not None:  # the simulator itself answers those who wait for a course
-                self._answer(order, _paused(order.at_once))
+        for order in self._pending:
+            if order.after_ns is not None:  # the simulator itself replies to drives
+                self._answer(order, _paused(order.immediate))
 
     def resume(self) -> None:
-        """Give all that is under way as long as ever from now on."""
+        """Renew the deadlines of all orders when time runs again."""
         self._paused = False
-        self._door.hands.renew()
-        for order in self._underway:
+        self._dispatcher.manual_moves.renew()
+        for order in self._pending:
             order.until_s = time.monotonic() + WAIT_S
 
     def stop(self, command: Undo, halt: Callable[[str], Future[Pose]]) -> Future[Changed] | None:
-        """Stop the newest order that has yet to be committed; None if an undo is about commits.
+        """Stop the newest order that is not committed yet; None if the undo is about commits.
 
-        `halt(name)` ends a robot's course. Bodies go back to where the map has them.
+        `halt(name)` stops a drive. Other bodies return to their committed state.
         """
         if command.id and self._stopped is not None and self._stopped[0] == command.id:
-            again: Future[Changed] = OwnFuture()
+            again: Future[Changed] = SingleThreadFuture()
             again.set_result(self._stopped[1])
             return again
         if command.commit is not None or command.dry_run or (order := self._newest(command)) is None:
@@ -175,66 +175,66 @@ class Completion:
             return then(halt(order.name), lambda pose: self._note(command, order, f"{what} at {_at(pose)}"))
         self._answer(order, errors.Refused(f"{what}: an undo came before it was committed"))
         self._end(order)
-        self._door.hands.forget(order.names)
+        self._dispatcher.manual_moves.forget(order.names)
         if isinstance(order.command, Move):
-            text, returned = f"{what}: it goes back to where the map has it", self._keeping.return_bodies
+            text, returned = f"{what}: it returns to its committed pose", self._reconciler.return_bodies
         else:
             text, returned = (
-                f"{what}: its joints go back to where the map has them",
-                self._keeping.return_joints,
+                f"{what}: its joints return to their committed positions",
+                self._reconciler.return_joints,
             )
         return then(returned(order.names), lambda _: self._note(command, order, text))
 
-    def _note(self, command: Undo, order: Underway, text: str) -> Changed:
+    def _note(self, command: Undo, order: PendingOrder, text: str) -> Changed:
         changed = Changed(commit=None, text=text, names=(order.name,))
         if command.id:
             self._stopped = command.id, changed
         return changed
 
-    def _newest(self, command: Undo) -> Underway | None:
-        """The newest order that this undo may stop: what is being committed is undone by a commit."""
-        for order in reversed(self._underway):
+    def _newest(self, command: Undo) -> PendingOrder | None:
+        """Return the newest order that this undo may stop; one that is being committed is not among them."""
+        for order in reversed(self._pending):
             is_lesser = command.source in LESSER and order.command.source not in LESSER
-            is_known = order.commit is not None or self._keeping.is_following(order.names)
+            is_known = order.commit is not None or self._reconciler.is_following(order.names)
             if not (is_lesser or is_known or self._is_over(order)):
                 return order
         return None
 
-    def _is_over(self, order: Underway) -> bool:
+    def _is_over(self, order: PendingOrder) -> bool:
         return order.after_ns is not None and self._judge(order) is not None
 
     def _register(
-        self, command: Order, at_once: Moved, tell: Callable[[Body], str], load: Collection[str]
-    ) -> Underway:
+        self, command: Order, immediate: Moved, tell: Callable[[Body], str], load: Collection[str]
+    ) -> PendingOrder:
         names = frozenset((command.name, *load))
-        for order in [*self._underway]:
+        for order in [*self._pending]:
             order.names -= names
             if order.name in names:
                 text = f"{order.name} was moved again before the map had followed"
                 self._answer(order, Moved(name=order.name, text=text, commit=order.commit))
-                self._underway.remove(order)
-        entity = self._door.map.entities.get(command.name)
-        made = Underway(
+                self._pending.remove(order)
+        entity = self._dispatcher.map.entities.get(command.name)
+        made = PendingOrder(
             command=command,
             names=names,
-            run=self._keeping.scene.run,
+            run=self._reconciler.scene.run,
             before=None if entity is None else _posed_by(entity),
-            at_once=at_once,
+            immediate=immediate,
             tell=tell,
             until_s=time.monotonic() + WAIT_S,
         )
-        self._underway.append(made)
+        self._pending.append(made)
         return made
 
-    def _find(self, command: Order) -> Underway | None:
-        return next((order for order in self._underway if order.command is command), None)
+    def _find(self, command: Order) -> PendingOrder | None:
+        return next((order for order in self._pending if order.command is command), None)
 
-    def _is_about(self, order: Underway, settled: Settled) -> bool:
-        """Is it this order that the map follows? Poses from before it are not its own."""
-        is_newer = order.after_ns is not None and self._keeping.scene.stamp_ns >= order.after_ns
-        return is_newer and not order.names.isdisjoint(settled.names)
+    def _is_about(self, order: PendingOrder, observed: ObservedState) -> bool:
+        """Return whether an observed change is the result of this order; older poses are not."""
+        is_newer = order.after_ns is not None and self._reconciler.scene.stamp_ns >= order.after_ns
+        return is_newer and not order.names.isdisjoint(observed.names)
 
-    def _on_change(self, orders: Collection[Underway], done: Future[Changed]) -> None:
+    def _on_change(self, orders: Collection[PendingOrder], done: Future[Changed]) -> None:
         error = done.exception()
         for order in orders:
             if error is None:
@@ -243,12 +243,12 @@ class Completion:
                 text = f"{order.name} was put back, because the map rejected its new state: {error}"
                 self._answer(order, type(error)(text, explanation=error.explanation))
 
-    def _judge(self, order: Underway) -> Answer | None:
-        """The answer to an order as things are; None as long as it has to be waited for."""
+    def _judge(self, order: PendingOrder) -> Answer | None:
+        """Return the reply to an order in the current state; None while it has to wait."""
         if order.after_ns is None:
             return None
-        scene, name = self._keeping.scene, order.name
-        body, entity = scene.bodies.get(name), self._door.map.entities.get(name)
+        scene, name = self._reconciler.scene, order.name
+        body, entity = scene.bodies.get(name), self._dispatcher.map.entities.get(name)
         if order.before is not None and entity is None:
             return errors.Refused(f"{name} was removed before it came to rest")
         if not scene.known or scene.run != order.run:
@@ -257,29 +257,29 @@ class Completion:
             return errors.Refused(f"{name} lost its body before it came to rest")
         is_late = time.monotonic() > order.until_s and not self._paused
         is_new = scene.stamp_ns >= order.after_ns
-        if is_new and body.resting and self._keeping.is_followed(name):
+        if is_new and body.resting and self._reconciler.is_followed(name):
             notes = () if order.commit is not None else (self._why_none(order, entity),)
             return Moved(name=name, text=order.tell(body), commit=order.commit, notes=notes)
         if is_late:
-            moving = f"no commit yet: {name} is still moving; the map follows when it rests"
-            held_up = f"no commit yet: {name} rests, and the map has still to follow"
+            moving = f"no commit yet: {name} is still moving; the map is updated when it rests"
+            held_up = f"no commit yet: {name} rests, but the map is not updated yet"
             notes = () if order.commit is not None else (held_up if is_new and body.resting else moving,)
-            return structs.replace(order.at_once, commit=order.commit, notes=notes)
+            return structs.replace(order.immediate, commit=order.commit, notes=notes)
         return None
 
-    def _why_none(self, order: Underway, entity: Entity | None) -> str:
+    def _why_none(self, order: PendingOrder, entity: Entity | None) -> str:
         name = order.name
         if entity is None:
             return f"no commit: {name} is not in the map"
         if entity.tracked == "stream":
-            return f"no commit: the map has {name} where its live poses are"
+            return f"no commit: the pose of {name} in the map comes from its live poses"
         if self._truth == "perceived" and entity.tracked != "sim":
             return "no commit: the map is updated by perception only"
         if (since := _posed_by(entity)) != order.before:
             return f"no commit: commit {since} has changed the position of {name} since"
-        return f"no commit: {name} rests where the map has it"
+        return f"no commit: {name} rests at its committed pose"
 
-    def _answer(self, order: Underway, answer: Answer) -> None:
+    def _answer(self, order: PendingOrder, answer: Answer) -> None:
         reply, order.reply = order.reply, None
         if reply is None:
             return
@@ -288,17 +288,17 @@ class Completion:
         else:
             reply.set_result(answer)
 
-    def _end(self, order: Underway) -> None:
-        """What rests is no longer in the hand; what moves on still is, and so are reasons for its commit."""
-        if order in self._underway:
-            self._underway.remove(order)
-        body = self._keeping.scene.bodies.get(order.name)
-        if body is None or body.resting or order.run != self._keeping.scene.run:
-            self._door.hands.forget(order.names)
+    def _end(self, order: PendingOrder) -> None:
+        """Remove an order. A body that still moves keeps its attribution for the later commit."""
+        if order in self._pending:
+            self._pending.remove(order)
+        body = self._reconciler.scene.bodies.get(order.name)
+        if body is None or body.resting or order.run != self._reconciler.scene.run:
+            self._dispatcher.manual_moves.forget(order.names)
 
 
-def _paused(at_once: Moved) -> Moved:
-    return structs.replace(at_once, notes=(*at_once.notes, PAUSED))
+def _paused(immediate: Moved) -> Moved:
+    return structs.replace(immediate, notes=(*immediate.notes, PAUSED))
 
 
 def _posed_by(entity: Entity) -> int:

@@ -1,4 +1,4 @@
-"""Commands to the scene: move, pause, step, reset, picture."""
+"""Commands to the scene: move, drive, pause, step, reset, picture."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from typing import TypeVar
 
+from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
+from semmap.nodes.coordinator.commands.plausibility import require_carry
 from semmap.nodes.coordinator.config import Truth
-from semmap.nodes.coordinator.door import Door
-from semmap.nodes.coordinator.plausibility import require_carrying
+from semmap.nodes.coordinator.reconciler.reconciler import AskSim, Reconciler
+from semmap.nodes.coordinator.reconciler.scene_report import describe_ghost
 from semmap.nodes.coordinator.scene.completion import Completion
-from semmap.nodes.coordinator.scene.reconciler import AskSim, Keeping, ghostly
-from semmap.nodes.runtime.futures import OwnFuture, and_then, settle, then
+from semmap.nodes.runtime.futures import SingleThreadFuture, and_then, settle, then
 from semmap.schemas import commands as c
 from semmap.schemas import errors, wording
 from semmap.schemas.bridge import LoadOf
@@ -35,52 +36,54 @@ R = TypeVar("R")
 _LIFTED_M = 0.02
 
 
-class Running:
-    """Passes them on to the simulator. Raises NoAnswer when none runs."""
+class SceneCommands:
+    """Forwards commands to the simulator. Raises NoAnswer if none is running."""
 
     def __init__(
         self,
         truth: Truth,
-        door: Door,
-        keeping: Keeping,
+        dispatcher: CommandDispatcher,
+        reconciler: Reconciler,
         completion: Completion,
         ask: AskSim,
         ask_map: AskSim,
     ) -> None:
-        """`ask(call)` asks the simulator, `ask_map(call)` the knowledge base, without waiting."""
+        """`ask(call)` calls the simulator, `ask_map(call)` the knowledge base. Neither waits."""
         self._truth = truth
-        self._door = door
-        self._keeping = keeping
+        self._dispatcher = dispatcher
+        self._reconciler = reconciler
         self._completion = completion
         self._ask = ask
         self._ask_map = ask_map
 
     def move(self, command: c.Move) -> Future[Moved]:
-        """Take a body and put it elsewhere, as a hand would; with what it bears, if that is wanted."""
-        require_carrying(command)
+        """Move a body manually, with its contents if wanted."""
+        require_carry(command)
         if self._truth == "replayed":
-            raise errors.Refused("this scene is a replay of the past, and nothing in it can be moved by hand")
-        body = self._keeping.scene.bodies.get(command.name)
+            raise errors.Refused("this scene is a replay of the past; nothing in it can be moved")
+        body = self._reconciler.scene.bodies.get(command.name)
         if body is None:
-            state = self._keeping.body_state(self._door.map.entity(command.name))
+            state = self._reconciler.body_state(self._dispatcher.map.entity(command.name))
             raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
-        return self._keeping.when_placed(command.name, lambda: self._take(command))
+        return self._reconciler.when_placed(command.name, lambda: self._move_body(command))
 
-    def _take(self, command: c.Move) -> Future[Moved]:
-        body = self._keeping.scene.bodies.get(command.name)
+    def _move_body(self, command: c.Move) -> Future[Moved]:
+        body = self._reconciler.scene.bodies.get(command.name)
         if body is None:
             raise errors.Refused(f"{command.name} lost its body before it could be moved")
         if not command.carry:
-            return self._put(command, body, ())
-        future: Future[Moved] = OwnFuture()
+            return self._place(command, body, ())
+        future: Future[Moved] = SingleThreadFuture()
         asked = self._ask_map(LoadOf(name=command.name, leave=command.leave))
-        asked.add_done_callback(lambda done: settle(future, lambda: self._put(command, body, done.result())))
+        asked.add_done_callback(
+            lambda done: settle(future, lambda: self._place(command, body, done.result()))
+        )
         return future
 
-    def _put(self, command: c.Move, body: Body, load: Sequence[str]) -> Future[Moved]:
+    def _place(self, command: c.Move, body: Body, load: Sequence[str]) -> Future[Moved]:
         orientation = body.pose.orientation_wxyz if command.yaw is None else orientation_from_yaw(command.yaw)
         pose = Pose(position_m=command.at, orientation_wxyz=orientation)
-        bodies = self._keeping.scene.bodies
+        bodies = self._reconciler.scene.bodies
         along = {name: carried(bodies[name].pose, body.pose, pose) for name in load if name in bodies}
         order = MoveBodies(
             placements=tuple(Placement(name=n, pose=p) for n, p in {command.name: pose, **along}.items())
@@ -89,23 +92,23 @@ class Running:
         def moved(reply: BodiesMoved) -> Moved | Future[Moved]:
             if command.name in reply.failed:
                 raise errors.Refused(reply.failed[command.name])
-            self._keeping.scene.add(reply.bodies)
+            self._reconciler.scene.add(reply.bodies)
             carried_along = [name for name in along if name not in reply.failed]
-            self._door.hands.let_go(command, carried_along)
+            self._dispatcher.manual_moves.register(command, carried_along)
             load = f"; {wording.carried(command.name, tuple(along), command.leave)}" if command.carry else ""
-            at_once = Moved(name=command.name, text=_let_go(command, reply.bodies[0]) + load)
+            immediate = Moved(name=command.name, text=_describe_release(command, reply.bodies[0]) + load)
             return self._completion.begin(
-                command, at_once, lambda rests: _moved(rests) + load, reply, carried_along
+                command, immediate, lambda rests: _describe_rest(rests) + load, reply, carried_along
             )
 
         return and_then(self._ask(order), moved)
 
     def drive(self, command: c.Drive) -> Future[Moved]:
-        """Drive a robot's base. Raises Refused for what cannot drive, and where it gets no further."""
+        """Drive a robot's base. Raises Refused if it cannot drive or is blocked."""
         if bool(command.to) is command.stop:
-            raise errors.BadRequest("say where to drive (--to X Y), or --stop")
-        if command.name not in self._keeping.scene.bodies and self._keeping.scene.known:
-            state = self._keeping.body_state(self._door.map.entity(command.name))
+            raise errors.BadRequest("missing target; use --to X Y, or --stop")
+        if command.name not in self._reconciler.scene.bodies and self._reconciler.scene.known:
+            state = self._reconciler.body_state(self._dispatcher.map.entity(command.name))
             raise errors.Refused(f"{command.name} has no body to drive: {state.detail or state.status}")
         order = DriveBase(
             name=command.name, to=command.to, yaw=command.yaw, speed=command.speed, wait=command.wait
@@ -113,25 +116,25 @@ class Running:
         if not command.to:
             return self._drive(command, order)
         begin = self._drive_there if command.wait else self._drive
-        return self._keeping.when_placed(command.name, lambda: begin(command, order))
+        return self._reconciler.when_placed(command.name, lambda: begin(command, order))
 
     def _drive(self, command: c.Drive, order: DriveBase) -> Future[Moved]:
-        """Reply when the course has begun, or when the robot has stopped."""
+        """Reply when the drive has begun, or when the robot has stopped."""
 
         def driven(reply: Driven) -> Moved | Future[Moved]:
-            self._door.hands.let_go(command)
-            text = _driven(reply)
+            self._dispatcher.manual_moves.register(command)
+            text = _describe_drive(reply)
             return self._completion.begin(command, Moved(name=command.name, text=text), lambda _: text, reply)
 
         return and_then(self._ask_scene(order), driven)
 
     def _drive_there(self, command: c.Drive, order: DriveBase) -> Future[Moved]:
-        """Reply when the course has ended and the map has followed."""
+        """Reply when the drive has ended and the map has followed."""
         asked = self._ask_scene(order)
-        self._door.hands.let_go(command)
-        at_once = Moved(name=command.name, text=f"{command.name} is on its way")
-        future: Future[Moved] = OwnFuture()
-        settle(future, lambda: self._completion.begin(command, at_once, lambda _: at_once.text, None))
+        self._dispatcher.manual_moves.register(command)
+        immediate = Moved(name=command.name, text=f"{command.name} is on its way")
+        future: Future[Moved] = SingleThreadFuture()
+        settle(future, lambda: self._completion.begin(command, immediate, lambda _: immediate.text, None))
 
         def ended(done: Future[Driven]) -> None:
             try:
@@ -140,7 +143,7 @@ class Running:
                 self._completion.fail(command, error)
                 return
             try:
-                text = _driven(driven)
+                text = _describe_drive(driven)
             except errors.Refused as error:
                 self._completion.fail(command, error, driven)
             else:
@@ -159,7 +162,7 @@ class Running:
         return change(command) if stopped is None else stopped
 
     def pause(self, command: c.Pause) -> Future[Done]:
-        """Stop or start time."""
+        """Pause or resume simulated time."""
 
         def paused(done: Done) -> Done:
             if command.off:
@@ -171,20 +174,20 @@ class Running:
         return then(self._ask_scene(command), paused)
 
     def step(self, command: c.StepOnce) -> Future[Done]:
-        """Let a little time pass."""
+        """Advance simulated time by one step."""
         return self._ask_scene(command)
 
     def reset(self, command: c.Reset) -> Future[Done]:
-        """Put every body back to where the map says, or, when the map only perceives, to where it began."""
+        """Put every body back to its committed pose or, with `perceived`, to its initial pose."""
         if self._truth == "perceived":
             return self._ask_scene(command)
         return then(
-            self._keeping.place_all(),
-            lambda reply: Done(text=f"put back where the map says: {wording.bodies(len(reply.bodies))}"),
+            self._reconciler.place_all(),
+            lambda reply: Done(text=f"put back to committed poses: {wording.bodies(len(reply.bodies))}"),
         )
 
-    def picture(self, command: c.TakePicture) -> Future[Picture]:
-        """What a camera sees."""
+    def render(self, command: c.TakePicture) -> Future[Picture]:
+        """Render the image of a camera."""
         if command.camera and command.place:
             raise errors.BadRequest("give either a camera or a place")
         query = PictureQuery(
@@ -197,8 +200,8 @@ class Running:
         return self._ask_scene(query)
 
     def _box_of(self, name: str) -> tuple[Vector, Vector]:
-        """Lowest and highest corner of a place. Raises UnknownName; Refused for what is no place."""
-        entity = self._door.map.entity(name)
+        """Return the lowest and highest corner of a place. Raises UnknownName, or Refused for an object."""
+        entity = self._dispatcher.map.entity(name)
         if not entity.place or entity.pose is None or entity.size_m is None:
             raise errors.Refused(f"{entity.name} is not a place with a position and a size")
         (x, y, z), (width, depth, height) = entity.pose.position_m, entity.size_m
@@ -208,34 +211,34 @@ class Running:
         return (x - across, y - along, z), (x + across, y + along, z + height)
 
     def _ask_scene(self, call: Call[R]) -> Future[R]:
-        if not self._keeping.scene.known:
+        if not self._reconciler.scene.known:
             raise errors.NoAnswer("no simulator is running")
         return self._ask(call)
 
 
-def _driven(driven: Driven) -> str:
-    """What has become of a course. Raises Refused where it did not lead there."""
+def _describe_drive(driven: Driven) -> str:
+    """Return the result of a drive. Raises Refused if it did not reach its target."""
     x, y, _ = driven.pose.position_m
     where = f"({x:.2f}, {y:.2f})"
     if driven.outcome == "blocked":
-        raise errors.Refused(f"{driven.name} gets no further than {where}: something is in its way")
+        raise errors.Refused(f"{driven.name} is blocked at {where} by an obstacle")
     if driven.outcome == "fallen":
         raise errors.Refused(f"{driven.name} {wording.fallen(driven.name, driven.pose)}")
     said = {"driving": "is on its way from", "there": "is at", "stopped": "stopped at"}[driven.outcome]
     return f"{driven.name} {said} {where}, facing {math.degrees(driven.pose.yaw_rad):.0f}°"
 
 
-def _moved(body: Body) -> str:
-    """Where a body has come to rest."""
+def _describe_rest(body: Body) -> str:
+    """Return where a body has come to rest."""
     where = "({:g}, {:g}, {:g})".format(*(round(c, 3) + 0.0 for c in body.pose.position_m))
-    return f"moved {body.name} to {where}" + (f", where it {ghostly(body)}" if body.ghost else "")
+    return f"moved {body.name} to {where}" + (f", where it {describe_ghost(body)}" if body.ghost else "")
 
 
-def _let_go(command: c.Move, body: Body) -> str:
-    """Where the hand let go: where it was told to, or above, where there is room."""
+def _describe_release(command: c.Move, body: Body) -> str:
+    """Return where a body was released: at the given position, or above it where there is room."""
     (x, y, z), room_z_m = command.at, body.pose.position_m[2]
     if body.ghost:
-        return f"put {body.name} at ({x:g}, {y:g}, {z:g}), where it {ghostly(body)}"
+        return f"put {body.name} at ({x:g}, {y:g}, {z:g}), where it {describe_ghost(body)}"
     if room_z_m - z > _LIFTED_M:
         return (
             f"put {body.name} at ({x:g}, {y:g}, {room_z_m:.2f}), the lowest free place there, and released it"

@@ -11,25 +11,25 @@ from semmap.schemas.joints import Joint
 from semmap.schemas.scenes import Body, Poses, Scene
 
 _STRANGE_NS = 10_000_000_000
-"""Nanoseconds: poses that are so much later or earlier than the last are strange, and the scene is asked."""
+"""Nanoseconds. If a stamp differs by more, a clock was set, and a new snapshot is requested."""
 
 
 class SceneView:
-    """The bodies as last heard of. `known` is false until a first snapshot, and after the simulator ends."""
+    """The last known bodies. `known` is false until the first snapshot, and after the simulator ends."""
 
     def __init__(self) -> None:
         self.known = False
         self.bodies: dict[str, Body] = {}
         self.left_out: tuple[str, ...] = ()
-        """The named bodies of the world that are only parts of others."""
+        """Named bodies of the world that are only parts of others."""
         self.sim_time_s = 0.0
-        """Simulated time of the newest poses: it stands still while the simulation is paused."""
+        """Simulated time of the newest poses; it stands still while the simulation is paused."""
         self._run = ""
         self._version = -1
         self._stamp_ns = 0
 
     def take(self, scene: Scene) -> None:
-        """Take over a snapshot, unless it is older than what is known."""
+        """Take a snapshot, unless it is older than the current state."""
         if scene.run == self._run and -_STRANGE_NS < scene.stamp_ns - self._stamp_ns < 0:
             return
         self.known = True
@@ -38,14 +38,13 @@ class SceneView:
         self._run, self._version, self._stamp_ns = scene.run, scene.version, scene.stamp_ns
 
     def add(self, bodies: Iterable[Body]) -> None:
-        """Bodies that were made since the last snapshot; the next one tells how they are."""
+        """Add bodies that were created since the last snapshot."""
         self.bodies.update((body.name, body) for body in bodies)
 
     def update(self, poses: Poses) -> set[str] | None:
-        """Take over new poses: the bodies that are not as they were.
+        """Take new poses and return the names of the bodies that changed.
 
-        None when a snapshot is needed: bodies came or went, or the poses are of another time. Then the clock
-        was set, or somebody else published them.
+        Returns None if a new snapshot is needed: bodies were added or removed, or a clock was set.
         """
         changed: set[str] = set()
         if poses.run == self._run and abs(poses.stamp_ns - self._stamp_ns) > _STRANGE_NS:
@@ -87,21 +86,21 @@ class SceneView:
 
     @property
     def run(self) -> str:
-        """Which simulator the poses are from: a restarted one is another."""
+        """The id of the simulator's process; a restarted simulator has another one."""
         return self._run
 
     @property
     def stamp_ns(self) -> int:
-        """When the poses are from."""
+        """The stamp of the newest poses."""
         return self._stamp_ns
 
     def forget(self) -> None:
-        """The simulator is gone."""
+        """Forget the scene of a simulator that has ended."""
         self.known = False
         self.bodies, self.left_out, self.sim_time_s = {}, (), 0.0
         self._run, self._version, self._stamp_ns = "", -1, 0
 
 
 def _at(joints: tuple[Joint, ...], positions: tuple[float, ...]) -> tuple[Joint, ...]:
-    """The joints where they are now."""
+    """Return the joints at their new positions."""
     return tuple(structs.replace(j, position=p) for j, p in zip(joints, positions, strict=True))

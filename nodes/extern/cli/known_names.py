@@ -36,7 +36,7 @@ def _ask(where: str | None, verb: str, command: Any, reply_type: Any) -> Any:
     where = where or endpoint(namespace(None))
     here, who = presence.is_loopback(where), identity(None)
     network = bus.Network(
-        connect=(where if who is None else bus.over_tls(where),),
+        connect=(where if who is None else bus.to_tls(where),),
         namespace=namespace(None, where),
         patience_s=0.0 if here else _DISCOVERY_S,
         identity=who,

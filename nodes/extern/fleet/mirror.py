@@ -227,14 +227,14 @@ class Mirror:
         if robot.ask is None:
             where = open_session(robot.endpoint, robot.name, self._config.identity, mode="client")
             session = robot.connections.enter_context(where)
-            lifelines = bus.Lifelines(session)
+            liveliness = bus.LivelinessMonitor(session)
             add_commit = robot.replica.add_commit
             bus.follow(session, keys.COMMIT, lambda _, commit: self._run_on_owner(add_commit, commit))
 
             def ask(call: Call[Any]) -> Any:
                 kind = reply_type(type(call))
                 how: dict[str, Any] = {"timeout_s": _ANSWER_S, "patience_s": _AGAIN_S}
-                return bus.ask(session, keys.BRIDGE, call.VERB, call, kind, lifelines=lifelines, **how)
+                return bus.ask(session, keys.BRIDGE, call.VERB, call, kind, liveliness=liveliness, **how)
 
             robot.ask = ask
         return synchronize(robot.ask, robot.name, facts, frame, far=self._config.far)

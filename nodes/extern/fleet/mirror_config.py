@@ -29,7 +29,7 @@ def config(
         query_url=query_url or query_url_of(update_url),
         robots=split_names(robots),
         frames=dict(frames) if isinstance(frames, Mapping) else frames_.read(frames),
-        endpoints=reached if certificate is None else tuple(map(bus.over_tls, reached)),
+        endpoints=reached if certificate is None else tuple(map(bus.to_tls, reached)),
         identity=certificate,
     )
 

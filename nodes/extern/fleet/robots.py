@@ -176,7 +176,7 @@ def robot_names(where: str | None, identity_: str | None) -> tuple[str, ...]:
 def _discover_robots(place: str, who: Identity | None) -> dict[str, frozenset[str]]:
     """Return the robots at an endpoint. Raises NoAnswer."""
     with open_session(place, "", who, mode="client") as session:
-        return bus.robots(session)
+        return bus.find_robots(session)
 
 
 def endpoints(where: str | Sequence[str] | None) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from typing import Final
 
 from msgspec import Struct
 
-from semmap.nodes.runtime import rhythm
+from semmap.nodes.runtime import playback_clock
 from semmap.schemas.errors import BadRequest
 from semmap.schemas.moments import When
 
@@ -28,7 +28,7 @@ class Film(Struct, frozen=True, kw_only=True):
     since: When | None = None
     until: When | None = None
     speed: float = 1.0
-    longest_s: float = rhythm.LONGEST_S
+    longest_s: float = playback_clock.LONGEST_S
     size: tuple[int, int] = SIZE
     fps: int = FPS
     camera: str = ""
@@ -41,8 +41,8 @@ class Film(Struct, frozen=True, kw_only=True):
 
     def validate(self) -> None:
         """Raise BadRequest for invalid settings."""
-        rhythm.require_speed(self.speed)
-        rhythm.require_longest(self.longest_s)
+        playback_clock.require_speed(self.speed)
+        playback_clock.require_longest(self.longest_s)
         if not all(_SMALLEST <= length <= _LARGEST for length in self.size):
             width, height = self.size
             raise BadRequest(

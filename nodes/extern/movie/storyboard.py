@@ -10,7 +10,7 @@ from typing import Final
 from msgspec import Struct
 
 from semmap.nodes.extern.phrasing import author, changed_in_short
-from semmap.nodes.runtime import rhythm
+from semmap.nodes.runtime import playback_clock
 from semmap.schemas import errors, wording
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity, Pose
@@ -45,7 +45,7 @@ def scenes(
     since: int,
     start_ns: int,
     speed: float = 1.0,
-    longest_s: float = rhythm.LONGEST_S,
+    longest_s: float = playback_clock.LONGEST_S,
 ) -> Iterator[Scene]:
     """Yield the scenes of a video: the initial map, by name, after commit `since`; then each commit.
 
@@ -53,7 +53,7 @@ def scenes(
     """
     there = dict(start)
     stamps = [start_ns, *(commit.stamp_ns for commit in commits)]
-    waits = [*rhythm.waits_s(stamps, speed=speed, longest_s=longest_s), 0.0]
+    waits = [*playback_clock.waits_s(stamps, speed=speed, longest_s=longest_s), 0.0]
     yield Scene(
         seconds=max(waits[0], FIRST_S),
         caption=f"commit {since} · {_format_time(start_ns)} · initial state",

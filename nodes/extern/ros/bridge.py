@@ -16,8 +16,8 @@ from semmap.nodes.extern.ros.published_frames import Placed, PublishedFrames
 from semmap.nodes.extern.ros.things import Thing, located_things
 from semmap.nodes.extern.ros.types import encode, topic
 from semmap.nodes.navigation.grid import occupancy
-from semmap.nodes.runtime.following import Follower
 from semmap.nodes.runtime.loop import Node
+from semmap.nodes.runtime.map_follower import Follower
 from semmap.nodes.runtime.map_replica import MapReplica
 from semmap.schemas import keys
 from semmap.schemas.commands import PlanFloor
@@ -95,8 +95,8 @@ class Bridge:
             node,
             self._map,
             keys.EFFECTS,
-            heard=lambda _, __: self._mark_changed(),
-            begun=self._on_snapshot,
+            on_commit=lambda _, __: self._mark_changed(),
+            on_snapshot=self._on_snapshot,
             classes_at=keys.CMD,  # the role viewer also has this permission
         )
         node.follow_newest(keys.POSES, self._on_poses)

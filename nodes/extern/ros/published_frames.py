@@ -26,7 +26,7 @@ class PublishedFrames:
     def __init__(self, node: Node, replica: MapReplica[Any]) -> None:
         """Frames with the name of an entity of `replica` are ignored."""
         self._node, self._map = node, replica
-        self._stream = bus.Newest(node.session, keys.FRAME)
+        self._stream = bus.NewestSamples(node.session, keys.FRAME)
         self._known: dict[str, Placed] = {}
         self._asking = False
         node.every(_ASK_S, self._ask)

@@ -25,8 +25,8 @@ from semmap.nodes.extern.sparql_client import StandingQuery
 from semmap.nodes.extern.web.loads import measure_loads
 from semmap.nodes.extern.web.views.system_status import RateHistory
 from semmap.nodes.identity import Identity
-from semmap.nodes.runtime.following import Begun, Follower
 from semmap.nodes.runtime.loop import Node
+from semmap.nodes.runtime.map_follower import Follower, SnapshotLoaded
 from semmap.nodes.runtime.map_replica import MapReplica
 from semmap.schemas import keys, roles
 from semmap.schemas.bridge import CopyQuery, MapCopy
@@ -297,7 +297,12 @@ class _Subscriber:
         self._posted_s = 0.0
         classes_at = keys.CMD if secure else keys.BRIDGE
         Follower(
-            node, self._replica, keys.COMMIT, heard=self._on_commit, begun=self._on_map, classes_at=classes_at
+            node,
+            self._replica,
+            keys.COMMIT,
+            on_commit=self._on_commit,
+            on_snapshot=self._on_map,
+            classes_at=classes_at,
         )
         node.follow(keys.HEALTH, self._on_health)
         node.follow_newest(keys.POSES, self._on_poses)
@@ -321,7 +326,7 @@ class _Subscriber:
             self._updates.commits.append(commit)
             self._schedule()
 
-    def _on_map(self, begun: Begun) -> None:
+    def _on_map(self, begun: SnapshotLoaded) -> None:
         """Request the id of the map, and post the map when it is known."""
         self._has_map, self._classes = False, begun.classes
         self._updates.commits.clear()

@@ -55,7 +55,7 @@ def resolve_network(where: str | None, identity: str | None, namespace: str | No
     name = connection.namespace(namespace, where)
     with connection.open_session(where, name, found, mode="client"):
         pass
-    at = where if found is None else bus.over_tls(where)
+    at = where if found is None else bus.to_tls(where)
     return bus.Network(connect=(at,), mode="client", namespace=name, patience_s=bus.FOREVER_S, identity=found)
 
 
@@ -66,7 +66,7 @@ def run(config: WebConfig, on_ready: Callable[[str], None]) -> None:
     """
     token = new_token(config.token)
     with contextlib.closing(_listen(config.host, config.port)) as listening, _temporary_storage():
-        bus.read_links_apart()
+        bus.set_reader_threads()
         with bus.open_session(config.network) as session:
             _serve(config, token, session, listening, on_ready)
 

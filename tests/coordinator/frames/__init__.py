@@ -1,1 +1,1 @@
-"""Frames: the tree, what is published, and positions in one."""
+"""Frames: the tree, published frames, and positions in frames."""

@@ -1,4 +1,4 @@
-"""Where entities and cameras stand just now, how that is known, and in which frame they are."""
+"""Current poses of entities and cameras, their sources, and their parent frames."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from semmap.nodes.coordinator.frames.links import EntityLinks, camera_links
 from semmap.nodes.coordinator.frames.tree import Link
 from semmap.schemas.entities import Live, Pose, orientation_from_yaw
 from semmap.schemas.scenes import CameraPose
-from tests.coordinator.scene.test_reconcile import at, body, entity
+from tests.coordinator.reconciler.test_reconcile import at, body, entity
 
 
 def one(name, pose, *, part_of="", tracked="", place=False):
@@ -43,7 +43,7 @@ def test_an_entity_is_where_the_map_says():
 def test_an_entity_without_a_position_has_a_problem():
     link = links(one("chair1", None)).link("chair1")
     assert (link.parent, link.pose, link.source) == ("map", None, "map")
-    assert link.problem == "chair1 has no position, so nothing can be told from there"
+    assert link.problem == "chair1 has no position, so it cannot be used as a frame"
 
 
 def test_what_is_tracked_is_where_it_was_last_seen():
@@ -53,19 +53,19 @@ def test_what_is_tracked_is_where_it_was_last_seen():
     assert link == Link("map", at(3.0), "sim", 0.5)
 
 
-def test_a_stale_pose_is_told():
+def test_a_stale_pose_is_reported():
     link = links(
         one("robot1", at(1.0), tracked="stream"), live={"robot1": lives(at(3.0), stale=True, age_s=30.0)}
     ).link("robot1")
-    problem = "the live pose of robot1 is stale: nothing has come for 30 s"
+    problem = "the live pose of robot1 is stale: none received for 30 s"
     assert link == Link("map", at(3.0), "stream", 30.0, stale=True, problem=problem)
 
 
 @pytest.mark.parametrize("tracked", ["sim", "stream"])
-def test_what_is_tracked_and_was_never_seen_is_stale_where_the_map_says(tracked):
+def test_a_tracked_entity_without_live_pose_is_stale_at_its_committed_pose(tracked):
     link = links(one("robot1", at(1.0), tracked=tracked)).link("robot1")
     assert (link.pose, link.source, link.age_s, link.stale) == (at(1.0), tracked, None, True)
-    assert link.problem.endswith("where it is now is not known: no live pose of it has come yet")
+    assert link.problem.endswith("its current pose is unknown: no live pose has been received yet")
 
 
 def test_a_robot_is_where_its_body_is_and_a_chair_where_the_map_says():
@@ -83,8 +83,8 @@ def test_a_part_is_in_the_frame_of_its_whole():
     assert link.pose.position_m == pytest.approx((2.0, 0.0, 0.5))
 
 
-def test_a_part_that_nobody_tracks_goes_with_its_whole():
-    """It is where the map says it is on its whole, wherever that is by now."""
+def test_an_untracked_part_moves_with_its_whole():
+    """Its committed pose relative to its whole is kept."""
     arm, robot = one("arm1", at(1.5), part_of="robot1"), one("robot1", at(1.0), tracked="sim")
     live = {"robot1": lives(at(7.0), source="sim")}
     assert links(arm, robot, live=live).link("arm1").pose.position_m == pytest.approx((0.5, 0.0, 0.0))

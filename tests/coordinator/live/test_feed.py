@@ -1,4 +1,4 @@
-"""Live poses through a whole system: put by a program, told by get, list and status."""
+"""Live poses in a whole system: published by a program, returned by get, list and status."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_a_robot_is_tracked_while_it_drives_and_committed_where_it_stops(system)
         assert entity.live.source == "stream"
         assert entity.live.pose.orientation_wxyz == pytest.approx(orientation_from_yaw(0.5), abs=1e-5)
         near = until(
-            lambda: [e.name for e in client.list(near="robot1", within=0.6)], "somebody near it, live"
+            lambda: [e.name for e in client.list(near="robot1", within=0.6)], "an entity near it, live"
         )
         assert near
         until(lambda: client.get("robot1").pose.position_m[0] == 7.95, "the commit of where it stopped")
@@ -41,7 +41,7 @@ def test_a_robot_is_tracked_while_it_drives_and_committed_where_it_stops(system)
         assert (last.source, last.reason) == ("perception", "robot1 stopped")
 
 
-def test_silence_is_stale_and_said(system):
+def test_a_silent_stream_is_reported_as_stale(system):
     with system.client() as client:
         client.add("Robot", "robot2", at=(1.0, 4.0, 0.0), track="stream")
         assert any("no live pose has come yet" in problem for problem in client.status().problems)
@@ -54,7 +54,7 @@ def test_silence_is_stale_and_said(system):
         assert "(stale)" in system.cli("get", "robot2")
 
 
-def test_what_is_no_pose_of_a_tracked_entity_is_said(system):
+def test_invalid_live_poses_are_reported(system):
     with system.client() as client:
         client.add("Robot", "robot3", at=(7.0, 3.0, 0.0), track="stream")
         for key, payload in (
@@ -95,7 +95,7 @@ def test_tracking_survives_the_coordinator(system):
     assert system.pid("coordinator") != pid
 
 
-def test_the_simulator_tells_where_a_body_is(system):
+def test_the_simulator_provides_the_pose_of_a_body(system):
     with system.client() as client:
         client.add("Ball", "ball1", at=(2.0, 2.0, 1.5), track="sim")
         live = until(lambda: client.get("ball1").live, "the simulator's pose")
@@ -103,7 +103,7 @@ def test_the_simulator_tells_where_a_body_is(system):
         until(lambda: client.get("ball1").pose.position_m[2] < 1.0, "that it has fallen and rests")
 
 
-def test_the_command_line_tracks_and_refuses(system):
+def test_tracking_on_the_command_line(system):
     assert "unchanged: fridge1 is not tracked" in system.cli("track", "fridge1", "--off")
     assert "is a place" in system.cli("track", "kitchen1", status=1)
     assert "no entity is named" in system.cli("track", "nobody1", status=1)

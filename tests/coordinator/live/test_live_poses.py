@@ -1,4 +1,4 @@
-"""The newest pose of what is tracked, what of it is committed, and what is said of what is amiss."""
+"""The newest pose of tracked entities, which poses are committed, and problems."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from semmap.nodes.coordinator.config import LiveRules, Thresholds
 from semmap.nodes.coordinator.live.live_poses import LivePoses
 from semmap.schemas import errors
 from semmap.schemas.entities import Entity, Pose
-from tests.coordinator.scene.test_reconcile import at, entity
+from tests.coordinator.reconciler.test_reconcile import at, entity
 
 SECOND = 1_000_000_000
 
@@ -24,7 +24,7 @@ def poses() -> LivePoses:
 
 
 def drive(poses: LivePoses, entities: dict[str, Entity], seconds: float, start_s: float = 0.0) -> list[str]:
-    """50 poses a second, at half a metre a second; why what came to be due at 10 Hz is so."""
+    """Send 50 poses a second at 0.5 m/s, and return the reasons of the commits due at 10 Hz."""
     due: list[str] = []
     for i in range(int(50 * seconds)):
         now_s = start_s + 0.02 * i
@@ -34,7 +34,7 @@ def drive(poses: LivePoses, entities: dict[str, Entity], seconds: float, start_s
     return due
 
 
-def test_the_newest_pose_wins_and_has_an_age(poses):
+def test_the_newest_pose_is_used_and_has_an_age(poses):
     poses.take("robot1", at(1.0), 1 * SECOND, 100.0, "stream")
     poses.take("robot1", at(2.0), 2 * SECOND, 101.0, "stream")
     live = poses.live("robot1", 101.5)
@@ -54,7 +54,7 @@ def test_what_is_no_longer_tracked_or_tracked_from_elsewhere_is_forgotten(poses)
     assert [poses.live(name, 100.0) is None for name in ("robot1", "robot2", "robot3")] == [False, True, True]
 
 
-def test_what_comes_late_is_passed_over_and_a_clock_that_was_set_is_followed(poses):
+def test_late_poses_are_ignored_and_a_changed_clock_is_followed(poses):
     poses.take("robot1", at(1.0), 100 * SECOND, 0.0, "stream")
     poses.take("robot1", at(9.0), 99 * SECOND, 0.1, "stream")
     assert poses.live("robot1", 0.1).pose == at(1.0)
@@ -62,7 +62,7 @@ def test_what_comes_late_is_passed_over_and_a_clock_that_was_set_is_followed(pos
     assert poses.live("robot1", 0.2).pose == at(2.0)
 
 
-def test_what_moves_is_not_committed_and_where_it_stops_is_once(poses):
+def test_a_moving_entity_is_committed_once_when_it_stops(poses):
     entities = tracked()
     assert drive(poses, entities, 10.0) == []
     stopped = poses.live("robot1", 10.0).pose
@@ -73,7 +73,7 @@ def test_what_moves_is_not_committed_and_where_it_stops_is_once(poses):
     assert not list(poses.due(tracked(pose=stopped), 12.0))
 
 
-def test_it_is_committed_on_its_way_if_that_is_wanted():
+def test_it_is_committed_periodically_if_configured():
     poses = LivePoses(LiveRules(journal_every_s=2.0), Thresholds())
     entities = tracked()
     reasons: list[str] = []
@@ -83,31 +83,29 @@ def test_it_is_committed_on_its_way_if_that_is_wanted():
         for due in poses.due(entities, now_s):
             reasons.append(due.reason)
             entities = tracked(pose=due.pose)
-            poses.journalled("robot1", now_s, refused=False)
-    assert reasons == ["robot1 is on its way"] * 4
+            poses.note_commit("robot1", now_s, refused=False)
+    assert reasons == ["robot1 is moving"] * 4
 
 
-def test_a_stream_that_ends_leaves_it_where_it_was_and_is_said(poses):
+def test_the_last_pose_of_a_stream_is_committed_and_reported(poses):
     drive(poses, tracked(), 2.0)
     last = poses.live("robot1", 2.0).pose
     assert poses.live("robot1", 30.0).stale
     assert poses.current(30.0) == {}
     (due,) = poses.due(tracked(), 30.0)
-    assert (due.pose, due.reason) == (last, "robot1: its live poses stopped coming")
-    assert list(poses.problems(tracked(), 30.0)) == [
-        "robot1: its live pose is stale: nothing has come for 28 s"
-    ]
+    assert (due.pose, due.reason) == (last, "robot1: no more live poses received")
+    assert list(poses.problems(tracked(), 30.0)) == ["robot1: its live pose is stale: none received for 28 s"]
 
 
 def test_a_refused_commit_is_tried_again_after_a_while_only(poses):
     poses.take("robot1", at(3.0), SECOND, 0.0, "stream")
     assert len(list(poses.due(tracked(), 1.5))) == 1
-    poses.journalled("robot1", 1.5, refused=True)
+    poses.note_commit("robot1", 1.5, refused=True)
     assert not list(poses.due(tracked(), 1.6))
     assert len(list(poses.due(tracked(), 7.0))) == 1
 
 
-def test_a_jump_is_taken_and_said(poses):
+def test_a_jump_is_accepted_and_reported(poses):
     poses.take("robot1", at(0.0), SECOND, 0.0, "stream")
     poses.take("robot1", at(4.0), 2 * SECOND, 0.1, "stream")
     assert poses.live("robot1", 0.1).pose == at(4.0)
@@ -124,7 +122,7 @@ def test_a_streamed_robot_is_named_while_it_is_away_from_its_committed_pose(pose
     assert list(poses.displaced(tracked(), 30.0)) == []  # its stream has ended
 
 
-def test_driving_is_no_jump(poses):
+def test_driving_is_not_a_jump(poses):
     drive(poses, tracked(), 3.0)
     assert list(poses.problems(tracked(), 3.0)) == []
 
@@ -142,7 +140,7 @@ def malformed():
         ("robot1", malformed, "at must be 3 numbers"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_taken_is_said(poses, name, read, said):
+def test_rejected_poses_are_reported(poses, name, read, said):
     entities = {**tracked(), **tracked("robot2", source="sim"), "chair1": entity("chair1", at(0.0))}
     for now_s in (0.0, 0.1):
         poses.read(name, read, entities, now_s)
@@ -153,20 +151,20 @@ def test_what_cannot_be_taken_is_said(poses, name, read, said):
     assert name == "robot1" or poses.live(name, 0.1) is None
 
 
-def test_many_wrong_names_are_not_all_remembered(poses):
+def test_the_number_of_stored_wrong_names_is_limited(poses):
     for i in range(1000):
         poses.read(f"ghost{i}", lambda: (at(0.0), 1), {}, 0.0)
     assert len(list(poses.problems({}, 1.0))) == 50
 
 
-def test_tracked_and_nothing_heard_is_said(poses):
-    assert "no live pose has come yet; publish them on semmap/live/robot1" in next(
+def test_a_tracked_entity_without_poses_is_reported(poses):
+    assert "no live pose has been received yet; publish poses on semmap/live/robot1" in next(
         poses.problems(tracked(), 0.0)
     )
-    assert "the simulator has no body of it" in next(poses.problems(tracked(source="sim"), 0.0))
+    assert "it has no body in the simulator" in next(poses.problems(tracked(source="sim"), 0.0))
 
 
-def test_what_is_not_tracked_any_more_is_forgotten(poses):
+def test_an_entity_that_is_no_longer_tracked_is_forgotten(poses):
     poses.take("robot1", at(1.0), 1, 0.0, "stream")
     poses.forget(tracked(source="sim"))
     assert poses.live("robot1", 0.0) is None

@@ -21,7 +21,7 @@ def test_noise_does_not_wake_it():
     assert rest.holds(2.0)
 
 
-def test_what_moves_or_turns_does_not_rest():
+def test_a_moving_or_turning_entity_does_not_rest():
     moving, turning = Rest(at(0.0), 0.0), Rest(at(0.0), 0.0)
     for i in range(200):
         moving.take(at(0.002 * i), 0.02 * i)  # 10 cm a second

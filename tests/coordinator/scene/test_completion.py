@@ -1,4 +1,4 @@
-"""When the order of a hand is answered, and with what."""
+"""When an order is answered, and with which reply."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from types import SimpleNamespace
 import pytest
 from msgspec import structs
 
+from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
 from semmap.nodes.coordinator.scene import completion as module
 from semmap.nodes.coordinator.scene.completion import PAUSED, WAIT_S, Completion
-from semmap.nodes.coordinator.scene.hands import Hands
-from semmap.nodes.coordinator.scene.settled import Settled
+from semmap.nodes.coordinator.scene.manual_moves import ManualMoves
 from semmap.schemas import errors
 from semmap.schemas.commands import Drive, Move, Undo
 from semmap.schemas.entities import Entity, Pose, Provenance
@@ -40,22 +40,24 @@ def body(*, resting: bool) -> Body:
 
 
 class World:
-    """A coordinator's view of a cup that is moved, without any process."""
+    """A coordinator's view of a cup that is moved, without processes."""
 
     def __init__(self, truth="map"):
         self.now_s = 0.0
         self.followed, self.following, self.returned = False, False, []
         self.scene = SimpleNamespace(known=True, run="a", stamp_ns=0, bodies={"cup1": body(resting=True)})
         self.entities = {"cup1": entity()}
-        self.hands = Hands()
-        keeping = SimpleNamespace(
+        self.manual_moves = ManualMoves()
+        reconciler = SimpleNamespace(
             scene=self.scene,
             is_followed=lambda name: self.followed,
             is_following=lambda names: self.following,
             return_bodies=self._return,
         )
-        door = SimpleNamespace(hands=self.hands, map=SimpleNamespace(entities=self.entities))
-        self.completion = Completion(truth, door, keeping)
+        dispatcher = SimpleNamespace(
+            manual_moves=self.manual_moves, map=SimpleNamespace(entities=self.entities)
+        )
+        self.completion = Completion(truth, dispatcher, reconciler)
         self.asked = Future()
 
     def monotonic(self):
@@ -78,9 +80,9 @@ class World:
         self.completion.answer_waiting()
 
     def follow(self):
-        """The map begins to follow the cup; the future is of what becomes of that."""
+        """The map begins to follow the cup; returns the future commit."""
         made = Future()
-        self.completion.watching(lambda _: made)(Settled.of(self.entities, {"cup1": THERE}))
+        self.completion.watch(lambda _: made)(ObservedState.of(self.entities, {"cup1": THERE}))
         return made
 
 
@@ -111,7 +113,7 @@ def test_a_commit_from_poses_before_the_move_is_not_its_own(world):
     assert reply.result().commit is None
 
 
-def test_who_does_not_wait_is_answered_at_once(world):
+def test_without_wait_the_reply_is_immediate(world):
     assert world.move(structs.replace(MOVE, wait=False)) == RELEASED
 
 
@@ -128,16 +130,16 @@ def test_a_pause_answers_those_who_wait(world):
     assert reply.result().notes == (PAUSED,)
 
 
-def test_a_body_that_rests_where_the_map_has_it_makes_no_commit(world):
+def test_a_body_at_its_committed_pose_makes_no_commit(world):
     reply = world.move()
     world.poses(11, resting=True, followed=True)
     assert (reply.result().commit, reply.result().notes) == (
         None,
-        ("no commit: cup1 rests where the map has it",),
+        ("no commit: cup1 rests at its committed pose",),
     )
 
 
-def test_a_body_that_another_commit_put_elsewhere_is_said_to_be(world):
+def test_a_change_by_another_commit_is_reported(world):
     reply = world.move()
     world.entities["cup1"] = entity(commit=9)
     world.poses(11, resting=True, followed=True)
@@ -149,7 +151,7 @@ def test_a_body_that_rolls_on_is_not_waited_for_for_ever(world):
     world.now_s = WAIT_S + 1.0
     world.poses(11, resting=False)
     assert reply.result().text == RELEASED.text
-    assert reply.result().notes == ("no commit yet: cup1 is still moving; the map follows when it rests",)
+    assert reply.result().notes == ("no commit yet: cup1 is still moving; the map is updated when it rests",)
 
 
 def test_a_place_that_the_map_rejects_is_an_error(world):
@@ -169,7 +171,7 @@ def test_a_place_that_the_map_rejects_is_an_error(world):
         (lambda w: setattr(w.scene, "known", False), errors.NoAnswer, "the simulator ended before cup1"),
     ],
 )
-def test_what_keeps_a_body_from_coming_to_rest_is_said(world, end, kind, text):
+def test_the_reason_why_a_body_cannot_rest_is_reported(world, end, kind, text):
     reply = world.move()
     end(world)
     world.poses(11, resting=False)
@@ -177,18 +179,18 @@ def test_what_keeps_a_body_from_coming_to_rest_is_said(world, end, kind, text):
         reply.result()
 
 
-def test_a_body_that_is_taken_again_answers_who_waited_for_the_first_move(world):
+def test_a_second_move_answers_the_first(world):
     first, second = world.move(), world.move(structs.replace(MOVE, at=(6.0, 2.0, 0.0)))
     assert first.result().text == "cup1 was moved again before the map had followed"
     assert not second.done()
 
 
-def test_an_undo_stops_the_move_and_who_waits_is_told(world):
+def test_an_undo_stops_the_move_and_answers_its_client(world):
     reply = world.move()
     undo = Undo(id="u1")
     stopped = world.completion.stop(undo, None).result()
     assert (stopped.commit, stopped.names) == (None, ("cup1",))
-    assert stopped.text == "stopped the move of cup1: it goes back to where the map has it"
+    assert stopped.text == "stopped the move of cup1: it returns to its committed pose"
     assert world.returned == [{"cup1"}]
     with pytest.raises(errors.Refused, match="stopped the move of cup1: an undo came before"):
         reply.result()
@@ -212,7 +214,7 @@ def test_an_undo_while_the_commit_is_being_made_is_about_that_commit(world):
     assert world.completion.stop(Undo(), None) is None
 
 
-def test_a_course_is_waited_for_to_its_end_and_then_for_the_commit(world):
+def test_a_drive_is_waited_for_until_its_commit(world):
     drive = Drive(name="cup1", to=((5.0, 2.0),), wait=True)
     reply = world.completion.begin(drive, RELEASED, lambda _: "", None)
     world.now_s = 10 * WAIT_S
@@ -227,10 +229,10 @@ def test_a_course_is_waited_for_to_its_end_and_then_for_the_commit(world):
     assert reply.result() == Moved(name="cup1", text="cup1 is at (5.00, 2.00)", commit=4)
 
 
-def test_a_course_that_is_refused_is_an_error(world):
+def test_a_rejected_drive_is_an_error(world):
     drive = Drive(name="cup1", to=((5.0, 2.0),), wait=True)
     reply = world.completion.begin(drive, RELEASED, lambda _: "", None)
-    world.completion.fail(drive, errors.Refused("cup1 gets no further"))
-    with pytest.raises(errors.Refused, match="gets no further"):
+    world.completion.fail(drive, errors.Refused("cup1 is blocked at (1, 2)"))
+    with pytest.raises(errors.Refused, match="is blocked at"):
         reply.result()
     assert world.completion.stop(Undo(), None) is None

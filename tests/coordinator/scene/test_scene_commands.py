@@ -6,7 +6,7 @@ import pytest
 from msgspec import structs
 
 from semmap.nodes.coordinator.scene.completion import Completion
-from semmap.nodes.coordinator.scene.scene_commands import Running
+from semmap.nodes.coordinator.scene.scene_commands import SceneCommands
 from semmap.schemas import commands as c
 from semmap.schemas.entities import Pose
 from semmap.schemas.scenes import BodiesMoved, Body
@@ -29,15 +29,17 @@ def cup(z: float, *, ghost: bool = False, in_the_way: str = "") -> Body:
     )
 
 
-def running_with(bodies, ask, let_go):
+def running_with(bodies, ask, register):
     scene = SimpleNamespace(bodies=bodies, add=lambda bodies: None, run="", stamp_ns=0)
-    keeping = SimpleNamespace(scene=scene, when_placed=lambda name, execute: execute())
-    door = SimpleNamespace(hands=SimpleNamespace(let_go=let_go), map=SimpleNamespace(entities={}))
-    return Running("map", door, keeping, Completion("map", door, keeping), ask, ask)
+    reconciler = SimpleNamespace(scene=scene, when_placed=lambda name, execute: execute())
+    dispatcher = SimpleNamespace(
+        manual_moves=SimpleNamespace(register=register), map=SimpleNamespace(entities={})
+    )
+    return SceneCommands("map", dispatcher, reconciler, Completion("map", dispatcher, reconciler), ask, ask)
 
 
 def said_of_a_move(z: float, put: Body) -> str:
-    """What is said of a hand's move to (1, 2, z) when the simulator answers that it `put` the cup so."""
+    """Return the reply to a move to (1, 2, z), if the simulator `put` the cup there."""
 
     def ask(_):
         future = Future()
@@ -66,15 +68,15 @@ def said_of_a_move(z: float, put: Body) -> str:
         ),
     ],
 )
-def test_a_hand_says_where_it_let_go(z, put, said):
+def test_a_move_reports_where_the_body_was_released(z, put, said):
     assert said_of_a_move(z, put).startswith(said)
 
 
-def test_a_hand_that_carries_puts_what_is_borne_with_it():
-    """As a rigid body: what the map says is on it goes by where the bodies are."""
+def test_a_move_with_contents_keeps_their_relative_poses():
+    """They move like a rigid body, by the poses of the bodies."""
     tray = structs.replace(cup(0.74), name="tray1")
     beside = structs.replace(cup(0.76), pose=Pose(position_m=(1.2, 2.0, 0.76)))
-    asked, let_go = [], []
+    asked, registered = [], []
 
     def answer(call):
         asked.append(call)
@@ -86,7 +88,9 @@ def test_a_hand_that_carries_puts_what_is_borne_with_it():
             future.set_result(BodiesMoved(bodies=moved, failed={}))
         return future
 
-    running = running_with({"tray1": tray, "cup1": beside}, answer, lambda command, load: let_go.append(load))
+    running = running_with(
+        {"tray1": tray, "cup1": beside}, answer, lambda command, load: registered.append(load)
+    )
     move = c.Move(name="tray1", at=(5.0, 5.0, 0.5), yaw=math.pi / 2, carry=True, leave=("milk1",))
     said = running.move(move).result()
     assert said.text == "put tray1 at (5, 5, 0.5) and released it; tray1 carried cup1 along"
@@ -94,4 +98,4 @@ def test_a_hand_that_carries_puts_what_is_borne_with_it():
     there = {p.name: p.pose for p in asked[1].placements}
     assert there["cup1"].position_m == pytest.approx((5.0, 5.2, 0.52))
     assert there["cup1"].yaw_rad == pytest.approx(math.pi / 2, abs=1e-5)
-    assert let_go == [["cup1"]]
+    assert registered == [["cup1"]]

@@ -40,7 +40,7 @@ def seen() -> SceneView:
     return view
 
 
-def test_it_tells_who_is_not_as_before():
+def test_it_returns_the_changed_bodies():
     view = seen()
     assert view.update(poses(11, (True, True))) == set()
     assert view.update(poses(12, (True, False))) == {"b"}
@@ -49,17 +49,17 @@ def test_it_tells_who_is_not_as_before():
     assert view.update(poses(14, (True, True))) == set()
 
 
-def test_what_is_older_than_what_is_known_says_nothing():
+def test_older_poses_are_ignored():
     assert seen().update(poses(9, (False, False))) == set()
     assert seen().update(poses(9, (False, False), version=0)) == set()
 
 
-def test_when_bodies_came_or_went_a_snapshot_is_needed():
+def test_added_or_removed_bodies_need_a_snapshot():
     assert seen().update(poses(11, (True, True), version=2)) is None
     assert seen().update(poses(9, (True, True), run="another")) is None
 
 
-def test_poses_of_another_time_have_the_scene_asked_and_do_not_count():
+def test_poses_of_another_clock_need_a_snapshot():
     view = seen()
     assert view.update(poses(2**62, (False, False))) is None
     assert view.update(poses(20, (False, True))) == {"a"}

@@ -44,7 +44,7 @@ _REFERENCE = "SELECT ?text { :cup4 dm:hasPreferredReference/dm:lexicalReference 
 
 BAD = [
     (("add", "Chiar"), 2, "did you mean Chair"),
-    (("add", "Color"), 2, "is not a class of things in space"),
+    (("add", "Color"), 2, "is not a spatial class"),
     (("add", "Chair", "chair1"), 1, "taken"),
     (("add", "Chair", "my chair"), 2, "valid name"),
     (("add", "Chair", "1chair"), 2, "valid name"),
@@ -62,7 +62,7 @@ BAD = [
     (("add",), 2, "CLASS"),
     (("update", "chair7", "--ref", "x"), 1, "did you mean chair1"),
     (("update", "chair1", "--class", "Chiar"), 2, "did you mean Chair"),
-    (("update", "chair1", "--class", "Color"), 2, "is not a class of things in space"),
+    (("update", "chair1", "--class", "Color"), 2, "is not a spatial class"),
     (("remove", "chair7"), 1, "no entity is named"),
     (("remove", "chair1", "chair7"), 1, "no entity is named"),
     (("get", "chair7"), 1, "did you mean chair1"),
@@ -218,7 +218,7 @@ def test_watch_shows_what_happens(system):
 def test_no_system_is_no_answer(system, monkeypatch):
     system_elsewhere = "tcp/127.0.0.1:9"
     said = system.cli("list", "--connect", system_elsewhere, status=3)
-    assert "no system answers at tcp/127.0.0.1:9" in said
+    assert "no response from tcp/127.0.0.1:9" in said
 
 
 def test_a_verb_that_only_asks_imports_nothing_heavy():

@@ -117,6 +117,6 @@ def test_help_shows_the_page_of_a_command_and_of_one_of_its_parts(capsys):
 
 def test_the_system_may_be_named_before_the_command(capsys):
     assert execute(["--connect", "tcp/127.0.0.1:9", "list"]) == 3
-    assert "no system answers at tcp/127.0.0.1:9" in capsys.readouterr().err
+    assert "no response from tcp/127.0.0.1:9" in capsys.readouterr().err
     assert execute(["--connect", "tcp/127.0.0.1:9", "completion", "bash"]) == 2
     assert "--connect is not an option of semmap completion" in capsys.readouterr().err

@@ -17,7 +17,7 @@ def silent(two_robots):
     """A robot of which a node is there, but none that answers commands."""
     network = bus.Network(connect=(two_robots[0].endpoint,), namespace="mute1")
     with bus.open_session(network) as session:
-        token = bus.appear(session, "recorder")
+        token = bus.declare_presence(session, "recorder")
         yield "mute1"
         token.undeclare()
 
@@ -89,7 +89,7 @@ def test_a_robot_that_does_not_answer_is_named(two_robots, silent):
     system = two_robots[0]
     said = system.cli("list", "--robots", "arm1,mute*", "--class", "Cup", status=3)
     assert "arm1 (commit " in said
-    assert "semmap: mute1: no answer on semmap/cmd/status: coordinator is not running" in said
+    assert "semmap: mute1: no response on semmap/cmd/status: coordinator is not running" in said
 
 
 def test_a_robot_that_is_not_there_is_named(two_robots):

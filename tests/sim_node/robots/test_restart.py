@@ -82,4 +82,4 @@ def test_it_begins_where_it_last_stood(tmp_path, truth):
         assert commits(client) == committed
         (said,) = [line for line in system.said if "last stood" in line]
         assert said.startswith("robot1 ")
-        assert said.rstrip().endswith("not at --robot-at; to put it there: semmap move robot1 --at 1 0 0")
+        assert said.rstrip().endswith("not at --robot-at; to move it: semmap move robot1 --at 1 0 0")

@@ -246,7 +246,7 @@ def down(data: Path | None, connect: str | None) -> None:
     from semmap.nodes.supervisor.control import Supervisor
 
     if data is None and connect is not None:
-        wanted = {connect, bus.over_tls(connect)}
+        wanted = {connect, bus.to_tls(connect)}
         found = [Path(s.data) for s in registry.systems() if wanted & {s.listen, s.reachable}]
         if not found:
             raise errors.NoAnswer(f"no system of this user listens on {connect}")
@@ -349,8 +349,8 @@ def _settings(
         "robot_yaw": robot_yaw,
         "stale_s": stale,
         "journal_every_s": journal_every,
-        "listen": listen if secure is None else bus.over_tls(listen),
-        "connect": connect if secure is None else tuple(map(bus.over_tls, connect)),
+        "listen": listen if secure is None else bus.to_tls(listen),
+        "connect": connect if secure is None else tuple(map(bus.to_tls, connect)),
         "only": nodes,
         "single": single,
         "window": window,
@@ -429,7 +429,7 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
     if not is_endpoint(listen):
         return  # the settings reject it
     if config is not None:
-        bus.own_config.require_sound(config, secure=secure is not None)
+        bus.zenoh_config.require_sound(config, secure=secure is not None)
     if secure is not None:
         if insecure:
             raise errors.BadRequest("--secure and --insecure exclude each other; remove one of them")
@@ -444,7 +444,7 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
                 f"the router's certificate is valid for {', '.join(register.hosts)}, not for {host}; add it:"
                 f" semmap keys renew router --host {host} --dir {shlex.quote(secure)}"
             )
-    elif not bus.is_local(listen) and not (config is not None and bus.own_config.is_protected(config)):
+    elif not bus.is_local(listen) and not (config is not None and bus.zenoh_config.is_protected(config)):
         if not insecure:
             raise errors.BadRequest(
                 f"{listen} can be reached from other hosts, which could read and change the map; create"

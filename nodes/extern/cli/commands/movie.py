@@ -11,7 +11,7 @@ import click
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import TIME, connect_option, identity_option, namespace_option
 from semmap.nodes.extern.cli.output.printable import print_escaped
-from semmap.nodes.runtime import rhythm
+from semmap.nodes.runtime import playback_clock
 from semmap.schemas import errors
 
 _path = click.Path(path_type=Path)
@@ -28,7 +28,7 @@ _SIZE, _FPS = (960, 640), 20
 @click.option(
     "--longest",
     type=float,
-    default=rhythm.LONGEST_S,
+    default=playback_clock.LONGEST_S,
     show_default=True,
     metavar="S",
     help="Maximum duration of a commit in the video.",

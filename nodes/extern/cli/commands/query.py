@@ -356,7 +356,7 @@ def _watch_key(client: Client, keyexpr: str) -> None:
                 f"your certificate ({client.identity.role}) may not subscribe to '{keyexpr}'; allowed keys:"
                 f" {', '.join(followed)}"
             )
-    if not bus.meets(keys.published(), keyexpr):
+    if not bus.intersects(keys.published(), keyexpr):
         print(
             f"  note: semmap does not publish on '{keyexpr}', only other programs may; the keys of semmap are"
             f" '{keys.ROOT}/**'",

@@ -16,7 +16,7 @@ from semmap.nodes.extern.cli.common import (
     print_error,
 )
 from semmap.nodes.extern.cli.output.printable import print_escaped
-from semmap.nodes.runtime import extras, rhythm
+from semmap.nodes.runtime import extras, playback_clock
 from semmap.schemas import errors
 
 _path = click.Path(path_type=Path)
@@ -32,7 +32,7 @@ _path = click.Path(path_type=Path)
     type=float,
     default=None,
     metavar="S",
-    help=f"Maximum wait between two commits.  [default: {rhythm.LONGEST_S:g}]",
+    help=f"Maximum wait between two commits.  [default: {playback_clock.LONGEST_S:g}]",
 )
 @click.option("--listen", metavar="EP", help="Zenoh endpoint of the replay. Default: a free port.")
 @click.option("--world", type=_path, help="Scene file. Default: the last world of the map.")
@@ -78,7 +78,7 @@ def replay(
         run_again(
             what.resolve(),
             speed=1.0 if speed is None else speed,
-            longest_s=rhythm.LONGEST_S if longest_s is None else longest_s,
+            longest_s=playback_clock.LONGEST_S if longest_s is None else longest_s,
             sim=not options.pop("no_sim"),
             record=not options.pop("no_record"),
             say=print_escaped,

@@ -13,7 +13,7 @@ from semmap.nodes.extern.phrasing import author, moment
 from semmap.nodes.extern.web.differences import Difference, Mark, format_counts
 from semmap.nodes.extern.web.page import Page
 from semmap.nodes.extern.web.panels.widgets.rows import Rows
-from semmap.nodes.runtime import rhythm
+from semmap.nodes.runtime import playback_clock
 from semmap.schemas import errors
 
 _SPEEDS: Final = {0.1: "0.1 ×", 1.0: "1 ×", 10.0: "10 ×", 100.0: "100 ×", 1000.0: "1000 ×"}
@@ -173,7 +173,9 @@ class _Timeline:
             index = self._shown - page.history.first
             if not 0 <= index < len(stamps):
                 break
-            target, wait_s = rhythm.ahead(stamps, index, speed=float(self._speed.value), least_s=_DRAWN_S)
+            target, wait_s = playback_clock.next_position(
+                stamps, index, speed=float(self._speed.value), least_s=_DRAWN_S
+            )
             await asyncio.sleep(wait_s)
             if not self._is_playing or self._shown - page.history.first != index:
                 continue

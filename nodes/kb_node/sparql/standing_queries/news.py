@@ -10,9 +10,7 @@ from semmap.nodes import bus
 from semmap.nodes.kb_node.sparql.protocol import News
 from semmap.schemas import codec, keys
 
-_TOO_MUCH: Final = (
-    f"its rows changed by more than {bus.PUBLISHED >> 20} MB, which is more than is told at once; ask again"
-)
+_TOO_MUCH: Final = f"result change larger than {bus.PUBLICATION_BYTES >> 20} MB; run the query again"
 
 
 class NewsStand:
@@ -29,7 +27,7 @@ class NewsStand:
                 key = keys.query_key(news.watch)
                 self._publishers[news.watch] = bus.publisher(self._session, keys.QUERY, key)
             rows = news.rows
-            if len(payload := codec.encode(rows)) > bus.PUBLISHED:
+            if len(payload := codec.encode(rows)) > bus.PUBLICATION_BYTES:
                 rows = structs.replace(rows, appeared=(), disappeared=(), error=_TOO_MUCH)
                 payload = codec.encode(rows)
             self._publishers[news.watch].put(payload, encoding=codec.encoding_of(rows))

@@ -20,7 +20,7 @@ from semmap.nodes.kb_node.reasoner.abox.columns import Columns
 from semmap.nodes.kb_node.storage.encoding import columns_encoding, dense
 from semmap.nodes.kb_node.storage.encoding.columns_encoding import StoredColumns
 from semmap.nodes.kb_node.storage.encoding.frames import Compressing, unpacked
-from semmap.nodes.runtime.shared_parts import SharedParts
+from semmap.nodes.runtime.interning import EntityInterner
 from semmap.schemas import codec, errors
 from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Triple
@@ -111,7 +111,7 @@ def decode(body: bytes, progress: Callable[[], None] = lambda: None) -> Checkpoi
         each = map(terms.__getitem__, _numbers(said.numbers))
         triples += zip(each, each, each, strict=True)
     entities: list[Entity] = []
-    shared = SharedParts()
+    shared = EntityInterner()
     for frame in unpacked(stored.entities):
         progress()
         entities += map(shared.entity, _entities.decode(frame))

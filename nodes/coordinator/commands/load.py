@@ -1,0 +1,205 @@
+"""Handler of load: a document in an RDF syntax, a scene, a HuRIC map, or another TBox."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Final
+
+from msgspec import structs
+
+from semmap.nodes.coordinator.access.authority import require_authority, require_operator
+from semmap.nodes.coordinator.commands import transactions
+from semmap.nodes.coordinator.commands.commit import (
+    apply,
+    apply_with_classes,
+    commit,
+    idempotent,
+    make_reply,
+    reload_map,
+)
+from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.nodes.coordinator.files import huric
+from semmap.nodes.coordinator.files.content import kind_of
+from semmap.nodes.coordinator.free_names import FreeNames
+from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
+from semmap.nodes.runtime import gc_pause
+from semmap.nodes.runtime.class_names import AmbiguousClass, ClassNames
+from semmap.schemas import errors, scene_files, wording
+from semmap.schemas.bridge import LoadDocument, LoadTBox
+from semmap.schemas.commands import Load
+from semmap.schemas.commits import Effects, NewEntity, Transaction
+from semmap.schemas.entities import ClassInfo
+from semmap.schemas.packing import unpacked
+from semmap.schemas.replies import Changed
+from semmap.schemas.scene_files import Described
+
+PART: Final = 10_000
+"""Number of entities in each part of a scene that is loaded in parts."""
+
+READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
+    "scene": lambda content, filename: scene_files.read(content, filename).entities,
+    "huric": huric.read,
+}
+
+
+@idempotent
+def load(view: MapView, command: Load) -> KbCoroutine[Changed]:
+    """Add the entities of a file to the map."""
+    if command.source == "operator":
+        command = structs.replace(command, source="file")
+    if command.parts and (command.replace or command.tbox):
+        how = "--tbox" if command.tbox else "--replace"
+        raise errors.BadRequest(f"{how} makes one commit; load it without --parts")
+    if command.parts and command.dry_run:
+        raise errors.BadRequest("a dry run covers one commit; try it without --parts")
+    if command.tbox:
+        return (yield from _load_tbox(view, command))
+    if command.spatial_root:
+        raise errors.BadRequest("--spatial-root is for a TBox: add --tbox")
+    if command.replace:
+        require_authority(command, view.entities.values())
+    kind = kind_of(command.content, command.filename)
+    if kind == "abox":
+        return (yield from _load_document(view, command))
+    content = unpacked(command.content, command.filename)
+    return (yield from _load_described(view, command, READERS[kind](content, command.filename)))
+
+
+def _load_described(view: MapView, command: Load, described: Iterable[Described]) -> KbCoroutine[Changed]:
+    with gc_pause.uncollected():
+        known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
+        taken_names = set() if command.replace else set(view.entities)
+        free = FreeNames()
+        new: list[NewEntity] = []
+        names: dict[str, None] = {}
+        for item, found in known:
+            name = item.name or free.name(found.name, taken_names)
+            if name in names:
+                raise errors.NameTaken(
+                    f"the name '{name}' is given twice in {command.filename or 'the file'}"
+                )
+            if name in taken_names:
+                raise errors.NameTaken(
+                    f"the name '{name}' is already taken; --replace clears the present map first"
+                )
+            taken_names.add(name)
+            names[name] = None
+            new.append(transactions.new_entity(name, found, item))
+        leaving = tuple(view.entities) if command.replace else ()
+        change = transactions.build(command, f"load {command.filename}", remove=leaving, add=new)
+    if command.parts:
+        made = yield from _commit_parts(view, change)
+    else:
+        made = yield from commit(view, change)
+    return _loaded(command, made, tuple(names), skipped, notes)
+
+
+def _commit_parts(view: MapView, whole: Transaction) -> KbCoroutine[Effects | None]:
+    """Commit a scene in parts and return the last commit; the last part has the command's id."""
+    last: Effects | None = None
+    done: list[int] = []
+    starts = range(0, len(whole.add), PART)
+    for number, start in enumerate(starts, start=1):
+        part = structs.replace(
+            whole,
+            id=whole.id if number == len(starts) else f"{whole.id}/{number}",
+            reason=f"{whole.reason}, part {number} of {len(starts)}",
+            add=whole.add[start : start + PART],
+        )
+        try:
+            made = yield from commit(view, part)
+        except errors.SemmapError as error:
+            raise errors.in_part(error, done, number, len(starts)) from None
+        if made is not None:
+            last = made
+            done.append(made.seq)
+    return last
+
+
+def _load_document(view: MapView, command: Load) -> KbCoroutine[Changed]:
+    document = LoadDocument(
+        id=command.id,
+        source=command.source,
+        agent=command.agent,
+        reason=command.reason or f"load {command.filename}",
+        content=command.content,
+        filename=command.filename,
+        replace=command.replace,
+        skip_unknown=command.skip_unknown,
+        strict=command.strict,
+        parts=command.parts,
+        dry_run=command.dry_run,
+        told=not command.parts,
+    )
+    loaded = yield from ask(document)
+    if loaded.parts == 1:
+        yield from apply(view, loaded.commit)
+    elif loaded.commit is not None:
+        yield from reload_map(view)
+    return _loaded(command, loaded.commit, loaded.names, loaded.skipped, loaded.notes)
+
+
+def _load_tbox(view: MapView, command: Load) -> KbCoroutine[Changed]:
+    if command.replace or command.skip_unknown or command.strict:
+        raise errors.BadRequest(
+            "--replace, --skip-unknown and --strict apply to maps only: a TBox always replaces the present"
+            " one and leaves the map as it is"
+        )
+    require_operator(command, "replace the TBox")
+    order = LoadTBox(
+        id=command.id,
+        source=command.source,
+        agent=command.agent,
+        reason=command.reason or f"load the TBox {command.filename}",
+        content=command.content,
+        filename=command.filename,
+        spatial_root=command.spatial_root,
+        dry_run=command.dry_run,
+    )
+    loaded = yield from ask(order)
+    if (commit := loaded.commit) is None:
+        text = f"unchanged: the TBox is already that of {command.filename or 'the file'}"
+        return Changed(commit=None, text=text, notes=loaded.notes)
+    yield from apply_with_classes(view, commit)
+    text = f"{len(view.classes.by_name)} classes from {command.filename or 'the file'}"
+    if commit.trial is not None:
+        text = f"the TBox of {command.filename or 'the file'} replaces the present one"
+    return make_reply(commit, text, names=commit.names, notes=loaded.notes)
+
+
+def _sort_out(
+    classes: ClassNames, described: Iterable[Described], *, skip_unknown: bool
+) -> tuple[list[tuple[Described, ClassInfo]], tuple[str, ...], tuple[str, ...]]:
+    """Return the entities of known classes, a note on each of the others, and how class names were read."""
+    known: list[tuple[Described, ClassInfo]] = []
+    unknown: dict[str, list[str]] = {}
+    notes: dict[str, None] = {}
+    for i, item in enumerate(described, start=1):
+        try:
+            found = classes.spatial(item.class_)
+        except AmbiguousClass:
+            raise
+        except errors.UnknownClass:
+            unknown.setdefault(item.class_, []).append(item.name or f"entity {i}")
+            continue
+        known.append((item, found))
+        notes.update(dict.fromkeys(classes.note(item.class_, found)))
+    if unknown and not skip_unknown:
+        raise errors.UnknownClass(errors.unknown_classes(unknown, classes.by_name))
+    skipped = tuple(f"{name} (unknown class '{c}')" for c, names in unknown.items() for name in names)
+    return known, skipped, tuple(notes)
+
+
+def _loaded(
+    command: Load,
+    commit: Effects | None,
+    names: tuple[str, ...],
+    skipped: tuple[str, ...],
+    notes: tuple[str, ...],
+) -> Changed:
+    text = f"loaded {wording.entities(len(names))} from {command.filename or 'the file'}"
+    if commit is None:
+        text = f"{command.filename or 'the file'} adds nothing to the map"
+    if skipped:
+        text += f", left out {len(skipped)}"
+    return make_reply(commit, text, names=names, skipped=skipped, notes=notes)

@@ -1,0 +1,110 @@
+"""The coordinator's view of the map: a snapshot, and the commits since."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from operator import attrgetter
+
+from semmap.nodes.coordinator.commands.attachment_rules import PoseLookup
+from semmap.nodes.coordinator.free_names import FreeNames
+from semmap.nodes.coordinator.free_places import FreePlaces
+from semmap.nodes.runtime import map_replica
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.schemas import errors
+from semmap.schemas.commits import Effects, Snapshot
+from semmap.schemas.entities import Entity, Pose, Size, Vector
+from semmap.schemas.grips import holder_of
+from semmap.schemas.scenes import Body
+
+
+class MapView(map_replica.MapReplica[Effects]):
+    """The entities and classes of the map by name, with indexes of places, tracked and attached entities."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.classes = ClassNames()
+        self.touched: set[str] = set()
+        """The names of entities that commits have changed; the reconciler takes them from here."""
+        self._places: dict[str, Entity] | None = None
+        self.tracked: dict[str, Entity] = {}
+        """The tracked entities, by name."""
+        self.held: dict[str, Entity] = {}
+        """The attached entities, by name."""
+        self.pose_of: PoseLookup = self._committed_pose
+        """Returns the current pose of an entity; set to a function that also uses bodies and live poses."""
+        self.bodies: Callable[[], Mapping[str, Body]] = dict
+        """Returns the bodies of the scene, by name."""
+        self._names = FreeNames()
+        self._floor: FreePlaces | None = None
+        """Created at the first request for a free place."""
+
+    def _committed_pose(self, name: str) -> Pose | None:
+        entity = self.entities.get(name)
+        return None if entity is None else entity.pose
+
+    def free_name(self, class_name: str) -> str:
+        """Return the first free name for an entity of a class."""
+        return self._names.name(class_name, self.entities)
+
+    def free_place(self, size_m: Size | None) -> Vector:
+        """Return the place nearest to a default position where an object of `size_m` touches nothing."""
+        if self._floor is None:
+            self._floor = FreePlaces()
+            self._floor.touch(self.entities)
+        return self._floor.find(self.entities, size_m)
+
+    @property
+    def places(self) -> Collection[Entity]:
+        """The entities that are places, in no order."""
+        if self._places is None:
+            self._places = {name: entity for name, entity in self.entities.items() if entity.place}
+        return self._places.values()
+
+    def entity(self, name: str) -> Entity:
+        """Return the entity of that name. Raises UnknownName with the nearest names."""
+        if name in self.entities:
+            return self.entities[name]
+        raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self.entities)}")
+
+    def entities_of(self, class_name: str | None) -> tuple[Entity, ...]:
+        """Return the entities, or those of a class (inferred ones included), sorted by name."""
+        there = self.entities.values()
+        found = list(there) if class_name is None else [e for e in there if class_name in e.types]
+        return tuple(sorted(found, key=attrgetter("name")))
+
+    def begin(self, snapshot: Snapshot) -> bool:
+        """See `MapReplica.begin`."""
+        self._places = None
+        self._names, self._floor = FreeNames(), None
+        begun = super().begin(snapshot)
+        self.tracked = {name: entity for name, entity in self.entities.items() if entity.tracked}
+        self.held = {name: entity for name, entity in self.entities.items() if holder_of(entity)}
+        return begun
+
+    def _apply(self, commit: Effects) -> None:
+        """See `MapReplica._apply`."""
+        super()._apply(commit)
+        names = commit.names
+        self.touched.update(names)
+        for gone in commit.removed:
+            self._names.release(gone.name)
+            self.tracked.pop(gone.name, None)
+            self.held.pop(gone.name, None)
+        for changed in commit.changed:
+            if changed.tracked:
+                self.tracked[changed.name] = changed
+            elif changed.name in self.tracked:
+                del self.tracked[changed.name]
+            if changed.grip_provenance is not None and holder_of(changed):
+                self.held[changed.name] = changed
+            elif changed.name in self.held:
+                del self.held[changed.name]
+        if self._floor is not None:
+            self._floor.touch(names)
+        if self._places is not None:
+            for name in names:
+                entity = self.entities.get(name)
+                if entity is not None and entity.place:
+                    self._places[name] = entity
+                else:
+                    self._places.pop(name, None)

@@ -1,0 +1,62 @@
+"""A body on a joint without limits is neither open nor closed."""
+
+import pytest
+
+from semmap.schemas import commands as c
+from semmap.schemas import errors
+from semmap.schemas.joints import Joint
+from tests.coordinator.scene.test_joint_commands import HINGE, SWITCH, body
+
+BALL = Joint(name="neck1", kind="ball")
+DOOR = Joint(name="door", kind="hinge", lower=0.0, upper=1.0, closed=0.0)
+NO = "thing1 has no door, lid or drawer that could be open or shut: its joint"
+TOLD = "; for its joint positions, see jointPositions in: semmap get thing1"
+
+
+@pytest.fixture
+def home(dispatcher):
+    dispatcher.change(c.Add(class_="Chair", name="thing1", at=(0.0, 0.0, 0.0)))
+    return dispatcher
+
+
+def have(home, *joints):
+    home.map.bodies = lambda: {"thing1": body(*joints)}
+
+
+@pytest.mark.parametrize(
+    ("joints", "why"),
+    [
+        ((BALL,), "neck1 is a ball joint"),
+        ((HINGE, SWITCH), "hinge1 has no limits, so it has no closed position"),
+    ],
+)
+@pytest.mark.parametrize(
+    "command",
+    [
+        c.Set(name="thing1", property="isOpen", values=(True,)),
+        c.Set(name="thing1", property="dm:isOpen", values=(False,)),
+        c.Set(name="thing1", property="openness", values=(0.5,)),
+        c.Update(name="thing1", set=("isOpen=true",)),
+        c.Batch(changes=(c.Set(name="thing1", property="is open", values=(True,)),)),
+    ],
+)
+def test_opening_it_is_rejected_with_the_reason(home, joints, why, command):
+    have(home, *joints)
+    before = home.map.seq
+    with pytest.raises(errors.Refused) as refused:
+        home.change(command)
+    assert str(refused.value) == f"{NO} {why}{TOLD}"
+    assert home.map.seq == before
+
+
+@pytest.mark.parametrize("joints", [(), (SWITCH,), (BALL, DOOR)])
+def test_bodies_that_open_and_unknown_ones_may_be_set(home, joints):
+    have(home, *joints)
+    home.change(c.Set(name="thing1", property="isOpen", values=(True,)))
+    assert home.map.entity("thing1").properties["isOpen"] is True
+
+
+def test_other_properties_may_be_set(home):
+    have(home, BALL)
+    home.change(c.Set(name="thing1", property="note", values=("loose",)))
+    assert home.map.entity("thing1").properties["note"] == ("loose",)
