@@ -28,7 +28,7 @@ def restore(
     `semmap[kb]`.
     """
     extras.require("semmap restore", "kb")
-    from semmap.nodes.kb_node.storage.backup.restoring import restore as restore_journal
+    from semmap.nodes.kb_node.storage.backup.restore import restore as restore_journal
     from semmap.nodes.supervisor.privacy import UMASK, make_private
     from semmap.nodes.supervisor.up import alone
 

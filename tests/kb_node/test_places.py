@@ -7,9 +7,9 @@ import pytest
 
 from semmap.nodes.kb_node.answers import trials
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.relations.facts.said import denial
-from semmap.nodes.kb_node.relations.facts.sayings import Sayings
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.relations.facts.asserted_locations import AssertedLocations
+from semmap.nodes.kb_node.relations.facts.contradictions import find_contradiction
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.undo import undo
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -271,7 +271,7 @@ def test_it_is_the_same_after_a_restart(room):
     room._journal = again._journal
     assert home.state(again) == before
     assert again._journal.commit(made.seq).notes == made.notes
-    logged = Past(again._journal).history(History(name="cup1"))[-1]
+    logged = HistoryReader(again._journal).history(History(name="cup1"))[-1]
     assert logged.notes == made.notes
     assert [change.text for change in logged.changes][1] == "isOn: - table1"
 
@@ -391,8 +391,8 @@ def test_laws(room, seed):
         own = set(made.inserted)
         for triple, (thing, relation, other) in room.places._sayings.about(moved).items():
             if triple not in own:
-                assert denial(room.places.space(), (thing, relation, other)) is None
-        fresh = Sayings(lambda p: room.reasoner.asserted(None, p, None))
+                assert find_contradiction(room.places.space(), (thing, relation, other)) is None
+        fresh = AssertedLocations(lambda p: room.reasoner.asserted(None, p, None))
         assert fresh.about(room.names) == room.places._sayings.about(room.names)
         if dice.random() < 0.5:
             take_back(room, made.seq)

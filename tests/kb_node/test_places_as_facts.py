@@ -10,7 +10,7 @@ from semmap.nodes.kb_node.answers.standing_places import StandingPlaces
 from semmap.nodes.kb_node.answers.whereabouts import Now
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
@@ -103,7 +103,7 @@ def test_undo_and_the_past_and_a_restart_give_what_was(flat, tmp_path):
         flat.commit(moved(flat, dice.choice(movable), dice.choice(spots)))
         states[flat.seq] = state(flat)
     last = flat.seq
-    past = Past(flat._journal)
+    past = HistoryReader(flat._journal)
     for seq in dice.sample(sorted(states), 4):
         assert {e.name: e.types for e in past.entities(seq, None, ())} == states[seq][2]
     undo.undo(flat, flat._journal, TakeBack(id="back", source="operator", commit=last))

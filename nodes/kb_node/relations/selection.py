@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Sequence, Set
 from functools import partial
 from typing import Final, NamedTuple
 
-from semmap.nodes.kb_node.relations.facts.beside import are_near
+from semmap.nodes.kb_node.relations.facts.pair_facts import are_near
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.space import Space
@@ -22,7 +22,7 @@ _POINT: Final[Size] = (1e-6, 1e-6, 1e-6)
 _ARTICLES: Final = frozenset(("the", "a", "an", "il", "lo", "la", "i", "gli", "le", "un", "uno", "una"))
 
 
-class Meant(NamedTuple):
+class Targets(NamedTuple):
     """The names of those that the words of a `Where` mean; None where there is no word, or a position."""
 
     on: frozenset[str] | None
@@ -31,7 +31,7 @@ class Meant(NamedTuple):
     to: frozenset[str] | None
 
 
-def selected(
+def select_entities(
     space: Space,
     entities: Sequence[Entity],
     where: Where,
@@ -43,13 +43,13 @@ def selected(
     `everyone` is who may be meant by a word; what is `left_out` does not count.
     Raises UnknownName for a word that means nobody, BadRequest, Refused for what nothing can be on or in.
     """
-    require_whole(where)
-    those = resolved(where, tuple(everyone))
+    require_complete(where)
+    those = resolve_words(where, tuple(everyone))
     require_possible(space, those, where.within)
-    return chosen(space, entities, where, those, left_out)
+    return filter_entities(space, entities, where, those, left_out)
 
 
-def require_whole(where: Where) -> None:
+def require_complete(where: Where) -> None:
     """Raises BadRequest for conditions that make no sense by themselves."""
     if where.within is not None and where.near is None and where.to is None:
         raise errors.BadRequest(
@@ -63,7 +63,7 @@ def require_whole(where: Where) -> None:
         raise errors.BadRequest("nearest and to (--nearest N, --to NAME) go together: the N nearest to NAME")
 
 
-def require_possible(space: Space, those: Meant, within_m: float | None = None) -> None:
+def require_possible(space: Space, those: Targets, within_m: float | None = None) -> None:
     """Raises Refused where nothing can be on, in or near any of those that are meant, as far as is known."""
     _require_bearing(_placed(space, those.on, "on"))
     _require_holding(_placed(space, those.in_, "in"))
@@ -118,11 +118,11 @@ def _are_places(solids: Sequence[Solid]) -> str:
     return f"{_few(solids)} {'is a place' if len(solids) == 1 else 'are places'}"
 
 
-def chosen(
+def filter_entities(
     space: Space,
     entities: Sequence[Entity],
     where: Where,
-    those: Meant,
+    those: Targets,
     left_out: Set[Fact] = frozenset(),
 ) -> list[Entity]:
     """Those of `entities` that are where it is asked; what is `left_out` does not count."""
@@ -146,24 +146,24 @@ def chosen(
 def _ends(space: Space, word: str | None, names: Iterable[str] | None) -> list[Solid] | None:
     """Those that a word means and that have a position, by name; or a point at the position that it is."""
     if word is not None and (at := position_in(word)) is not None:
-        point = Placed(name="", iri="", pose=Pose(position_m=at), size_m=_POINT, place=False, model="")
+        point = PlacedEntity(name="", iri="", pose=Pose(position_m=at), size_m=_POINT, place=False, model="")
         return [found] if (found := solid_of(point)) is not None else []
     if names is None:
         return None
     return [space.solids[name] for name in sorted(names) if name in space.solids]
 
 
-def resolved(where: Where, everyone: Sequence[Entity]) -> Meant:
+def resolve_words(where: Where, everyone: Sequence[Entity]) -> Targets:
     """Whom the words mean. Raises UnknownName."""
     on, in_, near, to = where.words
-    return Meant(
-        None if on is None else meant(everyone, on),
-        None if in_ is None else meant(everyone, in_),
-        *(None if word is None or position_in(word) else meant(everyone, word) for word in (near, to)),
+    return Targets(
+        None if on is None else resolve_word(everyone, on),
+        None if in_ is None else resolve_word(everyone, in_),
+        *(None if word is None or position_in(word) else resolve_word(everyone, word) for word in (near, to)),
     )
 
 
-def meant(everyone: Sequence[Entity], word: str) -> frozenset[str]:
+def resolve_word(everyone: Sequence[Entity], word: str) -> frozenset[str]:
     """The entities that a word means: that name, else that reference, else that class. Raises UnknownName.
 
     A class that is written as it is (`Table`) comes before a reference (`table`). An article before it does
@@ -182,15 +182,15 @@ def meant(everyone: Sequence[Entity], word: str) -> frozenset[str]:
             return frozenset(names)
     article, _, noun = folded.partition(" ")
     if article in _ARTICLES and noun:
-        return meant(everyone, noun)
+        return resolve_word(everyone, noun)
     called_so = sorted({word for e in everyone for word in (e.name, e.preferred_reference or "", e.class_)})
     known = {word.casefold(): word for word in called_so}.values()  # of Table and table, table
     raise errors.UnknownName(f"nothing is named or called '{word}'{errors.did_you_mean(word, known)}")
 
 
-def only_meant(everyone: Sequence[Entity], word: str) -> str:
+def resolve_single(everyone: Sequence[Entity], word: str) -> str:
     """The one entity that a word means. Raises UnknownName, BadRequest where it may be several."""
-    names = sorted(meant(everyone, word))
+    names = sorted(resolve_word(everyone, word))
     if len(names) > 1:
         raise errors.BadRequest(f"'{word}' may mean {wording.few(names, 6)}; name one of them")
     return names[0]
@@ -201,7 +201,7 @@ def is_on(space: Space, solid: Solid, carriers: Set[str], left_out: Set[Fact]) -
     seen, waiting = {solid}, [solid]
     while waiting:
         upper = waiting.pop()
-        container, supports, _ = space.whereabouts(upper)
+        container, supports, _ = space.spatial_relations(upper)
         if left_out:
             supports = tuple(s for s in supports if (upper.name, "isOn", s[0].name) not in left_out)
             if container is not None and (upper.name, "isInside", container[0].name) in left_out:
@@ -223,7 +223,9 @@ def is_in(space: Space, solid: Solid, holders: Set[str], left_out: Set[Fact]) ->
             if made is not None and made.holds and (solid.name, "isLocatedIn", name) not in left_out:
                 return True
     seen = {solid.name}
-    while (container := space.whereabouts(solid).container) is not None and container[0].name not in seen:
+    while (container := space.spatial_relations(solid).container) is not None and container[
+        0
+    ].name not in seen:
         if (solid.name, "isInside", container[0].name) in left_out:
             return False
         solid = container[0]

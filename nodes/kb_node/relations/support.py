@@ -6,30 +6,30 @@ from collections.abc import Iterator
 
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
-from semmap.nodes.kb_node.relations.measuring.arrangement import attachments, is_borne
-from semmap.nodes.kb_node.relations.measuring.phrases import height_over, metres
+from semmap.nodes.kb_node.relations.measuring.arrangement import find_attachments, is_supported
+from semmap.nodes.kb_node.relations.measuring.phrases import format_height, format_length
 from semmap.nodes.kb_node.relations.measuring.space import Found, Space
 from semmap.schemas.relations import Relation, RelationName
 
 
-def bearers(space: Space, solid: Solid) -> set[Solid]:
+def find_supporters(space: Space, solid: Solid) -> set[Solid]:
     """What it is on or inside, and what that is on or inside, and so on down."""
     found, waiting = set[Solid](), [solid]
     while waiting:
-        container, supports, _ = space.whereabouts(waiting.pop())
+        container, supports, _ = space.spatial_relations(waiting.pop())
         below = {bearer for bearer, _ in (*filter(None, (container,)), *supports)} - found
         found |= below
         waiting += below
     return found
 
 
-def borne(space: Space, solid: Solid) -> Iterator[tuple[RelationName, Solid, Found]]:
+def find_contents(space: Space, solid: Solid) -> Iterator[tuple[RelationName, Solid, Found]]:
     """What is inside a thing or on it itself, by name; in a crowd the largest. Nothing for a place."""
     if solid.is_place:
         return
-    around = (o for o in space.counted_around(solid) if not o.is_place and space.may_bear(solid, o))
+    around = (o for o in space.counted_around(solid) if not o.is_place and space.may_support(solid, o))
     for upper in sorted(around, key=lambda other: other.name):
-        container, supports, _ = space.whereabouts(upper)
+        container, supports, _ = space.spatial_relations(upper)
         if container is not None and container[0] is solid:
             yield "isInside", upper, container
         for support in supports:
@@ -37,7 +37,7 @@ def borne(space: Space, solid: Solid) -> Iterator[tuple[RelationName, Solid, Fou
                 yield "isOn", upper, support
 
 
-def on_nothing(space: Space, solid: Solid) -> Relation | None:
+def describe_unsupported(space: Space, solid: Solid) -> Relation | None:
     """How high a thing is that nothing bears, as `isOn` of nothing that does not hold; None of any other.
 
     Of a thing of unknown size it is said that its size is missing. On a plan nothing is known of heights.
@@ -50,24 +50,26 @@ def on_nothing(space: Space, solid: Solid) -> Relation | None:
             f" give it a size: semmap update {solid.name} --size X Y Z"
         )
         return _told(solid, f"{solid.name} is on nothing that is known: {reason}")
-    if space.is_flat or space.is_crowded(solid) or is_borne(space, solid):
+    if space.is_flat or space.is_crowded(solid) or is_supported(space, solid):
         return None
-    if next(attachments(space, solid), None) is not None:
+    if next(find_attachments(space, solid), None) is not None:
         return None
-    _, _, place = space.whereabouts(solid)
+    _, _, place = space.spatial_relations(solid)
     floor_m = solid.bottom - (0.0 if place is None else place[0].bottom)
     if place is None and abs(floor_m) <= space.limits.gap_m:
         return None  # the ground, as far as anybody knows
     if (nearest := _nearest_surface(space, solid, floor_m)) is not None:
         other, made = nearest
-        reason = f"its bottom is {height_over(made.gap_m)} a surface of {other.name}"
+        reason = f"its bottom is {format_height(made.gap_m)} a surface of {other.name}"
         if made.gap_m <= space.limits.gap_m:
             reason += f", but {made.share:.0%} of its base is over that"
         return _told(solid, f"{solid.name} is on nothing: {reason}", made.gap_m, made.share)
     if place is None:
-        reason = f"its bottom is at a height of {metres(floor_m)}, and it is in no place that has a floor"
+        reason = (
+            f"its bottom is at a height of {format_length(floor_m)}, and it is in no place that has a floor"
+        )
     else:
-        reason = f"its bottom is {height_over(floor_m)} the floor of {place[0].name}"
+        reason = f"its bottom is {format_height(floor_m)} the floor of {place[0].name}"
     return _told(solid, f"{solid.name} is on nothing: {reason}", floor_m)
 
 

@@ -24,7 +24,7 @@ class CheckpointSchedule:
         self._checkpointed = checkpointed
         self._changed = self._changed_then = 0
         """Triples that changed, and those of them that are in the checkpoint."""
-        self._changed_in_picture = 0
+        self._changed_in_snapshot = 0
 
     def count(self, commit: Commit) -> None:
         """There is one more commit, or one that was there has been taken back."""
@@ -50,10 +50,10 @@ class CheckpointSchedule:
         """Is there a checkpoint of the map after commit `seq`?"""
         return seq == self._checkpointed
 
-    def pictured(self) -> None:
+    def mark_snapshot(self) -> None:
         """The picture is taken that the next checkpoint is made of."""
-        self._changed_in_picture = self._changed
+        self._changed_in_snapshot = self._changed
 
-    def written(self, seq: int) -> None:
+    def mark_written(self, seq: int) -> None:
         """There is a checkpoint of the map after commit `seq`, made of the last picture."""
-        self._checkpointed, self._changed_then = seq, self._changed_in_picture
+        self._checkpointed, self._changed_then = seq, self._changed_in_snapshot

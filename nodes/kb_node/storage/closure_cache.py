@@ -19,7 +19,7 @@ _SUFFIX = ".closure"
 _DIGEST_BYTES = 16
 
 
-def reasoner(tbox: Collection[Triple], folder: Path, *, of_the_past: bool = False) -> Reasoner:
+def load_reasoner(tbox: Collection[Triple], folder: Path, *, of_the_past: bool = False) -> Reasoner:
     """A reasoner with the TBox. Raises Inconsistent.
 
     What is in `folder` counts only for the same triples and the same format, and if it is not damaged. The
@@ -28,11 +28,11 @@ def reasoner(tbox: Collection[Triple], folder: Path, *, of_the_past: bool = Fals
     closed = _read(_path(tbox, folder))
     found = Reasoner(tbox, closed=closed)
     if closed is None and not of_the_past:
-        keep(found.closed, tbox, folder)
+        save(found.closed, tbox, folder)
     return found
 
 
-def keep(closed: Facts | None, tbox: Collection[Triple], folder: Path) -> None:
+def save(closed: Facts | None, tbox: Collection[Triple], folder: Path) -> None:
     """Write down the closure of a TBox, if it has one of its own and the folder takes it."""
     if closed is None:
         return
@@ -44,7 +44,7 @@ def keep(closed: Facts | None, tbox: Collection[Triple], folder: Path) -> None:
 
 
 def _path(tbox: Collection[Triple], folder: Path) -> Path:
-    name = hashlib.blake2b(conclusions_format.mark(), digest_size=_DIGEST_BYTES)
+    name = hashlib.blake2b(conclusions_format.format_mark(), digest_size=_DIGEST_BYTES)
     for triple in sorted(tbox):
         name.update("\n".join(triple).encode())
     return folder / f"{name.hexdigest()}{_SUFFIX}"

@@ -10,6 +10,6 @@ from __future__ import annotations
 FORMAT = 6
 
 
-def mark() -> bytes:
+def format_mark() -> bytes:
     """What conclusions are marked with that are kept."""
     return f"conclusions {FORMAT}".encode()

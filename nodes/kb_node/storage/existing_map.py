@@ -7,7 +7,7 @@ from pathlib import Path
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 
 
-def existing_map(data: Path) -> str | None:
+def describe_existing_map(data: Path) -> str | None:
     """What to report of the map in folder `data`; None if there is none.
 
     Raises InUse, or Refused if it cannot be read.

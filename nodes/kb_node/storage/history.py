@@ -26,7 +26,7 @@ from semmap.schemas.moments import When, read_moment
 from semmap.schemas.replies import LoggedCommit, Sighting
 
 
-class Past:
+class HistoryReader:
     """The past of the map in a journal."""
 
     def __init__(self, journal: Journal) -> None:
@@ -44,9 +44,9 @@ class Past:
         seqs = self._of_span(query)
         beginning = self._journal.beginning.seq
         told = [seq for seq in seqs if seq > beginning]
-        if beginning in seqs and (query.name is None or query.name in self.at_the_beginning()):
+        if beginning in seqs and (query.name is None or query.name in self.initial_entities()):
             told.insert(0, beginning)
-        changes = Changelog(self._journal, self.at_the_beginning)
+        changes = Changelog(self._journal, self.initial_entities)
         return tuple(
             _beginning(self._journal)
             if seq == beginning
@@ -94,7 +94,7 @@ class Past:
 
     def _there(self, seq: int) -> tuple[Entity, ...]:
         """The entities after a commit, in the order of names."""
-        there = dict(self.at_the_beginning())
+        there = dict(self.initial_entities())
         names_by_seq: dict[int, list[str]] = {}
         for name, touched in self._journal.last_touches(seq):
             names_by_seq.setdefault(touched, []).append(name)
@@ -112,7 +112,7 @@ class Past:
         if touching:
             entity = _entities_after(self._journal.commit(touching[-1])).get(name)
         else:
-            entity = self.at_the_beginning().get(name)
+            entity = self.initial_entities().get(name)
         if entity is None:
             known = [there for there, _ in self._journal.last_touches(seq)]
             hint = errors.did_you_mean(name, known) if name not in known else ""
@@ -129,7 +129,7 @@ class Past:
             if entity is not None:
                 return sighting(entity, removed)
             removed = commit.provenance
-        return sighting(self.at_the_beginning()[name], removed)
+        return sighting(self.initial_entities()[name], removed)
 
     def in_conflict_since(self, entity: Entity) -> Provenance:
         """The commit by which the conflict that an entity has was stated."""
@@ -149,7 +149,7 @@ class Past:
 
     def knows(self, name: str) -> bool:
         """Whether an entity was ever named so, as far as the history goes back."""
-        return name in self.at_the_beginning() or bool(self._journal.touching(name))
+        return name in self.initial_entities() or bool(self._journal.touching(name))
 
     def _require_known(self, name: str) -> None:
         if not self.knows(name):
@@ -164,7 +164,7 @@ class Past:
         """The last commit that is part of the snapshot which the history begins with; 0 if there is none."""
         return self._journal.beginning.seq
 
-    def at_the_beginning(self) -> Mapping[str, Entity]:
+    def initial_entities(self) -> Mapping[str, Entity]:
         """The entities of the snapshot that the history begins with, else those that the first TBox says."""
         if self._first is None or self._first[0] != self._compacted:
             said = self._journal.snapshot().entities if self._compacted else self._said_by_the_first_tbox()

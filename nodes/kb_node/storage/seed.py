@@ -16,7 +16,7 @@ from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.triples.kept import forget
 from semmap.nodes.kb_node.storage import closure_cache
-from semmap.nodes.kb_node.storage.existing_map import existing_map
+from semmap.nodes.kb_node.storage.existing_map import describe_existing_map
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.storage.journal.sqlite_file import InUse
 from semmap.ontology import vocabulary as v
@@ -44,7 +44,7 @@ def seed(
     `data/kept/<time>/`. Raises BadFile, UnknownClass or Inconsistent with existing data untouched.
     """
     path = data / FILENAME
-    if not fresh and (told := existing_map(data)) is not None:
+    if not fresh and (told := describe_existing_map(data)) is not None:
         return told  # an unreadable one is reported before anything starts
     tboxes = (tbox,) if isinstance(tbox, Path) else tuple(tbox)
     name = ", ".join(map(str, tboxes))
@@ -83,8 +83,8 @@ def seed(
         require_unused(path)
         new = path.with_name(f"new-{FILENAME}")
         size = _make(new, tbox_triples, reasoner, transaction)
-        put_in_place(new, path)
-        closure_cache.keep(closed, tbox_triples, data)
+        install_journal(new, path)
+        closure_cache.save(closed, tbox_triples, data)
     except (errors.Inconsistent, errors.BadRequest) as error:
         raise type(error)(f"{abox or name}: {error.text}", explanation=error.explanation) from None
     except OSError as error:
@@ -94,7 +94,7 @@ def seed(
 
 def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> int:
     """A journal at `path` with one commit; how many entities that makes. After an error nothing is there."""
-    remove(path)
+    delete_journal(path)
     try:
         journal = Journal.create(path, rdf.serialise(tbox, "ntriples"))
         try:
@@ -104,7 +104,7 @@ def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Trans
         finally:
             journal.close()
     except errors.SemmapError:
-        remove(path)
+        delete_journal(path)
         raise
     return len(semantic_map)
 
@@ -120,9 +120,9 @@ def require_unused(path: Path) -> None:
             return
 
 
-def put_in_place(new: Path, path: Path) -> Path | None:
+def install_journal(new: Path, path: Path) -> Path | None:
     """Let the journal `new` take the place of the one at `path`; where that is kept now, if there was one."""
-    kept = set_aside(path.parent)
+    kept = archive_journal(path.parent)
     new.rename(path)
     _sync(path.parent)
     return kept
@@ -137,7 +137,7 @@ def _sync(folder: Path) -> None:
         os.close(descriptor)
 
 
-def set_aside(data: Path) -> Path | None:
+def archive_journal(data: Path) -> Path | None:
     """Move a present journal out of the way, for whoever may want it back; where to."""
     present = [p for p in data.glob(f"{FILENAME}*") if p.is_file()]
     if not present:
@@ -150,7 +150,7 @@ def set_aside(data: Path) -> Path | None:
     return kept
 
 
-def remove(path: Path) -> None:
+def delete_journal(path: Path) -> None:
     """Delete a journal that is not used yet."""
     for p in path.parent.glob(f"{path.name}*"):
         p.unlink()

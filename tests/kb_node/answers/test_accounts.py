@@ -7,7 +7,7 @@ from semmap.nodes.kb_node.answers.accounts import Accounts
 from semmap.nodes.kb_node.answers.sightings import Sightings
 from semmap.nodes.kb_node.answers.whereabouts import Now
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Tell
@@ -49,7 +49,7 @@ def semantic_map(tmp_path):
 
 @pytest.fixture
 def accounts(semantic_map):
-    return Accounts(semantic_map, Now(semantic_map), Sightings(Past(semantic_map._journal)))
+    return Accounts(semantic_map, Now(semantic_map), Sightings(HistoryReader(semantic_map._journal)))
 
 
 @pytest.fixture

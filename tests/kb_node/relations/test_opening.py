@@ -6,10 +6,10 @@ import pytest
 from msgspec import structs
 
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
-from semmap.nodes.kb_node.relations.geometry.fitting import fitted
-from semmap.nodes.kb_node.relations.geometry.opening import opened, positions_of
+from semmap.nodes.kb_node.relations.geometry.fitting import fit_model
+from semmap.nodes.kb_node.relations.geometry.opening import open_shape, positions_of
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.telling import relations
+from semmap.nodes.kb_node.relations.relation_reports import list_relations
 from semmap.ontology.model_shapes import own_size_m, shapes
 from semmap.schemas.commands import Relations
 from tests.kb_node.relations.made import ROOM, thing
@@ -77,7 +77,7 @@ def test_what_was_said_in_rough_is_so_too():
 
 def test_what_lies_on_the_door_of_an_open_oven_is_on_it():
     door = shapes()["oven"].leaves[0]
-    top = max(part.centre[2] for part in opened(shapes()["oven"], (math.pi / 2,)).parts[-1:]) + 0.01
+    top = max(part.centre[2] for part in open_shape(shapes()["oven"], (math.pi / 2,)).parts[-1:]) + 0.01
     plate = thing("plate1", (door.anchor[0] + 0.22, 0.0, top))
     open_ = standing(OVEN, f"door={math.pi / 2:.4f}")
     assert ("plate1", "isOn", "oven1") in facts_of(open_, plate)
@@ -103,7 +103,7 @@ def test_what_leans_on_an_open_door_touches_the_fridge():
     open_ = standing(fridge, "door=1.5708 freezer=0")  # along the x axis, at y = 0.294
     poster = thing("poster1", (0.7, 0.294 + 0.0105, 0.5), "", size=(0.2, 0.02, 0.3))
     for one, holds in ((open_, True), (fridge, False)):
-        found = relations(Space([one, poster]), Relations(name="poster1", other="fridge1"))
+        found = list_relations(Space([one, poster]), Relations(name="poster1", other="fridge1"))
         found = {r.relation: r for r in found}
         assert ("touches" in found and found["touches"].holds) is holds
         assert (found["isNear"].gap_m < 0.001) is holds
@@ -117,7 +117,7 @@ def test_how_it_stands_is_said_with_what_was_measured():
     space = Space([ROOM, chest, apple, fridge, carton])
 
     def said(name, other):
-        found = {r.relation: r.text for r in relations(space, Relations(name=name, other=other))}
+        found = {r.relation: r.text for r in list_relations(space, Relations(name=name, other=other))}
         return found["isInside"]
 
     assert said("apple1", "chest1") == (
@@ -144,8 +144,10 @@ def test_a_larger_chest_has_drawers_that_come_out_further():
     size = tuple(2.0 * extent for extent in own_size_m("drawer"))
     (*_, most) = positions_of("drawer", size, {"openness": 1.0})
     assert most == pytest.approx(2.0 * TRAVEL)
-    wide = opened(fitted("drawer", (0.8, 0.45, 0.9)), (0.0, 0.0, 0.0, 0.3))  # long where it was wide: turned
-    shut = fitted("drawer", (0.8, 0.45, 0.9))
+    wide = open_shape(
+        fit_model("drawer", (0.8, 0.45, 0.9)), (0.0, 0.0, 0.0, 0.3)
+    )  # long where it was wide: turned
+    shut = fit_model("drawer", (0.8, 0.45, 0.9))
     assert wide.parts[-1].centre[1] == pytest.approx(shut.parts[-1].centre[1] - 0.3)
 
 
@@ -153,10 +155,10 @@ def test_a_larger_chest_has_drawers_that_come_out_further():
 def test_what_moves_keeps_its_size_and_shut_it_is_as_it_was(model):
     shape = shapes()[model]
     ends = tuple(leaf.limits[1] for leaf in shape.leaves)
-    moved = opened(shape, ends)
+    moved = open_shape(shape, ends)
     still = set(range(len(shape.parts))) - {k for leaf in shape.leaves for k in leaf.parts}
     for k, (was, now) in enumerate(zip(shape.parts, moved.parts, strict=True)):
         for before, after in zip(was.straight, now.straight, strict=True):
             assert math.hypot(*after) == pytest.approx(math.hypot(*before))
         assert (was == now) == (k in still)
-    assert opened(shape, (0.0,) * len(shape.leaves)) == shape
+    assert open_shape(shape, (0.0,) * len(shape.leaves)) == shape

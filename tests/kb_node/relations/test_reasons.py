@@ -2,9 +2,9 @@
 
 import pytest
 
-from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.telling import explained, relations
+from semmap.nodes.kb_node.relations.relation_reports import explain_relation, list_relations
 from semmap.schemas import errors
 from semmap.schemas.commands import Relations
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
@@ -31,7 +31,7 @@ MAP = [
 
 
 def told(name, relation, other):
-    return explained(Space(MAP), name, relation, other)
+    return explain_relation(Space(MAP), name, relation, other)
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ def test_why_not(name, relation, other, reason):
     assert found.text.startswith(f"{name} ")
 
 
-@pytest.mark.parametrize("relation", SPOKEN)
+@pytest.mark.parametrize("relation", PHRASES)
 def test_there_is_a_reason_for_each_relation(relation):
     for other in ("table1", "kitchen1", "apple1", "thing1", "cup1"):
         found = told("cup1", relation, other)
@@ -84,26 +84,26 @@ def test_what_is_on_a_thing_touches_it_whoever_is_asked():
         "cup2 touches table1, because cup2 is on table1:"
     )
     assert told("table1", "touches", "cup2").holds
-    pair = relations(Space(MAP), Relations(name="table1", other="cup2"))
+    pair = list_relations(Space(MAP), Relations(name="table1", other="cup2"))
     assert "touches" in {relation.relation for relation in pair if relation.holds}
     assert not told("apple1", "touches", "table1").holds
 
 
 def test_no_pair_of_one():
     with pytest.raises(errors.BadRequest, match="name two different things"):
-        list(relations(Space(MAP), Relations(name="cup1", other="cup1")))
+        list(list_relations(Space(MAP), Relations(name="cup1", other="cup1")))
 
 
 def test_of_two_that_hang_neither_stands():
     hanging = [thing(f"cup{n}", (0.09 * n, 3.0, 1.4 + 0.06 * n)) for n in (1, 2)]
-    found = explained(Space([ROOM, *hanging]), "cup1", "isNextTo", "cup2")
+    found = explain_relation(Space([ROOM, *hanging]), "cup1", "isNextTo", "cup2")
     assert "neither stands on anything that is known" in found.text
 
 
 def test_no_length_of_nothing():
-    assert explained(Space([TABLE, thing("cup1", (0.0, 0.0, TOP))]), "cup1", "touches", "table1").text == (
-        "cup1 touches table1: they meet"
-    )
+    assert explain_relation(
+        Space([TABLE, thing("cup1", (0.0, 0.0, TOP))]), "cup1", "touches", "table1"
+    ).text == ("cup1 touches table1: they meet")
 
 
 def test_of_what_is_not_compared_in_a_crowd_that_is_said():
@@ -111,18 +111,18 @@ def test_of_what_is_not_compared_in_a_crowd_that_is_said():
     upper = thing("can999", (0.0, 0.0, TOP + cans[0].size_m[2]))
     crowd = Space([ROOM, TABLE, *cans, upper])
     assert not crowd.counts(crowd.solids["can999"])
-    found = explained(crowd, "can999", "isOn", "can1")
+    found = explain_relation(crowd, "can999", "isOn", "can1")
     assert not found.holds
     assert found.text.endswith(
         "more things are in this spot than are compared, and can1 is not one of the larger ones"
     )
-    assert explained(crowd, "can149", "isOn", "table1").holds
-    assert explained(Space([TABLE, cans[1], upper]), "can999", "isOn", "can1").holds
+    assert explain_relation(crowd, "can149", "isOn", "table1").holds
+    assert explain_relation(Space([TABLE, cans[1], upper]), "can999", "isOn", "can1").holds
 
 
 def test_what_is_on_a_thing_is_on_no_side_of_it():
     space = Space([TABLE, thing("cup1", (0.2, 0.2, TOP))])
     for name, other, borne in (("cup1", "table1", "it is on table1"), ("table1", "cup1", "cup1 is on it")):
-        found = explained(space, name, "isLeftOf", other)
+        found = explain_relation(space, name, "isLeftOf", other)
         assert not found.holds
         assert found.text.endswith(f"{borne}, and what bears a thing is on no side of it")

@@ -1,8 +1,8 @@
 import pytest
 
-from semmap.nodes.kb_node.relations.facts.beside import Beside
+from semmap.nodes.kb_node.relations.facts.pair_facts import PairFacts
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.selection import meant, only_meant, selected
+from semmap.nodes.kb_node.relations.selection import resolve_single, resolve_word, select_entities
 from semmap.schemas import errors
 from semmap.schemas.relations import Where
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
@@ -22,7 +22,7 @@ MAP = [
 
 
 def names(**where):
-    return [e.name for e in selected(Space(MAP), MAP, Where(**where), MAP)]
+    return [e.name for e in select_entities(Space(MAP), MAP, Where(**where), MAP)]
 
 
 def test_on_is_also_on_what_is_on_it():
@@ -54,7 +54,7 @@ def test_a_distance_includes_what_is_exactly_so_far_away():
     ]
 
     def found(**where):
-        return [e.name for e in selected(Space(boxes), boxes, Where(**where), boxes)]
+        return [e.name for e in select_entities(Space(boxes), boxes, Where(**where), boxes)]
 
     assert found(near="box1", within=1.5) == ["box2"]
     assert found(near="box1", within=1.49) == []
@@ -82,25 +82,25 @@ def test_all_that_is_asked_must_hold():
 
 
 def test_words():
-    assert meant(MAP, "my cup") == {"cup1"}
-    assert meant(MAP, "Cup") == {"cup1", "cup2"}
+    assert resolve_word(MAP, "my cup") == {"cup1"}
+    assert resolve_word(MAP, "Cup") == {"cup1", "cup2"}
     with pytest.raises(errors.UnknownName, match="did you mean table1"):
-        meant(MAP, "tabel1")
+        resolve_word(MAP, "tabel1")
 
 
 def test_a_class_as_it_is_written_is_not_one_thing_that_is_called_so():
     called = thing("table7", (5.0, 5.0, 0.0), ref="table")
-    assert meant([*MAP, called], "Table") == {"table1", "table7"}
-    assert meant([*MAP, called], "table") == {"table7"}
+    assert resolve_word([*MAP, called], "Table") == {"table1", "table7"}
+    assert resolve_word([*MAP, called], "table") == {"table7"}
 
 
 def test_a_word_that_means_one_only():
-    assert only_meant(MAP, "my cup") == "cup1"
-    assert only_meant(MAP, "kitchen") == "kitchen1"
+    assert resolve_single(MAP, "my cup") == "cup1"
+    assert resolve_single(MAP, "kitchen") == "kitchen1"
     with pytest.raises(errors.BadRequest, match="'Cup' may mean cup1 and cup2; name one of them"):
-        only_meant(MAP, "Cup")
+        resolve_single(MAP, "Cup")
     with pytest.raises(errors.UnknownName):
-        only_meant(MAP, "nobody")
+        resolve_single(MAP, "nobody")
 
 
 @pytest.mark.parametrize("where", [{"within": 1.0}, {"nearest": 2}, {"to": "cup1"}])
@@ -124,16 +124,16 @@ def test_what_nothing_can_be_on_or_in(where, reason):
 def test_a_place_of_unknown_extent():
     nowhere = thing("k1", (0.0, 0.0, 0.0), place=True)
     with pytest.raises(errors.Refused, match="the extent of k1 is not known"):
-        selected(Space([*MAP, nowhere]), MAP, Where(in_="k1"), [*MAP, nowhere])
+        select_entities(Space([*MAP, nowhere]), MAP, Where(in_="k1"), [*MAP, nowhere])
 
 
 def test_near_is_the_fact_that_a_query_sees():
     space = Space(MAP)
-    pairs = Beside(Space(MAP))
-    pairs.ask(("isNear",), ())
+    pairs = PairFacts(Space(MAP))
+    pairs.set_scope(("isNear",), ())
     for entity in MAP:
         if not entity.place:
-            found = selected(space, MAP, Where(near=entity.name), MAP)
+            found = select_entities(space, MAP, Where(near=entity.name), MAP)
             assert [e.name for e in found] == [
                 e.name for e in MAP if pairs.holds(e.name, "isNear", entity.name)
             ]
@@ -151,7 +151,7 @@ def test_near_is_the_fact_that_a_query_sees():
 def test_what_is_not_known_is_no_empty_list(where, reason):
     everyone = [*MAP, thing("ghost1", None), thing("relic1", (1.0, 1.0, 0.0))]
     with pytest.raises(errors.Refused, match=reason):
-        selected(Space(everyone), everyone, Where(**where), everyone)
+        select_entities(Space(everyone), everyone, Where(**where), everyone)
 
 
 def test_how_far_from_a_place_can_be_asked():
@@ -161,4 +161,4 @@ def test_how_far_from_a_place_can_be_asked():
 def test_who_asks_for_a_thing_by_several_words_is_told_of_what_the_last_of_them_names():
     everyone = [ROOM, CORNER, thing("table1", (0.0, 0.0, 0.0), ref="table")]
     with pytest.raises(errors.UnknownName, match="did you mean table, kitchen or"):
-        meant(everyone, "kitchen table")
+        resolve_word(everyone, "kitchen table")

@@ -5,7 +5,7 @@ import pytest
 from benchmarks.relations.situations import SITUATIONS, TABLE, TOP, about_y, on_table
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.telling import relations
+from semmap.nodes.kb_node.relations.relation_reports import list_relations
 from semmap.schemas.commands import Relations
 
 
@@ -23,7 +23,7 @@ def test_what_a_person_would_say(situation):
     told = {
         (r.subject, r.relation, r.object)
         for thing in situation.things
-        for r in relations(space, Relations(name=thing.name))
+        for r in list_relations(space, Relations(name=thing.name))
     }
     assert situation.also <= told
     assert not situation.never & told

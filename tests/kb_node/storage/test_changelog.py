@@ -16,7 +16,7 @@ def told(journal, only=None, since=1):
     query = History(name=only, since=since)
     return [
         [f"{change.name} {change.text}" for change in commit.changes]
-        for commit in history.Past(journal).history(query)
+        for commit in history.HistoryReader(journal).history(query)
     ]
 
 

@@ -22,7 +22,7 @@ def closings(monkeypatch):
 
 
 def check(folder):
-    reasoner = closure_cache.reasoner(TBOX, folder)
+    reasoner = closure_cache.load_reasoner(TBOX, folder)
     assert OBJECT in reasoner.superclasses(CHAIR)
     assert set(reasoner.asserted()) == set(TBOX)
 
@@ -31,13 +31,13 @@ def test_a_tbox_is_closed_once(tmp_path, closings):
     for _ in range(3):
         check(tmp_path)
     assert len(closings) == 1
-    closure_cache.reasoner(TBOX[::-1], tmp_path)
+    closure_cache.load_reasoner(TBOX[::-1], tmp_path)
     assert len(closings) == 1
 
 
 def test_another_tbox_takes_its_place(tmp_path, closings):
     check(tmp_path)
-    closure_cache.reasoner(
+    closure_cache.load_reasoner(
         [*TBOX, (CHAIR, v.RDFS_LABEL, '"Stuhl"@de'), (OBJECT, v.RDFS_SUB_CLASS_OF, OBJECT)], tmp_path
     )
     assert len(closings) == 2
@@ -46,7 +46,7 @@ def test_another_tbox_takes_its_place(tmp_path, closings):
 
 def test_other_code_closes_it_anew(tmp_path, closings, monkeypatch):
     check(tmp_path)
-    monkeypatch.setattr(conclusions_format, "mark", lambda: b"other")
+    monkeypatch.setattr(conclusions_format, "format_mark", lambda: b"other")
     check(tmp_path)
     assert len(closings) == 2
 
@@ -73,8 +73,8 @@ def test_one_of_the_past_leaves_the_present_one(tmp_path, closings):
     check(tmp_path)
     (present,) = tmp_path.iterdir()
     before = [*TBOX, (CHAIR, v.RDFS_LABEL, '"Stuhl"@de')]
-    closure_cache.reasoner(before, tmp_path, of_the_past=True)
+    closure_cache.load_reasoner(before, tmp_path, of_the_past=True)
     assert [*tmp_path.iterdir()] == [present]
     assert len(closings) == 2
-    closure_cache.reasoner(TBOX, tmp_path, of_the_past=True)
+    closure_cache.load_reasoner(TBOX, tmp_path, of_the_past=True)
     assert len(closings) == 2

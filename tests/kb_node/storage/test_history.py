@@ -2,7 +2,7 @@ from datetime import datetime
 
 import pytest
 
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -38,7 +38,7 @@ def seen(tmp_path):
     ):
         semantic_map.commit(step)
         snapshots[semantic_map.seq] = semantic_map.snapshot().entities
-    yield Past(semantic_map._journal), snapshots
+    yield HistoryReader(semantic_map._journal), snapshots
     home.close(semantic_map)
 
 
@@ -175,7 +175,7 @@ def test_where_the_clock_was_set_back_commits_are_found_by_their_stamps(tmp_path
     for number, hour in enumerate((2.0, 4.0, 3.0, 3.5, 5.0), start=1):
         monkeypatch.setattr("time.time_ns", lambda hour=hour: start_ns + int(hour * 3600e9))
         semantic_map.commit(transaction(number, chair(f"chair{number}")))
-    past = Past(semantic_map._journal)
+    past = HistoryReader(semantic_map._journal)
 
     def at(hour):
         return start_ns / 1e9 + hour * 3600

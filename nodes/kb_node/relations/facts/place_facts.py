@@ -11,12 +11,12 @@ from itertools import chain, islice
 from typing import NamedTuple
 
 from semmap.nodes.kb_node.progress import parts
-from semmap.nodes.kb_node.relations.facts.ahead import Ahead
-from semmap.nodes.kb_node.relations.facts.foreseen import Found
+from semmap.nodes.kb_node.relations.facts.precomputation import Precomputation
+from semmap.nodes.kb_node.relations.facts.precompute_messages import FactsByName
 from semmap.nodes.kb_node.relations.facts.rules import RULES, About, Rule
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
-from semmap.nodes.kb_node.relations.measuring.broad_phase import by_place
+from semmap.nodes.kb_node.relations.measuring.broad_phase import sort_by_place
 from semmap.nodes.kb_node.relations.measuring.space import MANY, Space
 from semmap.nodes.kb_node.relations.measuring.survey import Survey
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
@@ -54,21 +54,21 @@ class Facts:
         self._to_forget = 0
         self._waiting: dict[str, Solid] = {}
         """While `filling`: those that have been placed, and nothing else."""
-        self._ahead: Ahead | None = None
+        self._precomputation: Precomputation | None = None
         self.shifted: frozenset[str] = frozenset()
         """Who came to count in a crowd by the last update, or does not any more, because of others."""
 
-    def work_ahead(self, ahead: Ahead) -> None:
+    def set_precomputation(self, ahead: Precomputation) -> None:
         """The next update is about those who are foreseen, and `ahead` works out what will hold."""
-        self._ahead = ahead
+        self._precomputation = ahead
 
-    def give_up_ahead(self) -> None:
+    def discard_precomputation(self) -> None:
         """That update does not come."""
-        ahead, self._ahead = self._ahead, None
+        ahead, self._precomputation = self._precomputation, None
         if ahead is not None:
-            ahead.give_up()
+            ahead.discard()
 
-    def by_rule(self) -> tuple[Found, ...]:
+    def by_rule(self) -> tuple[FactsByName, ...]:
         """All that hold, by rule and name."""
         return tuple(kept.of for kept in self._kept)
 
@@ -91,7 +91,7 @@ class Facts:
         """Of whom a fact holds that speaks of a thing."""
         return {other for kept in self._kept for other in kept.about.get(name, ())}
 
-    def upward(self, names: Iterable[str]) -> set[str]:
+    def with_contents(self, names: Iterable[str]) -> set[str]:
         """These things, what is on, inside or in them, and what is on or inside that."""
         found = set(names)
         waiting = list(found)
@@ -105,80 +105,80 @@ class Facts:
                         waiting.append(above)
         return found
 
-    def filling(self, entities: Iterable[Entity | Placed]) -> Iterator[None]:
+    def fill_steps(self, entities: Iterable[Entity | PlacedEntity]) -> Iterator[None]:
         """Begin with these, in steps of some tens of milliseconds."""
-        yield from self.placing(entities)
-        yield from self.working_out()
+        yield from self.insert_steps(entities)
+        yield from self.compute_steps()
 
-    def placing(self, entities: Iterable[Entity | Placed]) -> Iterator[None]:
+    def insert_steps(self, entities: Iterable[Entity | PlacedEntity]) -> Iterator[None]:
         """The first half of `filling`, between whose steps nothing changes."""
         for _ in self.space.put_all(entities):
             yield
-        self.space.shifted()
-        self._waiting = {solid.name: solid for solid in self._things(self.space.solids)}
+        self.space.pop_shifted()
+        self._waiting = {solid.name: solid for solid in self._movable_solids(self.space.solids)}
 
-    def working_out(self) -> Iterator[None]:
+    def compute_steps(self) -> Iterator[None]:
         """The second half, between whose steps there may be updates: these see to what they concern first."""
-        for some in parts(by_place(list(self._waiting.values())), _STEP, _nothing):
-            self._work_out_those(solid for solid in some if self._waiting.get(solid.name) is solid)
+        for some in parts(sort_by_place(list(self._waiting.values())), _STEP, _nothing):
+            self._compute_waiting(solid for solid in some if self._waiting.get(solid.name) is solid)
             yield
         for solids in parts(tuple(self.space.solids.values()), _STEP, _nothing):
             for solid in solids:
-                solid.forget()
+                solid.clear_cache()
             if len(solids) == _STEP:
                 yield
 
     @property
-    def are_worked_out(self) -> bool:
+    def is_complete(self) -> bool:
         """Whether nobody is left who has only been placed."""
         return not self._waiting
 
-    def _work_out_those(self, waiting: Iterable[Solid]) -> None:
+    def _compute_waiting(self, waiting: Iterable[Solid]) -> None:
         """Work out the facts of some whom nobody has looked at since they were placed."""
         solids = list(waiting)
-        for _ in self._working_out(solids, set(), set(), _STEP):
+        for _ in self._compute_in_steps(solids, set(), set(), _STEP):
             pass
         for solid in solids:
             del self._waiting[solid.name]
 
-    def _see_to_those_concerned(self, changed: Sequence[Entity | Placed], removed: Sequence[str]) -> None:
+    def _compute_affected(self, changed: Sequence[Entity | PlacedEntity], removed: Sequence[str]) -> None:
         """While they are being worked out: of whom a change may speak is worked out as it is before that."""
         waiting, space = self._waiting, self.space
         if len(changed) + len(removed) >= MANY:
-            self._work_out_those(list(waiting.values()))
+            self._compute_waiting(list(waiting.values()))
             return
         names = (*removed, *(entity.name for entity in changed))
         concerned = dict.fromkeys(names)
         for solid in (*map(space.solids.get, names), *map(solid_of, changed)):
             if solid is not None:
                 concerned.update((other.name, None) for other in space.around(solid, self._margin_m))
-        self._work_out_those([waiting[name] for name in concerned if name in waiting])
+        self._compute_waiting([waiting[name] for name in concerned if name in waiting])
 
-    def _things(self, names: Iterable[str]) -> list[Solid]:
+    def _movable_solids(self, names: Iterable[str]) -> list[Solid]:
         """Those that are there and are no places."""
         solids = self.space.solids
         return [solid for name in names if (solid := solids.get(name)) is not None and not solid.is_place]
 
-    def _working_out(
+    def _compute_in_steps(
         self, solids: Sequence[Solid], gone: set[Fact], come: set[Fact], step: int
     ) -> Iterator[None]:
         """Work out the facts of many, `step` at a time, and add what is otherwise to `gone` and `come`."""
         space = self.space
-        for some in parts(by_place(solids) if len(solids) > step else solids, step, _nothing):
+        for some in parts(sort_by_place(solids) if len(solids) > step else solids, step, _nothing):
             survey = Survey(space, some) if len(some) >= MANY else None
-            with space.remembering():
+            with space.caching():
                 for kept in self._kept:
                     if survey is None:
-                        kept.work_out(space, [solid.name for solid in some], gone, come)
+                        kept.compute(space, [solid.name for solid in some], gone, come)
                     else:
-                        kept.take(space, some, kept.rule.of_many(survey), gone, come)
+                        kept.set_facts(space, some, kept.rule.of_many(survey), gone, come)
             yield
 
-    def _worked_out_ahead(self, came: Iterable[Entity | Placed]) -> Sequence[Found] | None:
-        ahead, self._ahead = self._ahead, None
+    def _take_precomputed(self, came: Iterable[Entity | PlacedEntity]) -> Sequence[FactsByName] | None:
+        ahead, self._precomputation = self._precomputation, None
         return None if ahead is None else ahead.facts(came)
 
-    def forget(self) -> None:
+    def clear_caches(self) -> None:
         """Let some solids, in turn, forget what can be worked out again: more of them than updates touched.
 
         Nobody need wait for that; only where it is not called for long, `update` does it.
@@ -186,7 +186,7 @@ class Facts:
         count, self._to_forget = self._to_forget, 0
         forgot = 0
         for solid in islice(self._in_turn, count):
-            solid.forget()
+            solid.clear_cache()
             forgot += 1
         if forgot < count:
             self._in_turn = iter(tuple(self.space.solids.values()))
@@ -196,21 +196,21 @@ class Facts:
         solid = self.space.solids.get(name)
         return solid if solid is not None and self.space.counts(solid) else None
 
-    def update(self, changed: Iterable[Entity | Placed], removed: Iterable[str] = ()) -> Changed:
+    def update(self, changed: Iterable[Entity | PlacedEntity], removed: Iterable[str] = ()) -> Changed:
         """Some entities came or are otherwise now, others went."""
         changed, removed = list(changed), list(removed)
         if not (changed or removed):
             self.shifted = frozenset()
             return Changed(set(), set())
         if self._waiting:
-            self._see_to_those_concerned(changed, removed)
+            self._compute_affected(changed, removed)
         space = self.space
         moved: dict[str, None] = {}
         left: list[Solid] = []
         for name in removed:
             moved[name] = None
             left += filter(None, (self._counted(name),))
-            space.take(name)
+            space.remove(name)
         for entity in changed:
             moved[entity.name] = None
             if space.solids:
@@ -219,36 +219,36 @@ class Facts:
             fresh = [solid for entity in changed if (solid := space.put(entity)) is not None]
         else:
             fresh = list(chain.from_iterable(space.put_all(changed)))
-        shifted = space.shifted()
+        shifted = space.pop_shifted()
         fresh = [*filter(space.counts, fresh), *shifted]
         for solid in shifted:
             moved[solid.name] = None
         gone: set[Fact] = set()
         come: set[Fact] = set()
-        with space.remembering(of_few=True):
-            concerned = self._concerned(moved, (*fresh, *left))
+        with space.caching(of_few=True):
+            concerned = self._affected(moved, (*fresh, *left))
             if len(concerned) < MANY:
                 for kept in self._kept:
-                    kept.work_out(space, concerned, gone, come)
+                    kept.compute(space, concerned, gone, come)
         if len(concerned) >= MANY:
-            things = self._things(concerned)
+            things = self._movable_solids(concerned)
             if len(things) < len(concerned):
                 left_over = concerned.keys() - {solid.name for solid in things}
                 for kept in self._kept:
-                    kept.work_out(space, left_over, gone, come)
-            if (found := self._worked_out_ahead(changed)) is None:
-                for _ in self._working_out(things, gone, come, _MOST_AT_ONCE):
+                    kept.compute(space, left_over, gone, come)
+            if (found := self._take_precomputed(changed)) is None:
+                for _ in self._compute_in_steps(things, gone, come, _MOST_AT_ONCE):
                     pass
             else:
                 for kept, of in zip(self._kept, found, strict=True):
-                    kept.take(space, things, [of.get(solid.name, ()) for solid in things], gone, come)
+                    kept.set_facts(space, things, [of.get(solid.name, ()) for solid in things], gone, come)
         self._to_forget = min(self._to_forget + _FORGOTTEN * len(moved), len(space.solids))
         if self._to_forget > _MOST_TO_FORGET:
-            self.forget()
+            self.clear_caches()
         self.shifted = frozenset([solid.name for solid in shifted])
         return Changed(gone, come)
 
-    def _concerned(self, moved: dict[str, None], solids: Sequence[Solid]) -> dict[str, None]:
+    def _affected(self, moved: dict[str, None], solids: Sequence[Solid]) -> dict[str, None]:
         """Of whom something else may hold now: those who moved, and others by how `solids` were or are."""
         space, found = self.space, dict(moved)
         for kept in self._kept:
@@ -258,13 +258,13 @@ class Facts:
         if found.keys() >= space.solids.keys():
             return found
         if len(solids) >= MANY:
-            found.update((solid.name, None) for solid in space.beside(solids, self._margin_m))
+            found.update((solid.name, None) for solid in space.find_nearby(solids, self._margin_m))
             return found
         for solid in solids:
-            self._add_whom_it_concerns(solid, found)
+            self._add_affected_by(solid, found)
         return found
 
-    def _add_whom_it_concerns(self, solid: Solid, found: dict[str, None]) -> None:
+    def _add_affected_by(self, solid: Solid, found: dict[str, None]) -> None:
         space = self.space
         for other in space.around(solid, self._margin_m):
             if other.is_place or other.name in found:
@@ -294,7 +294,7 @@ class _Kept:
             for relation, other in found:
                 yield name, relation, other
 
-    def take(
+    def set_facts(
         self,
         space: Space,
         solids: Sequence[Solid],
@@ -323,15 +323,15 @@ class _Kept:
                 else:
                     about[other] = {name: None}
 
-    def work_out(self, space: Space, names: Iterable[str], gone: set[Fact], come: set[Fact]) -> None:
+    def compute(self, space: Space, names: Iterable[str], gone: set[Fact], come: set[Fact]) -> None:
         """Work out the facts of some, and add what is otherwise to `gone` and `come`."""
         for name in names:
             before = self.of.get(name, ())
-            now = self._work_out(space, name)
+            now = self._compute(space, name)
             if now != before:
                 self._replace(name, before, now, gone, come)
 
-    def _work_out(self, space: Space, name: str) -> tuple[About, ...]:
+    def _compute(self, space: Space, name: str) -> tuple[About, ...]:
         solid = space.solids.get(name)
         if solid is None or solid.is_place:
             return ()

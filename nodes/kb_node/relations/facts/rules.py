@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterator
 from typing import Final, NamedTuple
 
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring.arrangement import attachments
+from semmap.nodes.kb_node.relations.measuring.arrangement import find_attachments
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.measuring.survey import NOBODY, Survey
+from semmap.nodes.kb_node.relations.measuring.survey import NO_ROW, Survey
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term
@@ -48,9 +48,9 @@ class Rule(NamedTuple):
 
 
 def _whereabouts(space: Space, solid: Solid) -> Iterator[About]:
-    if solid.name in space.held:
+    if solid.name in space.holders:
         return  # where that is which grasps it
-    container, supports, place = space.whereabouts(solid)
+    container, supports, place = space.spatial_relations(solid)
     if container is not None:
         yield "isInside", container[0].name
     for support, _ in supports:
@@ -66,7 +66,7 @@ def _whereabouts_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
         some: tuple(
             (relation, solids[row].name)
             for relation, row in zip(_WHEREABOUTS, some, strict=True)
-            if row != NOBODY
+            if row != NO_ROW
         )
         for some in set(rows)
     }
@@ -77,15 +77,15 @@ def _whereabouts_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
 
 
 def _of_nobody_held(survey: Survey, found: list[tuple[About, ...] | None]) -> list[tuple[About, ...] | None]:
-    if held := survey.held:
+    if holders := survey.holders:
         for row, solid in enumerate(survey.solids):
-            if solid.name in held:
+            if solid.name in holders:
                 found[row] = ()
     return found
 
 
 def _attachments(space: Space, solid: Solid) -> Iterator[About]:
-    for other in attachments(space, solid):
+    for other in find_attachments(space, solid):
         yield "isAttachedTo", other.name
 
 

@@ -16,7 +16,7 @@ from semmap.nodes.kb_node.relations.geometry.form_columns import (
     flat,
 )
 from semmap.nodes.kb_node.relations.geometry.forms import Form
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, form_in, shape_of
 from semmap.schemas.entities import Entity, Vector
 
@@ -50,7 +50,7 @@ class Columns:
         """Whether it also stands upright and has some size."""
 
 
-def solids_of(entities: Iterable[Entity | Placed]) -> list[Solid]:
+def solids_of(entities: Iterable[Entity | PlacedEntity]) -> list[Solid]:
     """The solids of those entities that have a position: what `solid_of` makes of each."""
     names: list[str] = []
     positions: list[Vector] = []

@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.geometry.polygons import Point, contains, hull
-from semmap.nodes.kb_node.relations.geometry.lazily import lazily
-from semmap.nodes.kb_node.relations.geometry.shadows import Shadow, depth, shadow_of
+from semmap.nodes.kb_node.relations.geometry.lazy_property import lazy_property
+from semmap.nodes.kb_node.relations.geometry.projections import Projection, overlap_depth, project
 from semmap.schemas.entities import Vector
 
 Floats = NDArray[np.float64]
@@ -42,12 +42,12 @@ class Convex:
     low: Vector
     high: Vector
 
-    @lazily
-    def met(self) -> dict[tuple[Convex, float], Contact]:
+    @lazy_property
+    def contacts(self) -> dict[tuple[Convex, float], Contact]:
         """Its contacts that were worked out: what lies in a heap is asked of again at every change of it."""
         return {}
 
-    @lazily
+    @lazy_property
     def lowest(self) -> Point:
         """Where its lowest point is on the floor plan, the middle of that where it is flat below."""
         x, y, _ = self.centre
@@ -63,7 +63,7 @@ class Convex:
             x, y = x + px, y + py
         return x, y
 
-    @lazily
+    @lazy_property
     def has_flat_top(self) -> bool:
         """Whether its top is a level face, and all of its shadow."""
         upright = [v for v in self.straight if abs(v[2]) > _LEVEL]
@@ -71,14 +71,14 @@ class Convex:
             return False
         return abs(upright[0][0]) < _LEVEL and abs(upright[0][1]) < _LEVEL
 
-    @lazily
-    def upright_shadow(self) -> Shadow | None:
+    @lazy_property
+    def upright_projection(self) -> Projection | None:
         """What is seen of it from above, if it is a box or a cylinder that stands upright."""
         if not self.has_flat_top:
             return None
-        return shadow_of([v for v in self.straight if abs(v[2]) <= _LEVEL], self.round)
+        return project([v for v in self.straight if abs(v[2]) <= _LEVEL], self.round)
 
-    @lazily
+    @lazy_property
     def is_square(self) -> bool:
         """Whether it is a box along the axes."""
         return (
@@ -87,8 +87,8 @@ class Convex:
             and sum(abs(x) > _LEVEL for v in self.straight for x in v) == 3
         )
 
-    @lazily
-    def shadow(self) -> tuple[Point, ...]:
+    @lazy_property
+    def projection(self) -> tuple[Point, ...]:
         """Its outline on the floor plan, counterclockwise; what is round has eight corners."""
         cx, cy, _ = self.centre
         flat = [v for v in self.straight if abs(v[0]) > _LEVEL or abs(v[1]) > _LEVEL]
@@ -134,7 +134,7 @@ class _Moved(Convex):
     x: float
     y: float
 
-    @lazily
+    @lazy_property
     def lowest(self) -> Point:
         x, y = self.like.lowest
         return self.x + x, self.y + y
@@ -144,20 +144,20 @@ class _Moved(Convex):
         return self.like.has_flat_top
 
     @property
-    def upright_shadow(self) -> Shadow | None:
-        return self.like.upright_shadow
+    def upright_projection(self) -> Projection | None:
+        return self.like.upright_projection
 
     @property
     def is_square(self) -> bool:
         return self.like.is_square
 
-    @lazily
-    def shadow(self) -> tuple[Point, ...]:
+    @lazy_property
+    def projection(self) -> tuple[Point, ...]:
         own_x, own_y = self.x, self.y
-        return tuple([(own_x + x, own_y + y) for x, y in self.like.shadow])
+        return tuple([(own_x + x, own_y + y) for x, y in self.like.projection])
 
 
-def moved(part: Convex, by: Vector) -> Convex:
+def translate(part: Convex, by: Vector) -> Convex:
     """The part elsewhere."""
     x, y, z = by
     cx, cy, cz = part.centre
@@ -196,7 +196,7 @@ _SURE_M = 1e-6
 """Depths that differ by less are taken for the same."""
 
 
-def convex(
+def make_convex(
     centre: Vector, straight: tuple[Vector, ...], round_: tuple[Vector, ...], points: tuple[Vector, ...] = ()
 ) -> Convex:
     """The part with its box."""
@@ -228,7 +228,7 @@ def over_flat_top(upper: Convex, lower: Convex) -> bool:
     if upper.low[2] < lower.high[2] - DEEPEST_M or not lower.has_flat_top:
         return False
     if not lower.is_square:
-        return contains(lower.shadow, upper.lowest)
+        return contains(lower.projection, upper.lowest)
     x, y = upper.lowest
     return lower.low[0] <= x <= lower.high[0] and lower.low[1] <= y <= lower.high[1]
 
@@ -242,9 +242,9 @@ def contact(one: Convex, other: Convex, most: float = math.inf) -> Contact:
         return _between_boxes(one, other)
     if (upright := _one_above_the_other(one, other)) is not None:
         return upright
-    known = one.met.get((other, most))
+    known = one.contacts.get((other, most))
     if known is None:
-        known = one.met[other, most] = _searched(one, other, most)
+        known = one.contacts[other, most] = _searched(one, other, most)
     return known
 
 
@@ -253,12 +253,12 @@ def _one_above_the_other(one: Convex, other: Convex) -> Contact | None:
 
     Along a normal that leans, prisms are apart by no more than a mean of what they are upright and level.
     """
-    its, their = one.upright_shadow, other.upright_shadow
+    its, their = one.upright_projection, other.upright_projection
     if its is None or their is None:
         return None
     (x, y, z), (a, b, c) = one.centre, other.centre
     gap = one.low[2] - other.high[2] if z >= c else other.low[2] - one.high[2]
-    if depth(x - a, y - b, its, their) < max(-gap, 0.0) + _SURE_M:
+    if overlap_depth(x - a, y - b, its, their) < max(-gap, 0.0) + _SURE_M:
         return None
     return Contact(gap, UP if z >= c else DOWN)
 

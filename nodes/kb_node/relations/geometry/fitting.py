@@ -16,13 +16,13 @@ from semmap.schemas.entities import Size, Vector
 
 
 @lru_cache(maxsize=8192)
-def fitted(model: str, size: Size) -> ModelShape:
+def fit_model(model: str, size: Size) -> ModelShape:
     """The shape of a model stretched to a size; the whole box of what has no model."""
-    own = own_shape(model)
+    own = model_shape(model)
     if own is None:
         return box(size)
-    if are_turned(own, np.array([size]))[0]:
-        own = quarter_turned(own)
+    if need_quarter_turn(own, np.array([size]))[0]:
+        own = turn_quarter(own)
     if own.size_m == size:
         return own
     fx, fy, fz = (mine / its for mine, its in zip(size, own.size_m, strict=True))
@@ -69,7 +69,7 @@ def _fitted_leaf(leaf: LeafShape, factors: Vector) -> LeafShape:
     )
 
 
-def own_shape(model: str) -> ModelShape | None:
+def model_shape(model: str) -> ModelShape | None:
     """The shape of a model at its own size; None for what has no model."""
     return shapes().get(model) if model else None
 
@@ -90,7 +90,7 @@ def _mapped(part: ConvexPart, by: Callable[[tuple[Vector, ...]], tuple[Vector, .
     return ConvexPart(centre=centre, straight=by(part.straight), round=by(part.round), points=by(part.points))
 
 
-def are_turned(shape: ModelShape, sizes: NDArray[np.float64]) -> NDArray[np.bool_]:
+def need_quarter_turn(shape: ModelShape, sizes: NDArray[np.float64]) -> NDArray[np.bool_]:
     """(N,) whether the simulator meets (N, 3) sizes by turning the model (sim_node/models/library.py)."""
     own = shape.size_m
     longer, shorter = max(own[:2]), min(own[:2])
@@ -99,7 +99,7 @@ def are_turned(shape: ModelShape, sizes: NDArray[np.float64]) -> NDArray[np.bool
     return turned & may_turn
 
 
-def quarter_turned(shape: ModelShape) -> ModelShape:
+def turn_quarter(shape: ModelShape) -> ModelShape:
     """The shape turned by -90 degrees about z: (x, y) becomes (y, -x)."""
     x, y, z = shape.size_m
 

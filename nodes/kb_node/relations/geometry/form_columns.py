@@ -14,7 +14,7 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.kb_node.relations.geometry.fitting import are_turned, box, own_shape, quarter_turned
+from semmap.nodes.kb_node.relations.geometry.fitting import box, model_shape, need_quarter_turn, turn_quarter
 from semmap.nodes.kb_node.relations.geometry.forms import LOWEST_M, Form
 from semmap.ontology.model_shapes import ConvexPart, Corner, ModelShape
 
@@ -112,9 +112,9 @@ class Extents:
             elif form.model is not None:
                 groups.setdefault(form.model, []).append(row)
         for model, group in groups.items():
-            own, rows = own_shape(model) or _UNIT, np.array(group)
-            turned = are_turned(own, self.size[rows])
-            for shape, of in ((own, rows[~turned]), (quarter_turned(own), rows[turned])):
+            own, rows = model_shape(model) or _UNIT, np.array(group)
+            turned = need_quarter_turn(own, self.size[rows])
+            for shape, of in ((own, rows[~turned]), (turn_quarter(own), rows[turned])):
                 if len(of):
                     yield shape, of
 

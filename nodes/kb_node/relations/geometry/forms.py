@@ -9,10 +9,10 @@ from typing import Final
 
 from semmap.nodes.geometry.polygons import Point, area, hull
 from semmap.nodes.geometry.regions import Region
-from semmap.nodes.kb_node.relations.geometry.convex import Convex, convex
-from semmap.nodes.kb_node.relations.geometry.fitting import fitted
-from semmap.nodes.kb_node.relations.geometry.lazily import lazily
-from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, opened
+from semmap.nodes.kb_node.relations.geometry.convex import Convex, make_convex
+from semmap.nodes.kb_node.relations.geometry.fitting import fit_model
+from semmap.nodes.kb_node.relations.geometry.lazy_property import lazy_property
+from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, open_shape
 from semmap.ontology.model_shapes import ModelShape
 from semmap.schemas import errors
 from semmap.schemas.entities import IDENTITY, Quaternion, Size, Vector
@@ -66,10 +66,10 @@ class Form:
             self.orientation == wxyz and self.size == size and self.model == model and self.joints == joints
         )
 
-    @lazily
+    @lazy_property
     def shape(self) -> ModelShape:
         """The shape of its model at its size, in its own frame, with its joints where they stand."""
-        return _BOX if self.model is None else opened(fitted(self.model, self.size), self.joints)
+        return _BOX if self.model is None else open_shape(fit_model(self.model, self.size), self.joints)
 
     def turned(self, vector: Vector) -> Vector:
         """A vector of its own frame along the axes of the map."""
@@ -77,7 +77,7 @@ class Form:
         (a, b, c), (d, e, f), (g, h, i) = self.rotation
         return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
 
-    @lazily
+    @lazy_property
     def corners(self) -> tuple[Vector, ...]:
         """The eight corners; the four of its base first."""
         x, y, z = self.size
@@ -87,34 +87,34 @@ class Form:
             for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))
         )
 
-    @lazily
+    @lazy_property
     def lowest_corner(self) -> float:
         """The height of its box's lowest corner."""
         return min(corner[2] for corner in self.corners)
 
-    @lazily
+    @lazy_property
     def bottom(self) -> float:
         """The height of its lowest point."""
         return min([part.low[2] for part in self.parts]) if self.parts else self.lowest_corner
 
-    @lazily
+    @lazy_property
     def top(self) -> float:
         """The height of its box's highest corner, or of what stands open above that."""
         (_, _, (g, h, i)), (x, y, z) = self.rotation, self.size
         top = max(0.0, i * z) + (abs(g) * x + abs(h) * y) / 2
         return max([top, *(part.high[2] for part in self.parts)]) if self.joints else top
 
-    @lazily
+    @lazy_property
     def lowest_top(self) -> float:
         """Where the first of its parts ends."""
         return min([part.high[2] for part in self.parts], default=self.top)
 
-    @lazily
+    @lazy_property
     def highest_bottom(self) -> float:
         """Where the last of its parts begins."""
         return max([part.low[2] for part in self.parts], default=self.bottom)
 
-    @lazily
+    @lazy_property
     def bounds(self) -> Bounds:
         """Of its box, and of what stands open beyond that."""
         box = self._bounds_of_box()
@@ -136,7 +136,7 @@ class Form:
         half_y = (abs(d) * x + abs(e) * y + abs(f) * z) / 2
         return mid_x - half_x, mid_y - half_y, mid_x + half_x, mid_y + half_y
 
-    @lazily
+    @lazy_property
     def is_square(self) -> bool:
         """Whether its outline is its bounds."""
         (a, b, _), (d, e, _), _ = self.rotation
@@ -146,7 +146,7 @@ class Form:
             and (max(abs(b), abs(d)) < _EXACTLY or max(abs(a), abs(e)) < _EXACTLY)
         )
 
-    @lazily
+    @lazy_property
     def outline(self) -> list[Point]:
         """Its shadow on the floor."""
         if not self.is_level:
@@ -156,18 +156,20 @@ class Form:
         ax, ay, bx, by = a * x / 2, d * x / 2, b * y / 2, e * y / 2
         return [(-ax - bx, -ay - by), (ax - bx, ay - by), (ax + bx, ay + by), (-ax + bx, -ay + by)]
 
-    @lazily
+    @lazy_property
     def base(self) -> Sequence[Point]:
         """The outline of its lowest parts."""
         parts = [part for part in self.parts if part.low[2] <= self.bottom + LOWEST_M]
-        return parts[0].shadow if len(parts) == 1 else hull([xy for part in parts for xy in part.shadow])
+        return (
+            parts[0].projection if len(parts) == 1 else hull([xy for part in parts for xy in part.projection])
+        )
 
-    @lazily
+    @lazy_property
     def parts(self) -> tuple[Convex, ...]:
         """What of it collides."""
         turned = self.turned
         return tuple(
-            convex(
+            make_convex(
                 turned(part.centre),
                 tuple(map(turned, part.straight)),
                 tuple(map(turned, part.round)),
@@ -176,18 +178,18 @@ class Form:
             for part in self.shape.parts
         )
 
-    @lazily
+    @lazy_property
     def volume(self) -> float:
         """Of its box [m^3]."""
         x, y, z = self.size
         return x * y * z
 
-    @lazily
+    @lazy_property
     def footprint(self) -> float:
         """Of its shadow [m^2]."""
         return area(self.outline)
 
-    def forget(self) -> None:
+    def clear_cache(self) -> None:
         """Drop what can be worked out again."""
         del self.__dict__
 
@@ -195,7 +197,7 @@ class Form:
 _EXACTLY = 1e-9
 
 
-class Expanse(Form):
+class RegionForm(Form):
     """A place whose extent is a polygon, seen from the middle of the upright box around it."""
 
     def __init__(self, polygon: Polygon, size: Size, middle: Point) -> None:
@@ -207,41 +209,41 @@ class Expanse(Form):
         """Never: another place has another extent."""
         return False
 
-    def forget(self) -> None:
+    def clear_cache(self) -> None:
         """Drop what can be worked out again, which the region cannot."""
         region = self.region
-        super().forget()
+        super().clear_cache()
         self.region = region
 
-    @lazily
+    @lazy_property
     def is_square(self) -> bool:
         """Whether its outline is its bounds: that is for boxes to say."""
         return False
 
-    @lazily
+    @lazy_property
     def outline(self) -> list[Point]:
         """The convex hull of what it covers."""
         if self.region is None:
             raise errors.InternalError("the solid has no region")
         return hull([point for piece in self.region.pieces for point in piece.corners])
 
-    @lazily
+    @lazy_property
     def footprint(self) -> float:
         """Of what it covers [m^2]."""
         if self.region is None:
             raise errors.InternalError("the solid has no region")
         return self.region.area
 
-    @lazily
+    @lazy_property
     def volume(self) -> float:
         """Of what it covers, as high as it is [m^3]."""
         return self.footprint * self.size[2]
 
 
 @lru_cache(maxsize=1024)
-def expanse(wkt: str, size: Size, middle: Point) -> Expanse:
+def region_form(wkt: str, size: Size, middle: Point) -> RegionForm:
     """The form of a place with this extent, whose bounding box has this size and middle."""
-    return Expanse(read_wkt(wkt), size, middle)
+    return RegionForm(read_wkt(wkt), size, middle)
 
 
 @lru_cache(maxsize=4096)

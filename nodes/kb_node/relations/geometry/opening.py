@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.relations.geometry.fitting import fitted, own_shape
+from semmap.nodes.kb_node.relations.geometry.fitting import fit_model, model_shape
 from semmap.ontology.model_shapes import ConvexPart, Interior, LeafShape, ModelShape, Surface
 from semmap.schemas.entities import Size, Vector
 from semmap.schemas.joints import OPENING, Joint, stated
@@ -30,16 +30,16 @@ def positions_of(model: str | None, size: Size | None, properties: Mapping[str, 
     """Where the joints of a model at a size stand, as far as a map states it; within their limits."""
     if not model or size is None or properties.keys().isdisjoint(OPENING):
         return AS_DRAWN
-    own = own_shape(model)
+    own = model_shape(model)
     if own is None or not own.leaves:
         return AS_DRAWN
-    leaves = fitted(model, size).leaves
+    leaves = fit_model(model, size).leaves
     at = stated(map(_joint, leaves), properties) or {}
     found = tuple(_within(leaf, at.get(leaf.name, 0.0)) for leaf in leaves)
     return found if any(found) else AS_DRAWN
 
 
-def opened(shape: ModelShape, positions: Positions) -> ModelShape:
+def open_shape(shape: ModelShape, positions: Positions) -> ModelShape:
     """A shape whose leaves stand at these positions. Its box, `size_m`, remains that of the shape as drawn.
 
     The hollows of its frame stay, for a cabinet holds what is in it whether its door is open or not. What a

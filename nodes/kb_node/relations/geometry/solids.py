@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import Final
 
 from semmap.nodes.geometry.polygons import Point
-from semmap.nodes.kb_node.relations.geometry.convex import Convex, moved
-from semmap.nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, expanse, form_of
-from semmap.nodes.kb_node.relations.geometry.lazily import lazily
+from semmap.nodes.kb_node.relations.geometry.convex import Convex, translate
+from semmap.nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, form_of, region_form
+from semmap.nodes.kb_node.relations.geometry.lazy_property import lazy_property
 from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions
-from semmap.nodes.kb_node.relations.geometry.placed import Placed, extent_in, joints_in
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity, extent_in, joints_in
 from semmap.ontology.model_shapes import Interior, own_size_m
 from semmap.schemas.entities import Entity, Pose, Size, Vector
 
@@ -121,24 +121,24 @@ class Solid:
         """Where the last of its parts begins [m]: a bookshelf may rest on a table by one of its boards."""
         return self.position[2] + self.form.highest_bottom if self.has_parts else self.bottom
 
-    @lazily
+    @lazy_property
     def outline(self) -> list[Point]:
         """Its shadow on the floor."""
         px, py, _ = self.position
         return [(px + x, py + y) for x, y in self.form.outline]
 
-    @lazily
+    @lazy_property
     def base(self) -> Sequence[Point]:
         """What it stands on: the outline of its lowest parts."""
         px, py, _ = self.position
         return [(px + x, py + y) for x, y in self.form.base] if self.parts else []
 
-    @lazily
+    @lazy_property
     def centre(self) -> Vector:
         """The middle of its box, map frame [m]."""
         return self.to_map((0.0, 0.0, self.size[2] / 2))
 
-    @lazily
+    @lazy_property
     def supports(self) -> tuple[Support, ...]:
         """The surfaces that carry things; the whole top of what has no model."""
         if self.is_place or not self.is_measured or not self.is_upright:
@@ -160,27 +160,27 @@ class Solid:
             for surface in self.form.shape.surfaces
         )
 
-    @lazily
+    @lazy_property
     def parts(self) -> tuple[Convex, ...]:
         """What of it collides, map frame; the whole box of what has no model, nothing of what has no size."""
         if not self.has_parts:
             return ()
-        return tuple([moved(part, self.position) for part in self.form.parts])
+        return tuple([translate(part, self.position) for part in self.form.parts])
 
     @property
     def open_parts(self) -> list[Convex]:
         """Those of its parts that a joint has moved from where they are drawn, map frame."""
         form = self.form
-        moved = [
+        translate = [
             k for leaf, at in zip(form.shape.leaves, form.joints, strict=False) if at for k in leaf.parts
         ]
-        return [self.parts[k] for k in moved] if self.has_parts else []
+        return [self.parts[k] for k in translate] if self.has_parts else []
 
-    def forget(self) -> None:
+    def clear_cache(self) -> None:
         """Drop what can be worked out again, but where it is: of many solids that is most of the memory."""
         del self.__dict__
         if self.form.users <= 1:
-            self.form.forget()
+            self.form.clear_cache()
 
     def to_map(self, point: Vector) -> Vector:
         """A point of its own frame in the map's."""
@@ -194,7 +194,7 @@ class Solid:
         (a, b, c), (d, e, f), (g, h, i) = self.rotation
         return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
 
-    @lazily
+    @lazy_property
     def samples(self) -> list[Vector]:
         """Points spread evenly over its volume, map frame [m]."""
         x, y, z = self.size
@@ -204,7 +204,7 @@ class Solid:
         ]
 
 
-def solid_of(entity: Entity | Placed, before: Solid | None = None) -> Solid | None:
+def solid_of(entity: Entity | PlacedEntity, before: Solid | None = None) -> Solid | None:
     """The solid of an entity; None without a position.
 
     `before` is the one that it replaces: what only moved keeps its form, and what stays at its height keeps
@@ -228,18 +228,18 @@ def solid_of(entity: Entity | Placed, before: Solid | None = None) -> Solid | No
     return Solid(entity.name, pose.position_m, form, entity.place, size is not None, known)
 
 
-def form_in(entity: Entity | Placed, pose: Pose, shape: Shape) -> Form:
+def form_in(entity: Entity | PlacedEntity, pose: Pose, shape: Shape) -> Form:
     """The form of an entity that stands at `pose`, given `shape_of` it."""
     model, size, joints = shape
     found = _expanse(entity, pose.position_m, size) if entity.place else None
     return found or form_of(model, size or UNMEASURED, pose.orientation_wxyz, joints)
 
 
-def _expanse(entity: Entity | Placed, position: Vector, size: Size | None) -> Form | None:
+def _expanse(entity: Entity | PlacedEntity, position: Vector, size: Size | None) -> Form | None:
     """The form of a place whose extent is a polygon; None for a box."""
     if size is None or not (wkt := extent_in(entity)):
         return None
-    return expanse(wkt, size, position[:2])
+    return region_form(wkt, size, position[:2])
 
 
 def _bounds(form: Form, position: Vector) -> Bounds:
@@ -248,7 +248,7 @@ def _bounds(form: Form, position: Vector) -> Bounds:
     return x + low_x, y + low_y, x + high_x, y + high_y
 
 
-def shape_of(entity: Entity | Placed) -> Shape:
+def shape_of(entity: Entity | PlacedEntity) -> Shape:
     """What its form is of: its model, None without parts, its size, or that of its model [m], its joints."""
     size = entity.size_m
     if entity.place:

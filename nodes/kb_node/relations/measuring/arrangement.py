@@ -19,7 +19,7 @@ ALONGSIDE = 0.5
 """Of the height of what hangs that is alongside what it hangs on."""
 
 
-def next_to(space: Space, one: Solid, other: Solid) -> Measure | None:
+def measure_next_to(space: Space, one: Solid, other: Solid) -> Measure | None:
     """Near, on the same support or floor, and nothing between the two; None for what is not near.
 
     `holds` is False, and `share` 0, where the two stand on different things; `share` is 0.5 where something
@@ -35,7 +35,7 @@ def next_to(space: Space, one: Solid, other: Solid) -> Measure | None:
 
 
 def _stand_alike(space: Space, one: Solid, other: Solid) -> bool:
-    ours, theirs = space.whereabouts(one), space.whereabouts(other)
+    ours, theirs = space.spatial_relations(one), space.spatial_relations(other)
     if ours.container is not None or theirs.container is not None:
         return (
             ours.container is not None
@@ -47,7 +47,7 @@ def _stand_alike(space: Space, one: Solid, other: Solid) -> bool:
     return abs(one.bottom - other.bottom) <= space.limits.gap_m
 
 
-def between(space: Space, one: Solid, other: Solid) -> list[Solid]:
+def find_between(space: Space, one: Solid, other: Solid) -> list[Solid]:
     """What is between two things, by name: over or on the strip that joins them, at their height."""
     return sorted(_in_between(space, one, other), key=lambda solid: solid.name)
 
@@ -73,31 +73,31 @@ def _in_between(space: Space, one: Solid, other: Solid) -> Iterator[Solid]:
             yield third
 
 
-def attached(space: Space, solid: Solid, other: Solid) -> Measure | None:
+def measure_attachment(space: Space, solid: Solid, other: Solid) -> Measure | None:
     """Whether one hangs on the side of the other: nothing bears it, and it is against that, off the floor.
 
     None for what is not beside the other, or is borne.
     """
     made = _against(space, solid, other)
-    return None if made is None or is_borne(space, solid) else made
+    return None if made is None or is_supported(space, solid) else made
 
 
-def attachments(space: Space, solid: Solid) -> Iterator[Solid]:
+def find_attachments(space: Space, solid: Solid) -> Iterator[Solid]:
     """What a thing hangs on."""
     margin = space.limits.attached_m
-    if not solid.is_measured or solid.name in space.held:
+    if not solid.is_measured or solid.name in space.holders:
         return
     highest = solid.bottom - space.limits.gap_m
     found = [
         other
-        for other in space.bearers_around(solid, margin)
+        for other in space.supporters_around(solid, margin)
         if other.top > solid.bottom
         and other.bottom < highest
         and not other.is_place
         and (made := _against(space, solid, other))
         and made.holds
     ]
-    if found and not is_borne(space, solid):
+    if found and not is_supported(space, solid):
         yield from sorted(found, key=lambda other: other.name)
 
 
@@ -115,11 +115,11 @@ def _against(space: Space, solid: Solid, other: Solid) -> Measure | None:
     return Measure(holds, apart, share, limit=limits.attached_m)
 
 
-def is_borne(space: Space, solid: Solid) -> bool:
+def is_supported(space: Space, solid: Solid) -> bool:
     """Whether something holds it: from below, were it the floor of its place, or in its grasp."""
-    if solid.name in space.held:
+    if solid.name in space.holders:
         return True
-    container, supports, place = space.whereabouts(solid)
+    container, supports, place = space.spatial_relations(solid)
     if container is not None or supports:
         return True
     return place is not None and abs(solid.bottom - place[0].bottom) <= space.limits.gap_m

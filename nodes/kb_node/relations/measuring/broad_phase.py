@@ -43,7 +43,7 @@ class Cells:
     def entries(self, rows: Ints) -> tuple[Ints, Ints]:
         """The keys of the cells that some cover, and who covers each."""
         wide, deep = self._extent[rows].T
-        who, turn = repeated(wide * deep)
+        who, turn = repeat_rows(wide * deep)
         deep = deep[who]
         x, y = (
             self.low[rows, 0][who] + turn // np.maximum(deep, 1),
@@ -57,19 +57,19 @@ def key(x: Ints, y: Ints) -> Ints:
     return (x << 32) + y
 
 
-def repeated(counts: Ints) -> tuple[Ints, Ints]:
+def repeat_rows(counts: Ints) -> tuple[Ints, Ints]:
     """Each row as often as `counts` says, and which time it is: [2, 1] to [0, 0, 1] and [0, 1, 0]."""
     who = np.repeat(np.arange(len(counts)), counts)
     return who, np.arange(len(who)) - np.repeat(np.cumsum(counts) - counts, counts)
 
 
-def distinct(numbers: Ints) -> Ints:
+def sort_unique(numbers: Ints) -> Ints:
     """In order, once each, as np.unique has them; that loads numpy.ma, which takes longer than most loads."""
     ordered = np.sort(numbers)
-    return ordered[differs(ordered)]
+    return ordered[starts_run(ordered)]
 
 
-def differs(numbers: Ints) -> Bools:
+def starts_run(numbers: Ints) -> Bools:
     """Whether each is another than the one before it, as the first one is."""
     found = np.ones(len(numbers), dtype=bool)
     found[1:] = numbers[1:] != numbers[:-1]
@@ -119,12 +119,12 @@ class BroadPhase:
         cells = Cells(self._bounds[: self._subjects], margin_m)
         keys, subject = cells.entries(np.flatnonzero(cells.is_filed))
         begin = np.searchsorted(self._keys, keys)
-        which, turn = repeated(np.searchsorted(self._keys, keys, side="right") - begin)
+        which, turn = repeat_rows(np.searchsorted(self._keys, keys, side="right") - begin)
         one, other = subject[which], self._who[begin[which] + turn]
         meets = self._meet(one, other, margin_m)
         one, other, keys = one[meets], other[meets], keys[which[meets]]
         if self._grid.crowds:  # then it may not count in the first cell that they share
-            joined = distinct(one * len(self._solids) + other)
+            joined = sort_unique(one * len(self._solids) + other)
             one, other = np.divmod(joined, max(len(self._solids), 1))
         else:
             first = np.maximum(cells.low[one], self._low[other])
@@ -149,7 +149,7 @@ class BroadPhase:
         return found
 
 
-def file(grid: Grid, solids: Sequence[Solid]) -> None:
+def add_to_grid(grid: Grid, solids: Sequence[Solid]) -> None:
     """Add many to a grid."""
     cells = Cells(bounds_of(solids))
     for row in np.flatnonzero(~cells.is_filed).tolist():
@@ -157,7 +157,7 @@ def file(grid: Grid, solids: Sequence[Solid]) -> None:
     keys, who = cells.entries(np.flatnonzero(cells.is_filed))
     order = np.argsort(keys, kind="stable")
     keys, filed = keys[order], [solids[row] for row in who[order].tolist()]
-    begins = np.flatnonzero(differs(keys))
+    begins = np.flatnonzero(starts_run(keys))
     ends = np.append(begins, len(keys))[1:]
     for cell, begin, end in zip(_decoded(keys[begins]), begins.tolist(), ends.tolist(), strict=True):
         grid.add_to(cell, filed[begin:end])
@@ -169,21 +169,21 @@ def bounds_of(solids: Sequence[Solid]) -> Floats:
     return np.fromiter(flat, np.float64, 4 * len(solids)).reshape(-1, 4)
 
 
-def covered(solids: Sequence[Solid], margin_m: float = 0.0) -> list[Cell]:
+def find_cells(solids: Sequence[Solid], margin_m: float = 0.0) -> list[Cell]:
     """The cells that are covered by some of these, or are within a margin of one."""
     cells = Cells(bounds_of(solids), margin_m)
     keys, _ = cells.entries(np.flatnonzero(cells.is_filed))
-    return list(_decoded(distinct(keys)))
+    return list(_decoded(sort_unique(keys)))
 
 
-def beside(grid: Grid, solids: Sequence[Solid], margin_m: float) -> list[Solid] | None:
+def find_nearby(grid: Grid, solids: Sequence[Solid], margin_m: float) -> list[Solid] | None:
     """Who is filed where some solids are, or within a margin; None for everybody."""
     if Cells(bounds_of(solids), margin_m).is_large.any():
         return None
-    return grid.filed_in(covered(solids, margin_m))
+    return grid.find_in_cells(find_cells(solids, margin_m))
 
 
-def by_place(solids: Sequence[Solid]) -> list[Solid]:
+def sort_by_place(solids: Sequence[Solid]) -> list[Solid]:
     """In strips across the map, so that those who follow one another have the same around them."""
     low = np.floor_divide(bounds_of(solids)[:, :2], CELL_M)
     return [solids[row] for row in np.lexsort(low.T[::-1]).tolist()]

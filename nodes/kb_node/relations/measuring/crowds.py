@@ -70,7 +70,7 @@ class Crowd:
         return self._solids[self._ranked[rank][1]] if rank < len(self._ranked) else None
 
 
-def sentence(things: int, cell: tuple[int, int] | None, cell_m: float) -> str:
+def describe_crowd(things: int, cell: tuple[int, int] | None, cell_m: float) -> str:
     """What is to be said of so many in a cell; None is that of what is very large."""
     where = "too large for the spatial index"
     if cell is not None:

@@ -123,14 +123,14 @@ class Grid:
             if (its := solid.bounds)[0] <= x1 and its[2] >= x0 and its[1] <= y1 and its[3] >= y0
         ]
 
-    def filed_in(self, cells: Iterable[Cell]) -> list[Solid]:
+    def find_in_cells(self, cells: Iterable[Cell]) -> list[Solid]:
         """Once each who is filed under some cells, or is in none."""
         found = dict(self._large)
         for cell in cells:
             found.update(self._cells.get(cell, {}))
         return list(found)
 
-    def counted_in(self, cells: Iterable[Cell], also: Iterable[Solid] = ()) -> list[Solid]:
+    def find_counted_in(self, cells: Iterable[Cell], also: Iterable[Solid] = ()) -> list[Solid]:
         """Once each: `also`, and who counts in some cells, or is in none."""
         found = dict.fromkeys(also)
         for cell in (_LARGE, *cells):
@@ -152,7 +152,7 @@ class Grid:
         """Whether it is in a crowd, which may have members that do not count."""
         return bool(self.crowds) and not self.crowds.keys().isdisjoint(_cells(solid.bounds) or (_LARGE,))
 
-    def told_crowds(self, names: Collection[str] | None = None) -> list[str]:
+    def describe_crowds(self, names: Collection[str] | None = None) -> list[str]:
         """Where not all count, a sentence each, the most crowded first; with `names`, where one of these is.
 
         What is beside a cell that is told of is left out.
@@ -168,7 +168,7 @@ class Grid:
         for count, cell, is_large in sorted(found):
             if not any(_adjoin(cell, other) and is_large == large for _, other, large in told):
                 told.append((count, cell, is_large))
-        return [crowds.sentence(-count, None if large else cell, CELL_M) for count, cell, large in told]
+        return [crowds.describe_crowd(-count, None if large else cell, CELL_M) for count, cell, large in told]
 
     def _filed(self, cells: list[Cell] | None) -> Iterable[Solid]:
         """Once each who is filed under some cells; under all for None."""

@@ -121,7 +121,7 @@ def _within_rim(
     return None
 
 
-def cradles(lower: Solid, upper: Solid, made: Measure) -> bool:
+def is_in_open_hollow(lower: Solid, upper: Solid, made: Measure) -> bool:
     """Whether what is on another is so in an open hollow of it, as what stands in a tray is.
 
     Most of the base is over the floor of the hollow, so that nothing below the other one can bear it.
@@ -151,7 +151,7 @@ def _covered(upper: Solid, lower: Solid, height: float) -> float:
     if len(bearing) == len(upper.parts) == 1 and bearing[0].is_square and upper.parts[0].is_square:
         return _share_of_box(upper.parts[0], bearing[0])
     base = upper.base
-    tops = [part.shadow for part in bearing]
+    tops = [part.projection for part in bearing]
     for top in tops:
         if covers(top, base):
             return 1.0
@@ -176,7 +176,7 @@ def is_balanced(upper: Solid, lower: Iterable[Solid], height: float) -> bool:
             for other in lower
             for part in other.parts
             if part.has_flat_top and abs(part.high[2] - height) <= LOWEST_M
-            for corner in clipped(base, part.shadow)
+            for corner in clipped(base, part.projection)
         ]
     )
     x0, y0, x1, y1 = (limit(along) for limit in (min, max) for along in zip(*base, strict=True))
@@ -309,7 +309,7 @@ def _pieces(solid: Solid) -> Iterator[_Piece]:
     """Its box, and what of it stands open."""
     yield solid.outline, solid.bottom, solid.top
     for part in solid.open_parts:
-        yield part.shadow, part.low[2], part.high[2]
+        yield part.projection, part.low[2], part.high[2]
 
 
 def _gap_of_pieces(one: _Piece, other: _Piece) -> float:

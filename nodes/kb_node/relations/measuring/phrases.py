@@ -10,7 +10,7 @@ from semmap.nodes.kb_node.relations.measuring.measures import Measure, hollow_ar
 from semmap.schemas.joints import OPEN_FROM, Joint, in_words
 from semmap.schemas.relations import RelationName
 
-SPOKEN: Final[dict[RelationName, str]] = {
+PHRASES: Final[dict[RelationName, str]] = {
     "isOn": "is on",
     "isInside": "is inside",
     "isLocatedIn": "is in",
@@ -34,36 +34,36 @@ _LEVEL_M = 0.00005
 """What would be 0.0 mm."""
 
 
-def spoken(relation: RelationName, holds: bool = True) -> str:
+def phrase_relation(relation: RelationName, holds: bool = True) -> str:
     """A relation as a verb: "is on", "is not on", "does not touch"."""
     if holds:
-        return SPOKEN[relation]
-    return "does not touch" if relation == "touches" else SPOKEN[relation].replace("is ", "is not ", 1)
+        return PHRASES[relation]
+    return "does not touch" if relation == "touches" else PHRASES[relation].replace("is ", "is not ", 1)
 
 
-def metres(value: float) -> str:
+def format_length(value: float) -> str:
     """A length as a person reads it."""
     if abs(value) < 0.01:
         return f"{1000.0 * value:.1f} mm"
     return f"{100.0 * value:.1f} cm" if abs(value) < 1.0 else f"{value:.2f} m"
 
 
-def height_over(gap_m: float) -> str:
+def format_height(gap_m: float) -> str:
     """How far a bottom is above or below a surface, as an adverbial that "a surface" follows."""
     if abs(gap_m) < _LEVEL_M:
         return "level with"
-    return f"{metres(abs(gap_m))} {'above' if gap_m > 0.0 else 'below'}"
+    return f"{format_length(abs(gap_m))} {'above' if gap_m > 0.0 else 'below'}"
 
 
-def why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> str:
+def explain_measure(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> str:
     """The measurement behind a relation, as a clause."""
     match relation:
         case "isOn" if made.holds and made.share == 0.0:
             return f"nothing else bears it, and it rests against a steep side of {other.name}"
         case "isOn":
             return (
-                f"its bottom is {height_over(made.gap_m)} a surface of {other.name},"
-                f" at {metres(made.height_m)}, and {made.share:.0%} of its base is over it"
+                f"its bottom is {format_height(made.gap_m)} a surface of {other.name},"
+                f" at {format_length(made.height_m)}, and {made.share:.0%} of its base is over it"
             )
         case "isInside":
             return f"{made.share:.0%} of its volume is within {_hollow(solid, other)}"
@@ -72,18 +72,18 @@ def why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> st
             is_ = "is" if made.share > 0.0 else "is not"
             return f"{part} {is_} within {other.name}"
         case "isUnder":
-            return f"its top is {metres(made.gap_m)} below {other.name}, which is over {made.share:.0%} of it"
+            return f"its top is {format_length(made.gap_m)} below {other.name}, which is over {made.share:.0%} of it"
         case "isAbove":
-            return f"it is {metres(made.gap_m)} above {other.name}, and over {made.share:.0%} of that"
+            return f"it is {format_length(made.gap_m)} above {other.name}, and over {made.share:.0%} of that"
         case "isAttachedTo":
-            return f"nothing bears it, and it is {metres(made.gap_m)} from the side of {other.name}"
+            return f"nothing bears it, and it is {format_length(made.gap_m)} from the side of {other.name}"
         case "touches":
-            return f"they are {metres(made.gap_m)} apart" if made.gap_m > _LEVEL_M else "they meet"
+            return f"they are {format_length(made.gap_m)} apart" if made.gap_m > _LEVEL_M else "they meet"
         case "isNextTo":
-            return f"they are {metres(made.gap_m)} apart, stand on the same, and nothing is between them"
-    return (
-        f"they are {metres(made.gap_m)} apart (near is up to {metres(made.limit)} for things of their sizes)"
-    )
+            return (
+                f"they are {format_length(made.gap_m)} apart, stand on the same, and nothing is between them"
+            )
+    return f"they are {format_length(made.gap_m)} apart (near is up to {format_length(made.limit)} for things of their sizes)"
 
 
 def _hollow(solid: Solid, other: Solid) -> str:

@@ -10,10 +10,10 @@ from typing import Final, NamedTuple
 from semmap.nodes.kb_node.progress import parts
 from semmap.nodes.kb_node.relations.geometry.columns import solids_of
 from semmap.nodes.kb_node.relations.geometry.forms import Bounds
-from semmap.nodes.kb_node.relations.geometry.placed import Placed, holder_in
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity, holder_in
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from semmap.nodes.kb_node.relations.measuring import measures
-from semmap.nodes.kb_node.relations.measuring.broad_phase import beside, file
+from semmap.nodes.kb_node.relations.measuring.broad_phase import add_to_grid, find_nearby
 from semmap.nodes.kb_node.relations.measuring.grid import Grid
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
@@ -26,7 +26,7 @@ MANY: Final = 100
 """So many are put, and worked out, in arrays; for fewer these take longer."""
 
 
-class Whereabouts(NamedTuple):
+class SpatialRelations(NamedTuple):
     """What a thing is inside, what it is on, and in which place; what it is inside it is not on."""
 
     container: Found | None
@@ -38,20 +38,22 @@ class Whereabouts(NamedTuple):
 class Space:
     """The solids of a map, found by where they are."""
 
-    def __init__(self, entities: Iterable[Entity | Placed] = (), limits: Thresholds | None = None) -> None:
+    def __init__(
+        self, entities: Iterable[Entity | PlacedEntity] = (), limits: Thresholds | None = None
+    ) -> None:
         self.limits = limits or Thresholds()
         self.solids: dict[str, Solid] = {}
         self.grid: Final = Grid()
         self._raised: set[str] = set()
         """The things that are above the floor or of a size of their own."""
-        self.held: Final[dict[str, str]] = {}
+        self.holders: Final[dict[str, str]] = {}
         """What is grasped, and by what: nothing else bears it, but for a tray that is itself carried."""
-        self.memory: Memory | None = None
+        self.cache: SpaceCache | None = None
         """What need not be worked out again, while `remembering`."""
         for _ in self.put_all(entities):
             pass
 
-    def put_all(self, entities: Iterable[Entity | Placed]) -> Iterator[list[Solid]]:
+    def put_all(self, entities: Iterable[Entity | PlacedEntity]) -> Iterator[list[Solid]]:
         """`put` many, some thousand at a time; the solids of each step."""
         for some in parts(entities, _STEP, _nothing):
             if len(some) < MANY:
@@ -59,11 +61,11 @@ class Space:
                 continue
             newest = {entity.name: entity for entity in some}
             for name in newest.keys() & self.solids.keys() if self.solids else ():
-                self.take(name)
-            self.held.update((name, by) for name, entity in newest.items() if (by := holder_in(entity)))
+                self.remove(name)
+            self.holders.update((name, by) for name, entity in newest.items() if (by := holder_in(entity)))
             solids = solids_of(newest.values())
             self.solids.update((solid.name, solid) for solid in solids)
-            file(self.grid, solids)
+            add_to_grid(self.grid, solids)
             self._raised.update(
                 solid.name
                 for solid in solids
@@ -71,13 +73,13 @@ class Space:
             )
             yield solids
 
-    def put(self, entity: Entity | Placed) -> Solid | None:
+    def put(self, entity: Entity | PlacedEntity) -> Solid | None:
         """Add an entity, or have it where it is now; its solid, if it has a position."""
-        solid = solid_of(entity, self.take(entity.name))
+        solid = solid_of(entity, self.remove(entity.name))
         if solid is not None:
             self._add(solid)
             if by := holder_in(entity):
-                self.held[solid.name] = by
+                self.holders[solid.name] = by
             if not solid.is_place and (solid.position[2] != 0.0 or entity.size_m is not None):
                 self._raised.add(solid.name)
         return solid
@@ -87,39 +89,41 @@ class Space:
         """Whether no thing has a height or a size of its own: a plan tells nothing of what is on what."""
         return not self._raised
 
-    def take(self, name: str) -> Solid | None:
+    def remove(self, name: str) -> Solid | None:
         """Take an entity out, if it is there; its solid."""
         solid = self.solids.pop(name, None)
         if solid is not None:
             self.grid.remove(solid)
             self._raised.discard(name)
-            self.held.pop(name, None)
+            self.holders.pop(name, None)
         return solid
 
     @contextmanager
-    def supposing(self, entities: Iterable[Entity | Placed], without: Iterable[str] = ()) -> Iterator[None]:
+    def with_changes(
+        self, entities: Iterable[Entity | PlacedEntity], without: Iterable[str] = ()
+    ) -> Iterator[None]:
         """Within, these entities are as given here, and those without are not there."""
         entities, without = tuple(entities), tuple(without)
         names = {*(entity.name for entity in entities), *without}
         before = [solid for name in names if (solid := self.solids.get(name)) is not None]
         raised = self._raised & names
-        held = {name: self.held[name] for name in names & self.held.keys()}
+        holders = {name: self.holders[name] for name in names & self.holders.keys()}
         try:
             for name in without:
-                self.take(name)
+                self.remove(name)
             for entity in entities:
                 self.put(entity)
             yield
         finally:
             for name in names:
-                self.take(name)
+                self.remove(name)
             for solid in before:
                 self._add(solid)
             self._raised |= raised
-            self.held.update(held)
-            self.shifted()
+            self.holders.update(holders)
+            self.pop_shifted()
 
-    def shifted(self) -> list[Solid]:
+    def pop_shifted(self) -> list[Solid]:
         """Who came to count, or does not count any more, since this was asked last."""
         grid = self.grid
         if not grid.shifted:
@@ -135,11 +139,11 @@ class Space:
     def around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
         """Whose bounds meet its own, or are within a margin of them."""
         widest_m = self.limits.attached_m
-        if self.memory is None or self.memory.around is None or margin_m > widest_m:
+        if self.cache is None or self.cache.around is None or margin_m > widest_m:
             return self.grid.around(solid.bounds, margin_m, solid)
-        around = self.memory.around.get(solid)
+        around = self.cache.around.get(solid)
         if around is None:
-            around = self.memory.around[solid] = self.grid.around(solid.bounds, widest_m, solid)
+            around = self.cache.around[solid] = self.grid.around(solid.bounds, widest_m, solid)
         if margin_m == widest_m:
             return around
         return [other for other in around if measures.overlap(solid.bounds, other.bounds, margin_m)]
@@ -150,7 +154,7 @@ class Space:
             return self.around(solid, margin_m)
         return [other for other in self.grid.counted_around(solid.bounds, margin_m) if other is not solid]
 
-    def bearers_around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
+    def supporters_around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
         """Those of them who may bear and hold it; of what does not count itself, only what is larger."""
         if not self.grid.crowds:
             return self.around(solid, margin_m)
@@ -167,41 +171,41 @@ class Space:
         """Whether there is more around it than is looked at."""
         return self.grid.is_crowded(solid)
 
-    def beside(self, solids: Sequence[Solid], margin_m: float) -> Iterable[Solid]:
+    def find_nearby(self, solids: Sequence[Solid], margin_m: float) -> Iterable[Solid]:
         """Who may be within a margin of many: all who are there or thereabouts."""
-        return beside(self.grid, solids, margin_m) or self.solids.values()
+        return find_nearby(self.grid, solids, margin_m) or self.solids.values()
 
-    def crowds(self, names: Collection[str] | None = None) -> list[str]:
+    def describe_crowds(self, names: Collection[str] | None = None) -> list[str]:
         """Where not all count, a sentence each, the most crowded first; with `names`, where one is."""
-        return self.grid.told_crowds(names)
+        return self.grid.describe_crowds(names)
 
-    def within(self, bounds: Bounds) -> list[Solid]:
+    def find_within(self, bounds: Bounds) -> list[Solid]:
         """Whose bounds meet these."""
         return self.grid.around(bounds)
 
-    def remembering(self, *, of_few: bool = False) -> Memory:
+    def caching(self, *, of_few: bool = False) -> SpaceCache:
         """Within a `with`, nothing changes, so that whereabouts need to be worked out once only.
 
         Where it is `of_few` that anything is asked, who is around them is remembered, too.
         """
-        return Memory(self, of_few=of_few)
+        return SpaceCache(self, of_few=of_few)
 
-    def whereabouts(self, solid: Solid) -> Whereabouts:
+    def spatial_relations(self, solid: Solid) -> SpatialRelations:
         """The smallest hollow that it is in, the nearest surface below it, the smallest place around it."""
-        if self.memory is None:
-            return self._whereabouts(solid)
-        known = self.memory.whereabouts.get(solid.name)
+        if self.cache is None:
+            return self._compute_spatial_relations(solid)
+        known = self.cache.spatial_relations.get(solid.name)
         if known is None:
-            known = self.memory.whereabouts[solid.name] = self._whereabouts(solid)
+            known = self.cache.spatial_relations[solid.name] = self._compute_spatial_relations(solid)
         return known
 
-    def _whereabouts(self, solid: Solid) -> Whereabouts:
+    def _compute_spatial_relations(self, solid: Solid) -> SpatialRelations:
         limits = self.limits
         container: Found | None = None
         place: Found | None = None
         below: list[Found] = []
         least = solid.bottom - limits.gap_m - 1e-6
-        for other in self.bearers_around(solid):
+        for other in self.supporters_around(solid):
             if other.is_place:
                 made = measures.within(solid, other, limits)
                 if made and made.holds and (place is None or _area(other) < _area(place[0])):
@@ -216,9 +220,11 @@ class Space:
             if made is not None:
                 below.append((other, made))
         floor = None if place is None else solid.bottom - place[0].bottom
-        return Whereabouts(container, self._supports(solid, below, container, floor) if below else (), place)
+        return SpatialRelations(
+            container, self._supports(solid, below, container, floor) if below else (), place
+        )
 
-    def may_bear(self, bearer: Solid, solid: Solid) -> bool:
+    def may_support(self, bearer: Solid, solid: Solid) -> bool:
         """Whether one is in a hollow of another or touches it from above: else it is not among its supports.
 
         That takes a look at the two; `whereabouts` looks at all that is around.
@@ -237,9 +243,9 @@ class Space:
 
         So does what is taken along with it, as a bowl on the tray does an apple.
         """
-        if not self.held or (holder := self.held.get(solid.name)) is None:
+        if not self.holders or (holder := self.holders.get(solid.name)) is None:
             return True
-        return holder in self.held and holder in (bearer.name, self.held.get(bearer.name))
+        return holder in self.holders and holder in (bearer.name, self.holders.get(bearer.name))
 
     def _supports(
         self, solid: Solid, below: list[Found], container: Found | None, floor_m: float | None
@@ -258,7 +264,7 @@ class Space:
         gaps = [made.gap_m for _, made in leaning]
         below = [found for found in below if found[1].holds and not self._is_below(solid, *found)]
         on_floor = floor_m is not None and abs(floor_m) <= limits.gap_m
-        trays = [made.height_m for other, made in below if measures.cradles(other, solid, made)]
+        trays = [made.height_m for other, made in below if measures.is_in_open_hollow(other, solid, made)]
         if trays:
             lowest = max(trays) - limits.contact_m
             below = [found for found in below if found[1].height_m >= lowest]
@@ -292,24 +298,24 @@ class Space:
         )
 
 
-class Memory:
+class SpaceCache:
     """What was worked out of a space that is as it was; it is asked for within a `with`."""
 
-    __slots__ = ("_space", "around", "whereabouts")
+    __slots__ = ("_space", "around", "spatial_relations")
 
     def __init__(self, space: Space, *, of_few: bool) -> None:
         """Nothing yet."""
         self._space = space
-        self.whereabouts: dict[str, Whereabouts] = {}
+        self.spatial_relations: dict[str, SpatialRelations] = {}
         """By name."""
         self.around: dict[Solid, list[Solid]] | None = {} if of_few else None
         """Who is within the margin of what hangs; of many that would take too much room."""
 
     def __enter__(self) -> None:
-        self._space.memory = self
+        self._space.cache = self
 
     def __exit__(self, *_: object) -> None:
-        self._space.memory = None
+        self._space.cache = None
 
 
 def _nothing() -> None:

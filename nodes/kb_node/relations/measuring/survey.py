@@ -21,18 +21,18 @@ from semmap.nodes.kb_node.relations.geometry.planar import GUARD
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.arrangement import ALONGSIDE, BESIDE_M
-from semmap.nodes.kb_node.relations.measuring.bearing import bearing
 from semmap.nodes.kb_node.relations.measuring.broad_phase import (
     BroadPhase,
-    covered,
-    differs,
-    distinct,
-    repeated,
+    find_cells,
+    repeat_rows,
+    sort_unique,
+    starts_run,
 )
 from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.support_pairs import find_supports
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 
-NOBODY: Final = -1
+NO_ROW: Final = -1
 _NEAREST_M = 0.01
 """Gaps that differ by more than this are never equally near to a centimetre."""
 
@@ -48,7 +48,7 @@ class Survey:
         self._columns: Final = Columns(_with_around(space, subjects))
         self.solids: Final[Sequence[Solid]] = self._columns.solids
         """The subjects, and then those around them: who is meant by a row below."""
-        self.held: Final = space.held
+        self.holders: Final = space.holders
         """The names of those that something grasps."""
         self.is_open = np.zeros(count, dtype=bool)
         """(S,) whether it has to be measured what each is inside, on and in."""
@@ -56,10 +56,10 @@ class Survey:
         """(S,) whether it has to be measured what each hangs on."""
         self.hangs_on: dict[int, list[int]] = {}
         """By row, what some hang on of whom that need not be."""
-        self.container: Final[Ints] = np.full(count, NOBODY)
-        """(S,) rows of `solids`: what each is inside, if it is not open; `NOBODY` for nothing."""
-        self.support: Final[Ints] = np.full(count, NOBODY)
-        self.place: Final[Ints] = np.full(count, NOBODY)
+        self.container: Final[Ints] = np.full(count, NO_ROW)
+        """(S,) rows of `solids`: what each is inside, if it is not open; `NO_ROW` for nothing."""
+        self.support: Final[Ints] = np.full(count, NO_ROW)
+        self.place: Final[Ints] = np.full(count, NO_ROW)
         if _are_usual(space.limits):
             with np.errstate(all="ignore"):  # what is very far away is not plain, whatever comes out of it
                 self._look()
@@ -85,7 +85,7 @@ class Survey:
         self._find_what_hangs(*hanging)
 
     def _pairs(self, broad: BroadPhase, margin_m: float) -> tuple[Ints, Ints, Bools]:
-        """Who may bear and hold each, as `Space.bearers_around` has it, and of whom that is not known."""
+        """Who may bear and hold each, as `Space.supporters_around` has it, and of whom that is not known."""
         columns, grid = self._columns, self._space.grid
         one, other, unknown = broad.pairs(margin_m)
         if grid.crowds:
@@ -98,7 +98,7 @@ class Survey:
         self, into: Ints, one: Ints, other: Ints, size: Callable[[Solid], tuple[float, str]]
     ) -> None:
         """Of several that one is in the smallest."""
-        rows = distinct(other).tolist()
+        rows = sort_unique(other).tolist()
         sizes = [size(self.solids[row]) for row in rows]
         rank = np.zeros(len(self.solids), dtype=np.int64)
         rank[[rows[k] for k in sorted(range(len(rows)), key=sizes.__getitem__)]] = np.arange(len(rows))
@@ -144,7 +144,7 @@ class Survey:
 
     def _floor(self) -> tuple[Floats, Bools]:
         """(S,) how far each is above the floor of its place, and whether it has one."""
-        bottom, has_place = self._columns.bottom, self.place != NOBODY
+        bottom, has_place = self._columns.bottom, self.place != NO_ROW
         return bottom[: len(self.place)] - np.where(has_place, bottom[self.place], 0.0), has_place
 
     # What is inside and on what
@@ -158,10 +158,10 @@ class Survey:
         self.is_open[one[~sure]] = True
         one, other = one[sure], other[sure]
         self._find_containers(one, other)
-        found = bearing(columns, one, other, limits)
+        found = find_supports(columns, one, other, limits)
         # What is inside something is on nothing that is not in there, and so smaller than that.
         container = self.container[found.upper]
-        has_container = container != NOBODY
+        has_container = container != NO_ROW
         counts = ~has_container | (columns.volume[found.lower] < columns.volume[container])
         self.is_open[found.upper[counts & (~found.holds | has_container)]] = True
         counts &= found.holds
@@ -175,7 +175,7 @@ class Survey:
         one, other, count = one[may], other[may], count[may]
         if not len(one):
             return
-        pair, turn = repeated(count)
+        pair, turn = repeat_rows(count)
         i, j = one[pair], other[pair]
         form, its = columns.form[i], columns.form[j]
         hollow = forms.hollows.first[its] + turn
@@ -210,11 +210,11 @@ class Survey:
         asked[one] = True
         on_floor = np.flatnonzero(asked & has_place & (np.abs(floor) < self._limits.gap_m + GUARD))
         one = np.concatenate([one, on_floor])
-        other = np.concatenate([other, np.full(len(on_floor), NOBODY)])
+        other = np.concatenate([other, np.full(len(on_floor), NO_ROW)])
         away = np.abs(np.concatenate([gap, floor[on_floor]]))
         order = np.lexsort((away, one))
         one, other, away = one[order], other[order], away[order]
-        is_nearest = differs(one)
+        is_nearest = starts_run(one)
         self.support[one[is_nearest]] = other[is_nearest]
         # What stands in a tray is on nothing below the tray, however near that is.
         self.is_open[
@@ -253,7 +253,7 @@ class Survey:
         """Of those that something may hold, who is borne does not hang."""
         floor, has_place = self._floor()
         away = np.abs(floor) - self._limits.gap_m
-        is_borne = (self.container != NOBODY) | (self.support != NOBODY) | (has_place & (away < -GUARD))
+        is_borne = (self.container != NO_ROW) | (self.support != NO_ROW) | (has_place & (away < -GUARD))
         may_be_borne = self.is_open | (has_place & (np.abs(away) <= GUARD))
         self.may_hang &= self.is_open | ~is_borne
         self.may_hang[one[may_be_borne[one]]] = True
@@ -266,7 +266,7 @@ def _with_around(space: Space, subjects: Sequence[Solid]) -> Sequence[Solid]:
     """The subjects, and then all who may be beside them."""
     if 2 * len(subjects) > len(space.solids):
         return list(dict.fromkeys(chain(subjects, space.solids.values())))
-    return space.grid.counted_in(covered(subjects, space.limits.attached_m), subjects)
+    return space.grid.find_counted_in(find_cells(subjects, space.limits.attached_m), subjects)
 
 
 def _are_usual(limits: Thresholds) -> bool:

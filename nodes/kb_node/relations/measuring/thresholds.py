@@ -68,7 +68,7 @@ ANNOTATIONS: Final = (
 )
 
 
-def of_tbox(values: Callable[[Term, Term], Iterable[Term]]) -> Thresholds:
+def read_thresholds(values: Callable[[Term, Term], Iterable[Term]]) -> Thresholds:
     """The thresholds that a TBox says, and the usual ones for what it does not say.
 
     `values(property, annotation)` are the objects of such triples. Raises BadRequest for no threshold.

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from semmap.nodes.kb_node.relations.geometry.convex import contact, convex
+from semmap.nodes.kb_node.relations.geometry.convex import contact, make_convex
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.space import Space
@@ -51,7 +51,7 @@ class Side(NamedTuple):
     by_m: float
 
 
-def sides(space: Space, solid: Solid, view: View) -> Iterator[Side]:
+def list_sides(space: Space, solid: Solid, view: View) -> Iterator[Side]:
     """Left of, right of, in front of and behind its neighbours, as a viewer sees them.
 
     The vantage is the viewer's, the front of a relatum is its side towards the viewer (Tenbrink and Kuhn
@@ -65,7 +65,7 @@ def sides(space: Space, solid: Solid, view: View) -> Iterator[Side]:
             yield Side(relation, other, by_m)
 
 
-def on_side(space: Space, relation: RelationName, solid: Solid, other: Solid, view: View) -> bool:
+def is_on_side(space: Space, relation: RelationName, solid: Solid, other: Solid, view: View) -> bool:
     """Whether a thing is left of, right of, in front of or behind a neighbour, as a viewer sees the two."""
     if other.is_place or measures.gap(solid, other) > 2.0 * space.limits.near_most_m:
         return False
@@ -80,7 +80,7 @@ def _as_faced(solid: Solid, other: Solid, view: View) -> Iterator[tuple[Relation
         yield from _directions(solid, other, (-fx / length, -fy / length), mirrored=True)
 
 
-def own_sides(solid: Solid, viewer: Solid) -> Iterator[Side]:
+def list_intrinsic_sides(solid: Solid, viewer: Solid) -> Iterator[Side]:
     """On which side of a thing that has a front, by that front."""
     for relation, by_m in _directions(solid, viewer, View.of(viewer).ahead, mirrored=False):
         yield Side(relation, viewer, by_m)
@@ -102,14 +102,14 @@ def _directions(
         yield "isInFrontOf" if ahead > 0 else "isBehind", abs(ahead)
 
 
-class Seen(NamedTuple):
+class Visibility(NamedTuple):
     """The share of the rays that reach a thing, and who is most in their way."""
 
     share: float
     blocker: str | None
 
 
-def seen(space: Space, solid: Solid, view: View, viewer: Solid | None = None) -> Seen:
+def measure_visibility(space: Space, solid: Solid, view: View, viewer: Solid | None = None) -> Visibility:
     """How much of a thing can be seen: rays to points spread over it that nothing is in the way of.
 
     What collides is opaque. What is beside or behind the viewer is out of view.
@@ -129,7 +129,9 @@ def seen(space: Space, solid: Solid, view: View, viewer: Solid | None = None) ->
             free += 1
         else:
             blockers[blocker] = blockers.get(blocker, 0) + 1
-    return Seen(free / len(points), max(blockers, key=lambda name: (blockers[name], name), default=None))
+    return Visibility(
+        free / len(points), max(blockers, key=lambda name: (blockers[name], name), default=None)
+    )
 
 
 def _in_view(view: View, point: Vector) -> bool:
@@ -142,13 +144,13 @@ def _near_the_sight(space: Space, solid: Solid, view: View) -> list[Solid]:
     """Whoever may be in the way."""
     x, y, _ = view.eyes
     x0, y0, x1, y1 = solid.bounds
-    return [o for o in space.within((min(x, x0), min(y, y0), max(x, x1), max(y, y1))) if not o.is_place]
+    return [o for o in space.find_within((min(x, x0), min(y, y0), max(x, x1), max(y, y1))) if not o.is_place]
 
 
 def _blocks(other: Solid, eyes: Vector, point: Vector) -> bool:
     middle = tuple((a + b) / 2 for a, b in zip(eyes, point, strict=True))
     half = tuple((b - a) / 2 for a, b in zip(eyes, point, strict=True))
-    ray = convex(middle, (half,), ())  # type: ignore[arg-type]
+    ray = make_convex(middle, (half,), ())  # type: ignore[arg-type]
     return any(
         all(ray.low[k] <= part.high[k] and part.low[k] <= ray.high[k] for k in range(3))
         and contact(ray, part, 0.0).distance < 0.0

@@ -11,7 +11,7 @@ _ROWS: Final = 2000
 _WHAT: Final = "the deletion of compacted commits"
 
 
-def are_there(journal: Journal) -> bool:
+def exist(journal: Journal) -> bool:
     """Is something still there that was compacted?"""
     with journal.file.reading() as db:
         (first,) = db.execute("SELECT min(seq) FROM commits").fetchone()

@@ -17,9 +17,9 @@ from msgspec import Struct, msgpack
 
 from semmap.nodes.kb_node.progress import parts
 from semmap.nodes.kb_node.reasoner.abox.columns import Columns
-from semmap.nodes.kb_node.storage.encoding import columns_encoding, dense
+from semmap.nodes.kb_node.storage.encoding import body_encoding, columns_encoding
 from semmap.nodes.kb_node.storage.encoding.columns_encoding import StoredColumns
-from semmap.nodes.kb_node.storage.encoding.frames import Compressing, unpacked
+from semmap.nodes.kb_node.storage.encoding.frames import FrameCompressor, decompress_frames
 from semmap.nodes.runtime.shared_parts import SharedParts
 from semmap.schemas import codec, errors
 from semmap.schemas.entities import Entity
@@ -80,11 +80,14 @@ _entities = codec.decoder(list[Entity])
 
 def encode(checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) -> bytes:
     """The body of a checkpoint. `progress` is called between frames."""
-    with Compressing() as beside:
-        columns = None if checkpoint.columns is None else columns_encoding.store(checkpoint.columns, beside)
-        triples = [beside.dense(frame) for frame in _frames_of_triples(checkpoint.triples, progress)]
+    with FrameCompressor() as compressor:
+        columns = (
+            None if checkpoint.columns is None else columns_encoding.store(checkpoint.columns, compressor)
+        )
+        triples = [compressor.compress(frame) for frame in _frames_of_triples(checkpoint.triples, progress)]
         entities = [
-            beside.dense(msgpack.encode(part)) for part in parts(checkpoint.entities, _ENTITIES, progress)
+            compressor.compress(msgpack.encode(part))
+            for part in parts(checkpoint.entities, _ENTITIES, progress)
         ]
         body = _Body(
             seq=checkpoint.seq,
@@ -99,12 +102,12 @@ def encode(checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) 
 def decode(body: bytes, progress: Callable[[], None] = lambda: None) -> Checkpoint:
     """What was encoded; equal terms are one object, and entities share what they have in common."""
     if not body.startswith(_MARK):
-        old: _Whole = dense.decode(body, _Whole)
+        old: _Whole = body_encoding.decode(body, _Whole)
         return Checkpoint(seq=old.seq, triples=old.triples, entities=old.entities, read_by=old.read_by)
     stored = _bodies.decode(memoryview(body)[len(_MARK) :])
     triples: list[Triple] = []
     terms: list[str] = []
-    for frame in unpacked(stored.triples):
+    for frame in decompress_frames(stored.triples):
         progress()
         said = _triples.decode(frame)
         terms += said.new_terms
@@ -112,7 +115,7 @@ def decode(body: bytes, progress: Callable[[], None] = lambda: None) -> Checkpoi
         triples += zip(each, each, each, strict=True)
     entities: list[Entity] = []
     shared = SharedParts()
-    for frame in unpacked(stored.entities):
+    for frame in decompress_frames(stored.entities):
         progress()
         entities += map(shared.entity, _entities.decode(frame))
     return Checkpoint(

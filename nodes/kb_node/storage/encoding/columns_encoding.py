@@ -10,7 +10,7 @@ from typing import Final
 from msgspec import Struct, msgpack
 
 from semmap.nodes.kb_node.reasoner.abox.columns import Claimed, Columns, KindSaid
-from semmap.nodes.kb_node.storage.encoding.frames import Compressing, unpacked
+from semmap.nodes.kb_node.storage.encoding.frames import FrameCompressor, decompress_frames
 from semmap.schemas import codec, errors
 
 _TERMS: Final = 100_000
@@ -43,17 +43,17 @@ _heads = codec.decoder(_Head)
 _terms = codec.decoder(list[str])
 
 
-def store(columns: Columns, beside: Compressing) -> Callable[[], StoredColumns]:
+def store(columns: Columns, compressor: FrameCompressor) -> Callable[[], StoredColumns]:
     """Begin to compress columns; the function that is returned waits for the outcome."""
     head = _Head(
         columns.schema, columns.size, columns.classes, columns.properties, columns.kinds, columns.reasons
     )
-    dense_head, source = beside.dense(msgpack.encode(head)), beside.dense(columns.source)
+    dense_head, source = compressor.compress(msgpack.encode(head)), compressor.compress(columns.source)
     terms = [
-        beside.dense(msgpack.encode(columns.terms[start : start + _TERMS]))
+        compressor.compress(msgpack.encode(columns.terms[start : start + _TERMS]))
         for start in range(0, len(columns.terms), _TERMS)
     ]
-    numbers = [[beside.dense(frame) for frame in _frames(column)] for column in _columns(columns)]
+    numbers = [[compressor.compress(frame) for frame in _frames(column)] for column in _columns(columns)]
     return lambda: StoredColumns(
         dense_head.result(),
         [frame.result() for frame in terms],
@@ -64,16 +64,16 @@ def store(columns: Columns, beside: Compressing) -> Callable[[], StoredColumns]:
 
 def restore(stored: StoredColumns, progress: Callable[[], None]) -> Columns:
     """The columns. `progress` is called between frames."""
-    (head,) = map(_heads.decode, unpacked([stored.head]))
-    (source,) = unpacked([stored.source])
+    (head,) = map(_heads.decode, decompress_frames([stored.head]))
+    (source,) = decompress_frames([stored.source])
     terms: list[str] = []
-    for frame in unpacked(stored.terms):
+    for frame in decompress_frames(stored.terms):
         progress()
         terms += _terms.decode(frame)
     columns: list[array[int]] = []
     for frames in stored.numbers:
         column = array("i")
-        for frame in unpacked(frames):
+        for frame in decompress_frames(frames):
             progress()
             column.frombytes(frame)
         columns.append(_in_order(column))

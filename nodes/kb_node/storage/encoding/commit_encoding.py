@@ -16,7 +16,7 @@ from typing import Any, Final
 from msgspec import structs
 
 from semmap.nodes.kb_node.progress import parts
-from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.nodes.kb_node.storage.encoding import body_encoding
 from semmap.schemas import codec
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity
@@ -38,10 +38,10 @@ class EarlyBody:
 
     def __init__(self, commit: Commit) -> None:
         self._is_wanted = True
-        self._deflate = zlib.compressobj(dense.DENSITY)
-        self._beside = ThreadPoolExecutor(1)
+        self._deflate = zlib.compressobj(body_encoding.COMPRESSION_LEVEL)
+        self._executor = ThreadPoolExecutor(1)
         beginning = chain([_heading(_MAP, len(_FIELDS))], _encoded(commit, _BEGINNING))
-        self._head = self._beside.submit(self._compressed, beginning)
+        self._head = self._executor.submit(self._compressed, beginning)
         self._without = self._deflate
         """What has compressed no more than the head."""
         self._changed: Sequence[Entity] | None = None
@@ -50,15 +50,15 @@ class EarlyBody:
     def expect(self, commit: Commit) -> None:
         """It is likely to change the entities that it has now."""
         self._changed = commit.changed
-        self._middle = self._beside.submit(self._expected, _encoded(commit, _CHANGED))
+        self._middle = self._executor.submit(self._expected, _encoded(commit, _CHANGED))
 
     def finish(self, commit: Commit) -> Future[bytes]:
         """The whole, now that the effects are known."""
-        whole = self._beside.submit(self._whole, commit)
-        self._beside.shutdown(wait=False)
+        whole = self._executor.submit(self._whole, commit)
+        self._executor.shutdown(wait=False)
         return whole
 
-    def give_up(self) -> None:
+    def discard(self) -> None:
         """Nobody wants it any more."""
         self._is_wanted = False
 
@@ -82,7 +82,7 @@ class EarlyBody:
         return bytes(found)
 
 
-def early(commit: Commit, after: str) -> EarlyBody | None:
+def begin_body(commit: Commit, after: str) -> EarlyBody | None:
     """The beginning of the body of a commit whose triples are worth it; `after` is the digest before it."""
     if len(commit.inserted) + len(commit.retracted) < _MANY:
         return None

@@ -8,29 +8,29 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from types import TracebackType
 
-from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.nodes.kb_node.storage.encoding import body_encoding
 
 
-class Compressing:
+class FrameCompressor:
     """A thread that compresses frames while the next ones are made; to be used in a `with`."""
 
     def __init__(self) -> None:
-        self._beside = ThreadPoolExecutor(1)
+        self._executor = ThreadPoolExecutor(1)
 
-    def __enter__(self) -> Compressing:
+    def __enter__(self) -> FrameCompressor:
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._beside.shutdown()
+        self._executor.shutdown()
 
-    def dense(self, frame: bytes) -> Future[bytes]:
+    def compress(self, frame: bytes) -> Future[bytes]:
         """A frame, compressed."""
-        return self._beside.submit(zlib.compress, frame, dense.DENSITY)
+        return self._executor.submit(zlib.compress, frame, body_encoding.COMPRESSION_LEVEL)
 
 
-def unpacked(frames: Sequence[bytes]) -> Iterator[bytes]:
+def decompress_frames(frames: Sequence[bytes]) -> Iterator[bytes]:
     """Each frame as it was; the next one is unpacked while the last one is read."""
     with ThreadPoolExecutor(1) as beside:
         ahead = deque[Future[bytes]]()

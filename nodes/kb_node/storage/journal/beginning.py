@@ -35,21 +35,21 @@ class Beginning(Struct, frozen=True, kw_only=True):
 
 def write(db: sqlite3.Connection, beginning: Beginning, body: bytes) -> None:
     """Let the history begin there; within a transaction of the caller's."""
-    if not is_there(db):
+    if not exists(db):
         db.execute(TABLE)
     head = msgpack.encode(beginning)
     db.execute("DELETE FROM beginning")
     db.execute("INSERT INTO beginning VALUES (?, ?, ?, ?)", (beginning.seq, head, body, digest(head)))
 
 
-def is_there(db: sqlite3.Connection) -> bool:
+def exists(db: sqlite3.Connection) -> bool:
     """Was the journal compacted?"""
     return db.execute("SELECT 1 FROM sqlite_master WHERE name = 'beginning'").fetchone() is not None
 
 
 def read(db: sqlite3.Connection) -> Beginning | None:
     """What was written; one at 0 where nothing was, None where it is damaged."""
-    if not is_there(db):
+    if not exists(db):
         return Beginning()
     row = db.execute("SELECT seq, head, digest FROM beginning").fetchone()
     try:

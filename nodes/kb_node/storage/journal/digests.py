@@ -5,13 +5,13 @@ from __future__ import annotations
 import hashlib
 
 
-def chained(before: bytes, body: bytes) -> bytes:
+def chain_digest(before: bytes, body: bytes) -> bytes:
     """The digest of a commit that comes after those with the digest `before`."""
     digest = hashlib.blake2b(before, digest_size=16)
     digest.update(body)
     return digest.digest()
 
 
-def is_sound(before: bytes, body: object, digest: object) -> bool:
+def is_intact(before: bytes, body: object, digest: object) -> bool:
     """Is it what was written? From a damaged page SQLite may read anything, numbers and NULL too."""
-    return isinstance(body, bytes) and chained(before, body) == digest
+    return isinstance(body, bytes) and chain_digest(before, body) == digest

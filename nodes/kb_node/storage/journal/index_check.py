@@ -37,7 +37,7 @@ class Expected:
     def __init__(self) -> None:
         self._said: tuple[set[tuple[str, int]], ...] = (set(), set(), set())
 
-    def take(self, commit: Commit) -> None:
+    def add(self, commit: Commit) -> None:
         """Take in a commit."""
         ids, names, tboxes = self._said
         ids.add((commit.id, commit.seq))
@@ -45,7 +45,7 @@ class Expected:
         if commit.tbox:
             tboxes.add(("", commit.seq))
 
-    def is_said(self, db: sqlite3.Connection, after: int) -> bool:
+    def matches(self, db: sqlite3.Connection, after: int) -> bool:
         """Do the indexes say this, and nothing else, of the commits later than `after`?"""
         return all(
             set(db.execute(query, (after, 1 << 62))) == said

@@ -15,14 +15,14 @@ from typing import TypeVar
 
 from msgspec import Struct, structs
 
-from semmap.nodes.kb_node.storage.encoding import checkpoint_encoding, commit_encoding, dense
+from semmap.nodes.kb_node.storage.encoding import body_encoding, checkpoint_encoding, commit_encoding
 from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
 from semmap.nodes.kb_node.storage.journal import beginning, checkpoints, index_check, rows
 from semmap.nodes.kb_node.storage.journal.beginning import Beginning
-from semmap.nodes.kb_node.storage.journal.digests import chained, is_sound
+from semmap.nodes.kb_node.storage.journal.digests import chain_digest, is_intact
 from semmap.nodes.kb_node.storage.journal.layout import COMPACTED, FORMAT, SCHEMA
 from semmap.nodes.kb_node.storage.journal.rows import Damaged, Row
-from semmap.nodes.kb_node.storage.journal.sqlite_file import ANEW, JournalFile, mend
+from semmap.nodes.kb_node.storage.journal.sqlite_file import NEW_MAP_HINT, JournalFile, repair_hint
 from semmap.nodes.kb_node.storage.journal.stamps import Stamps
 from semmap.schemas import errors
 from semmap.schemas.commits import Commit
@@ -60,7 +60,7 @@ class Journal:
                 (first,) = db.execute("SELECT min(seq) FROM commits").fetchone()
                 found = Beginning(seq=(first or 1) - 1)
         if found is None:
-            raise self.damaged("where its history begins is damaged")
+            raise self.damage_error("where its history begins is damaged")
         self.beginning = found
         if not to_salvage:
             self.require_format()
@@ -71,11 +71,11 @@ class Journal:
         with self.file.reading() as db:
             form = db.execute("SELECT value FROM meta WHERE key='format'").fetchone()
         if form is None or form[0] not in (FORMAT, COMPACTED):
-            raise errors.Refused(f"{self.path} was written by another version of semmap; {ANEW}")
+            raise errors.Refused(f"{self.path} was written by another version of semmap; {NEW_MAP_HINT}")
         if (form[0] == COMPACTED) != (self.beginning.seq > 0):
-            raise self.damaged("where its history begins is damaged")
+            raise self.damage_error("where its history begins is damaged")
 
-    def begin_with(self, first: Beginning, snapshot: Checkpoint) -> None:
+    def start_from(self, first: Beginning, snapshot: Checkpoint) -> None:
         """Let the history begin after a commit, with the map as it was then; what came before goes.
 
         Of `first`, the digest of the snapshot is added. Raises NotWritten.
@@ -90,7 +90,7 @@ class Journal:
             db.execute(f"DELETE FROM tboxes WHERE seq < {holding}", (first.seq,))
             index_check.write(db, first.seq, max(self.last, first.seq))
         self.beginning = first
-        self.stamps.begin_with(first)
+        self.stamps.reset(first)
 
     @classmethod
     def create(cls, path: Path, tbox: bytes) -> Journal:
@@ -101,7 +101,7 @@ class Journal:
                 db.executescript(SCHEMA)
                 with db:
                     db.execute("INSERT INTO meta VALUES ('format', ?)", (FORMAT,))
-                    db.execute("INSERT INTO tboxes VALUES (0, ?, ?)", (tbox, chained(b"", tbox)))
+                    db.execute("INSERT INTO tboxes VALUES (0, ?, ?)", (tbox, chain_digest(b"", tbox)))
             finally:
                 db.close()
         except sqlite3.Error as error:
@@ -143,13 +143,13 @@ class Journal:
         query = "SELECT value, digest FROM tboxes WHERE seq <= ? ORDER BY seq DESC LIMIT 1"
         with self.file.reading() as db:
             row = db.execute(query, (seq,)).fetchone()
-        if row is None or not is_sound(b"", *row):
-            raise self.damaged("the TBox in it is damaged")
+        if row is None or not is_intact(b"", *row):
+            raise self.damage_error("the TBox in it is damaged")
         return bytes(row[0])
 
-    def damaged(self, what: str) -> errors.Refused:
+    def damage_error(self, what: str) -> errors.Refused:
         """The refusal that says so, and how one goes on."""
-        return errors.Refused(f"{self.path}: {what}; {mend(self.path)}")
+        return errors.Refused(f"{self.path}: {what}; {repair_hint(self.path)}")
 
     def tbox_changes(self, after: int) -> list[int]:
         """The numbers of the commits later than `after` that replaced the TBox, newest first."""
@@ -176,17 +176,17 @@ class Journal:
                 db.execute(_TOUCH, touches[0])
             else:
                 db.executemany(_TOUCH, touches)
-            body = dense.encode(commit, dense_from=_DENSE_FROM) if whole is None else whole.result()
-            digest = chained(self._digest, body)
+            body = body_encoding.encode(commit, dense_from=_DENSE_FROM) if whole is None else whole.result()
+            digest = chain_digest(self._digest, body)
             db.execute("INSERT INTO commits VALUES (?, ?, ?, ?)", (commit.seq, commit.id, body, digest))
             if tbox is not None:
-                row = (commit.seq, tbox, chained(b"", tbox))
+                row = (commit.seq, tbox, chain_digest(b"", tbox))
                 db.execute("INSERT INTO tboxes VALUES (?, ?, ?)", row)
         self._digest = digest
         return digest
 
     @contextmanager
-    def together(self) -> Iterator[None]:
+    def batch(self) -> Iterator[None]:
         """What is appended within becomes durable at its end, with one wait for the disk.
 
         Raises NotWritten, with none of it written, when the disk does not take it.
@@ -201,16 +201,16 @@ class Journal:
 
     def commits(self, after: int | None = None) -> Iterator[Commit]:
         """The commits later than `after`, in order. Raises Damaged at the first damaged one."""
-        return (signed(row) for row in self.rows(after))
+        return (decode_row(row) for row in self.rows(after))
 
-    def outlines(self, kind: type[T]) -> Iterator[T]:
+    def decode_partially(self, kind: type[T]) -> Iterator[T]:
         """All commits in order, of each what `kind` has fields for. Raises Damaged at the first damaged."""
-        return (dense.decode(row.body, kind) for row in self.rows())
+        return (body_encoding.decode(row.body, kind) for row in self.rows())
 
     def commit(self, seq: int) -> Commit:
         """The commit with that number, which must be there. Raises Damaged."""
         for row in self.rows(seq - 1, size=1):
-            return signed(row)
+            return decode_row(row)
         raise Damaged(self.path, seq)
 
     def commit_of(self, command_id: str) -> Commit | None:
@@ -235,18 +235,22 @@ class Journal:
             row = db.execute("SELECT digest FROM commits WHERE seq = ?", (seq,)).fetchone()
         return b"" if row is None else bytes(row[0])
 
-    def extent(self, after: int) -> tuple[int, int]:
+    def size_after(self, after: int) -> tuple[int, int]:
         """How many commits are later than `after`, and their size [bytes]."""
         query = "SELECT count(*), coalesce(sum(length(body)), 0) FROM commits WHERE seq > ?"
         with self.file.reading() as db:
             count, size = db.execute(query, (after,)).fetchone()
         return count, size
 
-    def undoing(self, after: int) -> list[int]:
+    def list_undo_commits(self, after: int) -> list[int]:
         """The numbers of the commits later than `after` that took others back, newest first; reads all."""
         query = "SELECT seq, body FROM commits WHERE seq > ? ORDER BY seq DESC"
         with self.file.reading() as db:
-            return [seq for seq, body in db.execute(query, (after,)) if dense.decode(body, _Undoing).undoes]
+            return [
+                seq
+                for seq, body in db.execute(query, (after,))
+                if body_encoding.decode(body, _Undoing).undoes
+            ]
 
     def last_touches(self, until: int) -> list[tuple[str, int]]:
         """Each entity's name with the last commit up to `until` that touched it."""
@@ -259,15 +263,15 @@ class Journal:
 
         Raises Refused, with nothing changed, when the disk does not take it.
         """
-        checkpoints.keep(self.file, checkpoint, begins=self.beginning.seq, progress=progress)
+        checkpoints.save(self.file, checkpoint, begins=self.beginning.seq, progress=progress)
 
     def last_checkpoint(self, progress: Callable[[], None] = lambda: None) -> Checkpoint:
         """The newest sound checkpoint; without any, the empty map before commit 1."""
-        return self.sound_checkpoint(progress) or self.snapshot(progress)
+        return self.newest_checkpoint(progress) or self.snapshot(progress)
 
-    def sound_checkpoint(self, progress: Callable[[], None] = lambda: None) -> Checkpoint | None:
+    def newest_checkpoint(self, progress: Callable[[], None] = lambda: None) -> Checkpoint | None:
         """The newest sound checkpoint, if there is one."""
-        return checkpoints.newest(self.file, begins=self.beginning.seq, progress=progress)
+        return checkpoints.load_newest(self.file, begins=self.beginning.seq, progress=progress)
 
     def snapshot(self, progress: Callable[[], None] = lambda: None) -> Checkpoint:
         """What the history begins with: the empty map, unless it was compacted."""
@@ -276,13 +280,13 @@ class Journal:
         with self.file.reading() as db:
             body = beginning.body_of(db, self.beginning)
         if body is None:
-            raise self.damaged("the snapshot that its history begins with is damaged")
+            raise self.damage_error("the snapshot that its history begins with is damaged")
         return checkpoint_encoding.decode(body, progress)
 
     def rows(self, after: int | None = None, size: int = rows.PAGE) -> Iterator[Row]:
         """The commits later than `after` as they stand in the file. Raises Damaged at the first damaged."""
         seq = self.beginning.seq if after is None else after
-        return rows.sound(self.file, after=seq, before=self.digest(seq), size=size)
+        return rows.read_intact_rows(self.file, after=seq, before=self.digest(seq), size=size)
 
 
 class _Undoing(Struct):
@@ -291,7 +295,7 @@ class _Undoing(Struct):
     undoes: tuple[int, ...] = ()
 
 
-def signed(row: Row) -> Commit:
+def decode_row(row: Row) -> Commit:
     """The commit, with the digest that the journal gave it."""
-    commit: Commit = dense.decode(row.body, Commit)
+    commit: Commit = body_encoding.decode(row.body, Commit)
     return structs.replace(commit, digest=row.digest.hex())

@@ -17,7 +17,7 @@ from semmap.schemas import errors
 _PAGE_BYTES: Final = 4096
 _LOG_BYTES: Final = 1025 * _PAGE_BYTES
 """SQLite begins its write-ahead log anew after 1000 pages, and what the last commit wrote."""
-ANEW = "start a new map with --fresh (this one is kept)"
+NEW_MAP_HINT = "start a new map with --fresh (this one is kept)"
 
 
 class InUse(errors.Refused):
@@ -33,28 +33,28 @@ class JournalFile:
 
     def __init__(self, path: Path) -> None:
         """Open the file at `path`: WAL with `synchronous=FULL`. Raises InUse, Refused when it is damaged."""
-        if write_ahead.is_set_aside(path):
-            raise _lost(path)
-        log = write_ahead.look(path)
+        if write_ahead.has_damaged_copy(path):
+            raise _log_damage_error(path)
+        log = write_ahead.inspect_log(path)
         try:
             try:
                 self._open(path)
             except InUse:
                 raise
             except errors.Refused:
-                if log is None or log.has_sound_head:
+                if log is None or log.has_valid_header:
                     raise
-                log.set_aside()
-                raise _lost(path) from None
-            if log is not None and log.lost(self._recovered()):
-                log.set_aside()
+                log.save_copy()
+                raise _log_damage_error(path) from None
+            if log is not None and log.has_lost_commits(self._count_valid_frames()):
+                log.save_copy()
                 self._db.close()
-                raise _lost(path)
+                raise _log_damage_error(path)
         finally:
             if log is not None:
                 log.file.close()
 
-    def _recovered(self) -> int:
+    def _count_valid_frames(self) -> int:
         """How many frames of the log SQLite has found to be sound."""
         with self.reading() as db:
             _, frames, _ = db.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchone()
@@ -66,7 +66,7 @@ class JournalFile:
         try:
             self._db = sqlite3.connect(path, isolation_level=None, timeout=2.0, check_same_thread=False)
         except sqlite3.DatabaseError as error:
-            raise _refusal(path, error) from None
+            raise _to_refused(path, error) from None
         try:
             with self.reading() as db:
                 db.execute("PRAGMA locking_mode=EXCLUSIVE")
@@ -75,7 +75,7 @@ class JournalFile:
                 db.execute("SELECT 1 FROM sqlite_master").fetchone()  # now the log is read
                 db.execute("BEGIN IMMEDIATE")  # so that the log is there
                 db.execute("ROLLBACK")
-            _lengthen(path.with_name(f"{path.name}-wal"))
+            _preallocate(path.with_name(f"{path.name}-wal"))
         except errors.Refused:
             self._db.close()
             raise
@@ -94,9 +94,9 @@ class JournalFile:
         except sqlite3.ProgrammingError:
             raise
         except UnicodeDecodeError:  # of a text that is not one any more
-            raise _refusal(self.path, sqlite3.DatabaseError("a text is not UTF-8")) from None
+            raise _to_refused(self.path, sqlite3.DatabaseError("a text is not UTF-8")) from None
         except sqlite3.DatabaseError as error:
-            raise _refusal(self.path, error) from None
+            raise _to_refused(self.path, error) from None
 
     @contextmanager
     def writing(self, what: str) -> Iterator[sqlite3.Connection]:
@@ -130,7 +130,7 @@ class JournalFile:
             raise NotWritten(f"{self.path} could not be made smaller: {error}") from None
 
 
-def _lengthen(log: Path) -> None:
+def _preallocate(log: Path) -> None:
     """Let the write-ahead log be as long from the beginning as it will be once it is written anew.
 
     A commit that makes the file longer waits for the file system's own journal, too: on a busy disk three
@@ -144,20 +144,20 @@ def _lengthen(log: Path) -> None:
         os.fsync(file.fileno())
 
 
-def _lost(path: Path) -> errors.Refused:
-    return errors.Refused(f"{path}: the log with its last commits is damaged; {mend(path)}")
+def _log_damage_error(path: Path) -> errors.Refused:
+    return errors.Refused(f"{path}: the log with its last commits is damaged; {repair_hint(path)}")
 
 
-def _refusal(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:
+def _to_refused(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:
     if not isinstance(error, sqlite3.OperationalError):
-        return errors.Refused(f"{path} is damaged: {error}; {mend(path)}")
+        return errors.Refused(f"{path} is damaged: {error}; {repair_hint(path)}")
     if "locked" in str(error):
         stop = f"semmap down --data {path.parent}"
         return InUse(f"another knowledge base is using {path}; stop it with: {stop}")
-    return errors.Refused(f"{path} cannot be read: {error}; {ANEW}")
+    return errors.Refused(f"{path} cannot be read: {error}; {NEW_MAP_HINT}")
 
 
-def mend(path: Path) -> str:
+def repair_hint(path: Path) -> str:
     """How one goes on after damage."""
     repair = f"semmap repair --data {shlex.quote(str(path.parent))}"
     return f"continue with what is good: {repair} (the damaged file is kept)"

@@ -9,7 +9,7 @@ from itertools import accumulate
 
 from msgspec import Struct
 
-from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.nodes.kb_node.storage.encoding import body_encoding
 from semmap.nodes.kb_node.storage.journal import rows
 from semmap.nodes.kb_node.storage.journal.beginning import Beginning
 from semmap.nodes.kb_node.storage.journal.sqlite_file import JournalFile
@@ -24,7 +24,7 @@ class Stamps:
         self._known = array("q")
         self._reading = threading.Lock()
 
-    def begin_with(self, beginning: Beginning) -> None:
+    def reset(self, beginning: Beginning) -> None:
         """The history begins elsewhere from now on."""
         with self._reading:
             self._beginning, self._known = beginning, array("q")
@@ -64,7 +64,7 @@ class Stamps:
     def _so_far(self) -> array[int]:
         """Those of all commits, after reading what is not known yet."""
         known = self._known
-        while page := rows.page(self._file, self._beginning.seq + len(known)):
+        while page := rows.read_page(self._file, self._beginning.seq + len(known)):
             known.extend(_stamp(row.body) for row in page)
         return known
 
@@ -76,5 +76,5 @@ class _Stamp(Struct):
 
 
 def _stamp(body: bytes) -> int:
-    found: _Stamp = dense.decode(body, _Stamp)
+    found: _Stamp = body_encoding.decode(body, _Stamp)
     return found.stamp_ns

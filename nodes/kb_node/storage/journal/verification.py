@@ -7,7 +7,7 @@ from collections.abc import Callable
 from msgspec import MsgspecError
 
 from semmap.nodes.kb_node.storage.journal import beginning, index_check
-from semmap.nodes.kb_node.storage.journal.journal import Journal, signed
+from semmap.nodes.kb_node.storage.journal.journal import Journal, decode_row
 from semmap.nodes.kb_node.storage.journal.rows import Damaged
 
 
@@ -16,19 +16,19 @@ def verify(journal: Journal, progress: Callable[[], None] = lambda: None) -> Non
     since, expected = _indexed_until(journal), index_check.Expected()
     for row in journal.rows():
         if row.seq > since:
-            commit = signed(row)
+            commit = decode_row(row)
             if commit.seq != row.seq:
                 raise Damaged(journal.path, row.seq)
-            expected.take(commit)
+            expected.add(commit)
         progress()
     with journal.file.reading() as db:
         tboxes = db.execute("SELECT seq FROM tboxes").fetchall()
         if not index_check.is_well_formed(db):
-            raise journal.damaged("its structure is damaged")
-        if not expected.is_said(db, since):
-            raise journal.damaged("an index in it is damaged")
+            raise journal.damage_error("its structure is damaged")
+        if not expected.matches(db, since):
+            raise journal.damage_error("an index in it is damaged")
         if journal.beginning.seq and beginning.body_of(db, journal.beginning) is None:
-            raise journal.damaged("the snapshot that its history begins with is damaged")
+            raise journal.damage_error("the snapshot that its history begins with is damaged")
     for (seq,) in tboxes:
         journal.tbox(seq)
 
@@ -40,9 +40,9 @@ def _indexed_until(journal: Journal) -> int:
         try:
             record = index_check.read(db)
         except (MsgspecError, TypeError):
-            raise journal.damaged("the record of its indexes is damaged") from None
+            raise journal.damage_error("the record of its indexes is damaged") from None
         if record is None or record.seq < begins:
             return begins
         if not index_check.is_as_recorded(db, begins, record):
-            raise journal.damaged("an index in it is damaged")
+            raise journal.damage_error("an index in it is damaged")
         return record.seq

@@ -23,7 +23,7 @@ _FRAME: Final = struct.Struct(">II8sII")
 _LITTLE_ENDIAN: Final = 0x377F0682
 _VERSION: Final = 3007000
 _SUFFIX: Final = "-wal"
-_SET_ASIDE: Final = "-wal.damaged"
+_DAMAGED_SUFFIX: Final = "-wal.damaged"
 
 
 class Log(NamedTuple):
@@ -37,24 +37,24 @@ class Log(NamedTuple):
     """Has the machine started since it was written? Then it may have lost power in the middle of that."""
 
     @property
-    def has_sound_head(self) -> bool:
+    def has_valid_header(self) -> bool:
         """Is the beginning as SQLite wrote it?"""
         self.file.seek(0)
         return _is_sound(self.file.read(_HEADER.size))
 
-    def lost(self, recovered: int) -> bool:
+    def has_lost_commits(self, recovered: int) -> bool:
         """Are there transactions behind the `recovered` frames, other than one that was never finished?"""
         behind = [end for end in self.ends if end > recovered]
         return len(behind) > (1 if self.is_before_boot else 0)
 
-    def set_aside(self) -> None:
+    def save_copy(self) -> None:
         """Keep a copy for salvage."""
         self.file.seek(0)
-        with self.path.with_name(f"{self.path.name}{_SET_ASIDE}").open("wb") as copy:
+        with self.path.with_name(f"{self.path.name}{_DAMAGED_SUFFIX}").open("wb") as copy:
             shutil.copyfileobj(self.file, copy)
 
 
-def look(path: Path) -> Log | None:
+def inspect_log(path: Path) -> Log | None:
     """The log of the database at `path`, if there is one with anything in it."""
     log = path.with_name(f"{path.name}{_SUFFIX}")
     if not log.exists() or log.stat().st_size <= _HEADER.size:
@@ -65,17 +65,17 @@ def look(path: Path) -> Log | None:
     return Log(path, file, ends, log.stat().st_mtime < booted_s)
 
 
-def is_set_aside(path: Path) -> bool:
+def has_damaged_copy(path: Path) -> bool:
     """Is there a damaged log that was not mended yet?"""
-    return path.with_name(f"{path.name}{_SET_ASIDE}").exists()
+    return path.with_name(f"{path.name}{_DAMAGED_SUFFIX}").exists()
 
 
-def mend(path: Path) -> None:
+def recover(path: Path) -> None:
     """Let SQLite read all of the log that was set aside, damaged pages too.
 
     Not the first page, where it is damaged: SQLite could read nothing at all then, and the one before does.
     """
-    damaged = path.with_name(f"{path.name}{_SET_ASIDE}")
+    damaged = path.with_name(f"{path.name}{_DAMAGED_SUFFIX}")
     content = memoryview(damaged.read_bytes())
     with damaged.open("rb") as file:
         salts, size = _salts(file), _page_size(file)
@@ -102,9 +102,9 @@ def mend(path: Path) -> None:
     path.with_name(f"{path.name}{_SUFFIX}").write_bytes(mended)
 
 
-def forget(path: Path) -> None:
+def delete_damaged_copy(path: Path) -> None:
     """What was set aside is mended: from now on the journal proves its commits itself."""
-    path.with_name(f"{path.name}{_SET_ASIDE}").unlink()
+    path.with_name(f"{path.name}{_DAMAGED_SUFFIX}").unlink()
 
 
 def _frames(file: BinaryIO) -> Iterator[tuple[int, int]]:
@@ -140,7 +140,7 @@ def _is_sound(head: bytes) -> bool:
 
 def _page_size(file: BinaryIO) -> int:
     """Read from the database itself, whose head is not a part of the log."""
-    with Path(file.name.removesuffix(_SET_ASIDE).removesuffix(_SUFFIX)).open("rb") as database:
+    with Path(file.name.removesuffix(_DAMAGED_SUFFIX).removesuffix(_SUFFIX)).open("rb") as database:
         database.seek(16)
         size = int.from_bytes(database.read(2), "big")
     return 65536 if size == 1 else size

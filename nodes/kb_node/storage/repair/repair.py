@@ -26,7 +26,7 @@ from semmap.nodes.kb_node.storage.journal import FILENAME, Checkpoint, Journal, 
 from semmap.nodes.kb_node.storage.journal.sqlite_file import InUse, NotWritten
 from semmap.nodes.kb_node.storage.journal.verification import verify
 from semmap.nodes.kb_node.storage.repair import salvage
-from semmap.nodes.kb_node.storage.repair.restating import DoesNotFit, fitted
+from semmap.nodes.kb_node.storage.repair.commit_adaptation import DoesNotFit, adapt_commit
 from semmap.schemas import errors
 from semmap.schemas.commits import Commit
 
@@ -49,38 +49,42 @@ def repair(data: Path, tell: Callable[[str], None] = lambda text: None, *, tbox:
     if not path.exists():
         raise errors.BadFile(f"there is no map in {data}")
     new = path.with_name(f"new-{FILENAME}")
-    damaged, mended = _opened(path)
+    damaged, recovered = _open(path)
     try:
-        if _is_sound(damaged, _counting("checked", tell)):
+        if _is_sound(damaged, _count_progress("checked", tell)):
             found = (
-                "the log with the last commits was damaged and is mended" if mended else "nothing is damaged"
+                "the log with the last commits was damaged and is recovered"
+                if recovered
+                else "nothing is damaged"
             )
             return f"{found} in {data}: the map continues from commit {damaged.last}"
-        made = _Salvage(damaged, new, _first_tbox(damaged, tbox), tell)
-        last = made.made()
+        salvage_run = _Salvage(damaged, new, _first_tbox(damaged, tbox), tell)
+        last = salvage_run.write()
     finally:
         damaged.close()
-    kept = seed.put_in_place(new, path)
-    return f"the map continues from commit {last} ({made.told()}); the damaged file is kept in {kept}"
+    kept = seed.install_journal(new, path)
+    return (
+        f"the map continues from commit {last} ({salvage_run.describe()}); the damaged file is kept in {kept}"
+    )
 
 
-def _opened(path: Path) -> tuple[Journal, bool]:
-    """The journal, also one whose end is missing or whose log is damaged; whether the log was mended."""
+def _open(path: Path) -> tuple[Journal, bool]:
+    """The journal, also one whose end is missing or whose log is damaged; whether the log was recovered."""
     try:
         return Journal(path, to_salvage=True), False
     except InUse:
         raise
     except errors.Refused as error:
-        if write_ahead.is_set_aside(path):
-            write_ahead.mend(path)
-            write_ahead.forget(path)
-            return _opened(path)[0], True
-        if _filled_up(path):
-            return _opened(path)
+        if write_ahead.has_damaged_copy(path):
+            write_ahead.recover(path)
+            write_ahead.delete_damaged_copy(path)
+            return _open(path)[0], True
+        if _pad_truncated_file(path):
+            return _open(path)
         raise errors.Refused(f"{_reason(error)}; start a new map with --fresh (this one is kept)") from None
 
 
-def _filled_up(path: Path) -> bool:
+def _pad_truncated_file(path: Path) -> bool:
     """Was its end missing? SQLite reads nothing of such a file, but what is there when zeros follow."""
     with path.open("rb") as file:
         magic, page_size, pages = _HEADER.unpack(file.read(_HEADER.size).ljust(_HEADER.size))
@@ -91,7 +95,7 @@ def _filled_up(path: Path) -> bool:
     return True
 
 
-def _counting(done: str, tell: Callable[[str], None]) -> Callable[[], None]:
+def _count_progress(done: str, tell: Callable[[str], None]) -> Callable[[], None]:
     """A function to call after each commit; now and then it tells how many there were."""
     numbers, due_s = count(1), time.monotonic() + _TOLD_EVERY_S
 
@@ -143,47 +147,47 @@ class _Salvage:
         self._new = new
         self._tbox = tbox
         self._tell = tell
-        self._lost = [seq for seq, commit, _ in salvage.commits(damaged) if commit is None]
+        self._lost = [seq for seq, commit, _ in salvage.read_commits(damaged) if commit is None]
         self._unfit: list[int] = []
-        self._checkpoint = self._sound_checkpoint()
-        self._known_again = 0
+        self._checkpoint = self._load_checkpoint()
+        self._restored_until = 0
         """The last damaged commit after which the map is known, from the checkpoint."""
         self._stamp_ns = damaged.beginning.stamp_ns
 
-    def made(self) -> int:
+    def write(self) -> int:
         """Write the journal; the number of its last commit. Raises NotWritten, Refused."""
-        seed.remove(self._new)
+        seed.delete_journal(self._new)
         journal = Journal.create(self._new, self._tbox)
         try:
             self._begin(journal)
-            with journal.together():
-                self._take_over(journal, _counting("saved", self._tell))
+            with journal.batch():
+                self._copy_commits(journal, _count_progress("saved", self._tell))
             self._tell(f"the map is rebuilt from {journal.last:,} commits")
             SemanticMap(journal).checkpoint()
             return journal.last
         finally:
             journal.close()
 
-    def _take_over(self, journal: Journal, progress: Callable[[], None]) -> None:
+    def _copy_commits(self, journal: Journal, progress: Callable[[], None]) -> None:
         """The commits as they are, and what can be had after a damaged one, until the map is known again."""
         uncertain: SemanticMap | None = None
-        for seq, commit, tbox in salvage.commits(self._damaged):
+        for seq, commit, tbox in salvage.read_commits(self._damaged):
             if seq < journal.first:
                 continue
             if commit is not None and uncertain is None:
                 journal.append(commit, tbox)
             else:
                 uncertain = uncertain or SemanticMap(journal)
-                if self._mended(uncertain, seq, commit, tbox):
+                if self._restore_commit(uncertain, seq, commit, tbox):
                     uncertain = None
             if commit is not None:
                 self._stamp_ns = commit.stamp_ns
             progress()
 
-    def told(self) -> str:
+    def describe(self) -> str:
         """What was damaged, and what has become of it."""
-        known = [seq for seq in self._lost if seq <= self._known_again]
-        gone = [seq for seq in self._lost if seq > self._known_again]
+        known = [seq for seq in self._lost if seq <= self._restored_until]
+        gone = [seq for seq in self._lost if seq > self._restored_until]
         told = []
         if known and self._checkpoint is not None:
             it = "it" if len(known) == 1 else "they"
@@ -193,7 +197,7 @@ class _Salvage:
             )
         if gone:
             told.append(f"{_damaged(gone)} and left out")
-        if unfit := [seq for seq in self._unfit if seq > self._known_again]:
+        if unfit := [seq for seq in self._unfit if seq > self._restored_until]:
             told.append(f"left out, too, because it would not fit without that: {_numbers(unfit)}")
         return "; ".join(told) or "all of them are good"
 
@@ -203,46 +207,50 @@ class _Salvage:
         if not beginning.seq:
             return
         with suppress(errors.Refused):
-            journal.begin_with(beginning, self._damaged.snapshot())
+            journal.start_from(beginning, self._damaged.snapshot())
             return
         if self._checkpoint is None:
             raise errors.Refused(
                 "the snapshot that the history begins with is damaged, and there is no checkpoint to go on"
                 " from; restore a backup (semmap restore), or start a new map with --fresh (this one is kept)"
             )
-        row = salvage.row_of(self._damaged, self._checkpoint.seq)
+        row = salvage.read_row(self._damaged, self._checkpoint.seq)
         chain = b"" if row is None else row.digest
-        journal.begin_with(
+        journal.start_from(
             structs.replace(beginning, seq=self._checkpoint.seq, chain=chain, stamp_ns=self._stamp_ns),
             self._checkpoint,
         )
 
-    def _mended(self, semantic_map: SemanticMap, seq: int, commit: Commit | None, tbox: bytes | None) -> bool:
+    def _restore_commit(
+        self, semantic_map: SemanticMap, seq: int, commit: Commit | None, tbox: bytes | None
+    ) -> bool:
         """Commit `seq` as far as it can be had; is the map exactly as it was after it?"""
         if commit is None:
-            return self._known(semantic_map, seq) or self._passed_over(semantic_map, seq, "is damaged")
+            return self._restore_from_checkpoint(semantic_map, seq) or self._leave_out(
+                semantic_map, seq, "is damaged"
+            )
         try:
-            semantic_map.restate(fitted(semantic_map, commit), tbox)
+            semantic_map.restate(adapt_commit(semantic_map, commit), tbox)
         except NotWritten:
             raise
         except (DoesNotFit, errors.SemmapError):
             self._unfit.append(seq)
-            self._passed_over(semantic_map, seq, f"({commit.reason}) builds on one that is damaged")
+            self._leave_out(semantic_map, seq, f"({commit.reason}) builds on one that is damaged")
         return False
 
-    def _known(self, semantic_map: SemanticMap, seq: int) -> bool:
+    def _restore_from_checkpoint(self, semantic_map: SemanticMap, seq: int) -> bool:
         """Make a damaged commit anew from the map as it was after it, if a checkpoint tells."""
         checkpoint = self._checkpoint
         if checkpoint is None or seq != max((n for n in self._lost if n <= checkpoint.seq), default=0):
             return False
-        abox = salvage.after(self._damaged, seq, checkpoint)
+        abox = salvage.compute_abox_after(self._damaged, seq, checkpoint)
         if abox is None:
             return False
         tbox = self._damaged.tbox(seq)
         is_new = frozenset(rdf.parse(tbox, "the TBox")) != semantic_map.tbox
         now = frozenset(semantic_map.abox())
         commit = structs.replace(
-            self._stand_in(
+            self._make_placeholder(
                 seq, f"commit {seq} was damaged; the checkpoint after {checkpoint.seq} has its effect"
             ),
             tbox=is_new,
@@ -250,23 +258,23 @@ class _Salvage:
             inserted=tuple(sorted(abox - now)),
         )
         semantic_map.restate(commit, tbox if is_new else None)
-        self._known_again = seq
+        self._restored_until = seq
         return True
 
-    def _passed_over(self, semantic_map: SemanticMap, seq: int, why: str) -> bool:
-        semantic_map.restate(self._stand_in(seq, f"commit {seq} {why}; it is left out"))
+    def _leave_out(self, semantic_map: SemanticMap, seq: int, why: str) -> bool:
+        semantic_map.restate(self._make_placeholder(seq, f"commit {seq} {why}; it is left out"))
         return False
 
-    def _stand_in(self, seq: int, reason: str) -> Commit:
+    def _make_placeholder(self, seq: int, reason: str) -> Commit:
         """A commit that changes nothing, in the place of another one."""
         id_ = f"repair-{seq}-{uuid.uuid4().hex}"
         return Commit(
             seq=seq, stamp_ns=self._stamp_ns, id=id_, source="file", agent="semmap repair", reason=reason
         )
 
-    def _sound_checkpoint(self) -> Checkpoint | None:
+    def _load_checkpoint(self) -> Checkpoint | None:
         try:
-            return self._damaged.sound_checkpoint()
+            return self._damaged.newest_checkpoint()
         except errors.Refused:
             return None
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.schemas import errors
 from semmap.schemas.moments import When
@@ -27,7 +27,7 @@ def span_of(journal: Journal, since: When | None, until: When | None) -> Span:
     Raises Refused for what was compacted, what has not happened yet, and an empty history; BadRequest where
     the end is before the beginning.
     """
-    past = Past(journal)
+    past = HistoryReader(journal)
     if not journal.last:
         raise errors.Refused(f"{journal.path}: nothing has happened in this map: it has no commits")
     first = max(journal.beginning.seq, 1)

@@ -4,7 +4,7 @@ import random
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.space import Space
@@ -23,7 +23,7 @@ def place(name, wkt, z=0.0):
 
 
 def place_of(space, name):
-    found = space.whereabouts(space.solids[name]).place
+    found = space.spatial_relations(space.solids[name]).place
     return None if found is None else found[0].name
 
 
@@ -77,7 +77,7 @@ def test_floor_and_height_count():
 
 def test_a_turned_place_stays_where_it_is_though_the_copy_for_another_process_is_a_message():
     room = place("room1", L_SHAPE)
-    one, other = solid_of(room), solid_of(Placed.of(room))
+    one, other = solid_of(room), solid_of(PlacedEntity.of(room))
 
     assert one.form is other.form
     assert one.footprint == 18.0
@@ -120,7 +120,7 @@ def test_what_it_covers_is_not_forgotten_with_what_can_be_worked_out_again():
     space = Space([room])
     solid = space.solids["room1"]
     outline, area = solid.outline, solid.footprint
-    solid.forget()
+    solid.clear_cache()
     space.put(thing("cup1", (4.0, 1.0, 0.0)))
     assert place_of(space, "cup1") == "room1"
     assert (solid.outline, solid.footprint) == (outline, area)

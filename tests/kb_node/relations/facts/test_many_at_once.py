@@ -13,12 +13,12 @@ from msgspec import structs
 from semmap.nodes.kb_node.relations.facts import place_facts
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.geometry.columns import solids_of
-from semmap.nodes.kb_node.relations.geometry.fitting import fitted
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.fitting import fit_model
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
 from semmap.nodes.kb_node.relations.measuring import crowds, space
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.measuring.survey import NOBODY, Survey
+from semmap.nodes.kb_node.relations.measuring.survey import NO_ROW, Survey
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.ontology.model_shapes import own_size_m, shapes
 from semmap.schemas.entities import Pose, orientation_from_yaw
@@ -55,7 +55,7 @@ def at_once(entities, limits=None):
 def in_steps(entities, limits=None):
     with many(1):
         facts = Facts(limits)
-        for _ in facts.filling(entities):
+        for _ in facts.fill_steps(entities):
             pass
         return facts
 
@@ -76,7 +76,7 @@ def require_alike(entities, limits=None):
     expected = one_by_one(entities, limits)
     for facts in (at_once(entities, limits), in_steps(entities, limits)):
         assert kept(facts) == kept(expected)
-        assert facts.space.crowds() == expected.space.crowds()
+        assert facts.space.describe_crowds() == expected.space.describe_crowds()
         for name, solid in expected.space.solids.items():
             other = facts.space.solids[name]
             assert (other.bounds, other.bottom, other.top) == (solid.bounds, solid.bottom, solid.top)
@@ -111,7 +111,7 @@ class World:
 
     def entity(self, name, model, at, size, turn, place=False):
         pose = Pose(position_m=at, orientation_wxyz=turn)
-        return Placed(
+        return PlacedEntity(
             name=name,
             iri=f"urn:{name}",
             pose=pose,
@@ -123,7 +123,7 @@ class World:
 
     def joints(self, model, size):
         """Some stand open, some shut, most of what opens at all."""
-        leaves = fitted(model, size).leaves if size and model in shapes() else ()
+        leaves = fit_model(model, size).leaves if size and model in shapes() else ()
         if not leaves or self.dice.random() < 0.3:
             return ()
         stands = tuple(
@@ -261,8 +261,8 @@ def test_in_an_ordinary_map_nothing_has_to_be_measured_one_by_one():
     survey = Survey(there, [solid for solid in there.solids.values() if not solid.is_place])
     assert not survey.is_open.any()
     assert not survey.may_hang.any()
-    assert (survey.place != NOBODY).all()
-    assert (survey.support != NOBODY).sum() == 3 * 16
+    assert (survey.place != NO_ROW).all()
+    assert (survey.support != NO_ROW).sum() == 3 * 16
     require_alike(made)
 
 

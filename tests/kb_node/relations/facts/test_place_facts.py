@@ -4,7 +4,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
 
 CUP_ON_TABLE = ("cup1", "isOn", "table1")
@@ -49,10 +49,10 @@ def test_step_by_step_it_is_as_from_nothing(changes):
         assert not come & held
         held = held - gone | come
         anew = Facts()
-        anew.update(map(Placed.of, there.values()))
+        anew.update(map(PlacedEntity.of, there.values()))
         assert held == set(facts) == set(anew)
         for name in there:
-            assert facts.upward([name]) == anew.upward([name])
+            assert facts.with_contents([name]) == anew.with_contents([name])
 
 
 def test_who_is_carried_by_what_changes():
@@ -60,7 +60,7 @@ def test_who_is_carried_by_what_changes():
     book = thing("book1", (0.0, 0.0, TOP))
     cup = thing("cup1", (0.0, 0.0, TOP + book.size_m[2]))
     facts.update([ROOM, CORNER, TABLE, book, cup])
-    assert facts.upward(["table1"]) == {"table1", "book1", "cup1"}
+    assert facts.with_contents(["table1"]) == {"table1", "book1", "cup1"}
     changed = facts.update([], ["book1"])
     assert changed.come == {CUP_ON_TABLE}
     assert facts.update([], ["table1"]).gone == {CUP_ON_TABLE, ("table1", "isLocatedIn", "kitchen1")}

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from semmap.nodes.kb_node.relations.geometry.convex import _searched, contact, convex
+from semmap.nodes.kb_node.relations.geometry.convex import _searched, contact, make_convex
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
 from tests.kb_node.relations.made import thing
 
@@ -50,7 +50,11 @@ def upright(draw):
     cos, sin = math.cos(turn := draw(TURN)), math.sin(turn)
     level = ((a * cos, a * sin, 0.0), (-b * sin, b * cos, 0.0))
     up = (0.0, 0.0, c)
-    return convex(draw(AT), (up,), level) if draw(st.booleans()) else convex(draw(AT), (*level, up), ())
+    return (
+        make_convex(draw(AT), (up,), level)
+        if draw(st.booleans())
+        else make_convex(draw(AT), (*level, up), ())
+    )
 
 
 @settings(deadline=None, max_examples=300)
@@ -64,8 +68,8 @@ def test_what_stands_upright_is_as_far_apart_as_the_search_finds(one, other):
 
 
 def test_one_that_is_deep_beside_another_is_not_above_it():
-    post = convex((0.0, 0.0, 0.5), ((0.0, 0.0, 0.5),), ((0.1, 0.0, 0.0), (0.0, 0.1, 0.0)))
-    beside = convex((0.19, 0.0, 0.55), ((0.0, 0.0, 0.5),), ((0.1, 0.0, 0.0), (0.0, 0.1, 0.0)))
+    post = make_convex((0.0, 0.0, 0.5), ((0.0, 0.0, 0.5),), ((0.1, 0.0, 0.0), (0.0, 0.1, 0.0)))
+    beside = make_convex((0.19, 0.0, 0.55), ((0.0, 0.0, 0.5),), ((0.1, 0.0, 0.0), (0.0, 0.1, 0.0)))
     found = contact(beside, post)
     assert found.distance == pytest.approx(-0.01, abs=1e-6)
     assert found.normal == pytest.approx((1.0, 0.0, 0.0), abs=1e-3)

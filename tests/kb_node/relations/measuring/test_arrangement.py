@@ -3,7 +3,12 @@
 import pytest
 
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
-from semmap.nodes.kb_node.relations.measuring.arrangement import attached, attachments, between, next_to
+from semmap.nodes.kb_node.relations.measuring.arrangement import (
+    find_attachments,
+    find_between,
+    measure_attachment,
+    measure_next_to,
+)
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 
@@ -28,31 +33,31 @@ def space(*entities):
 def test_next_to(other, holds):
     cup = thing("cup1", (0.0, 0.0, TOP))
     there = space(cup, other)
-    made = next_to(there, there.solids["cup1"], there.solids[other.name])
+    made = measure_next_to(there, there.solids["cup1"], there.solids[other.name])
     assert (None if made is None else made.holds) == holds
 
 
 def test_what_is_between_two_keeps_them_from_being_next_to_one_another():
     there = space(*CUPS)
     first, middle, last = (there.solids[cup.name] for cup in CUPS)
-    assert between(there, first, last) == [middle]
-    assert between(there, first, middle) == []
-    made = next_to(there, first, last)
+    assert find_between(there, first, last) == [middle]
+    assert find_between(there, first, middle) == []
+    made = measure_next_to(there, first, last)
     assert made is None or not made.holds
-    assert next_to(there, first, middle).holds
+    assert measure_next_to(there, first, middle).holds
 
 
 def test_what_hangs_on_a_wall_is_attached_to_it():
     there = space(WALL, PICTURE)
     picture, wall = there.solids["picture1"], there.solids["wall1"]
-    assert attached(there, picture, wall).holds
-    assert attached(there, wall, picture) is None
-    assert list(attachments(there, picture)) == [wall]
+    assert measure_attachment(there, picture, wall).holds
+    assert measure_attachment(there, wall, picture) is None
+    assert list(find_attachments(there, picture)) == [wall]
 
 
 def test_what_stands_at_a_wall_is_not():
     there = space(WALL, thing("cabinet1", (0.0, 1.72, 0.0)))
-    assert list(attachments(there, there.solids["cabinet1"])) == []
+    assert list(find_attachments(there, there.solids["cabinet1"])) == []
 
 
 def test_attachments_are_facts_and_end_when_something_bears_it():

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from semmap.nodes.kb_node.relations.lazy_space import LazySpace
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.surroundings import Surroundings
 from semmap.ontology.model_shapes import shapes
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
 
@@ -20,7 +20,7 @@ BOARDS = [surface.height for surface in shapes()["bookshelf"].surfaces]
 
 def said(name, *entities):
     space = Space([ROOM, CORNER, TABLE, *entities])
-    container, supports, place = space.whereabouts(space.solids[name])
+    container, supports, place = space.spatial_relations(space.solids[name])
     assert len(supports) < 2
     return tuple(found and found[0].name for found in (container, *(supports or (None,)), place))
 
@@ -113,7 +113,7 @@ NAMES = st.sampled_from(["cup1", "table2", "bowl1", "book1", "chair1", "corner1"
 @given(st.lists(st.tuples(NAMES, st.none() | POSES), max_size=25))
 def test_bringing_it_up_to_date_is_building_it_anew(changes):
     there = {entity.name: entity for entity in (ROOM, TABLE)}
-    kept = Surroundings(lambda: list(there.values()), there.get)
+    kept = LazySpace(lambda: list(there.values()), there.get)
     kept.space()
     for name, pose in changes:
         if pose is None:
@@ -124,11 +124,11 @@ def test_bringing_it_up_to_date_is_building_it_anew(changes):
             there[name] = thing(
                 name, (x, y, z), yaw=yaw, place=place, size=(1.5, 1.5, 2.5) if place else None
             )
-        kept.touch([name])
+        kept.mark_changed([name])
     new, space = Space(there.values()), kept.space()
     assert space.solids.keys() == new.solids.keys()
     for name, solid in space.solids.items():
-        ours, theirs = space.whereabouts(solid), new.whereabouts(new.solids[name])
+        ours, theirs = space.spatial_relations(solid), new.spatial_relations(new.solids[name])
         assert named(ours) == named(theirs)
 
 
@@ -155,7 +155,7 @@ def boards(degrees=50.0, height=1.0):
 def test_what_steep_sides_hold_is_on_them():
     ball = thing("ball1", (0.0, 0.0, 1.09))
     space = Space([ROOM, *boards(), ball])
-    supports = space.whereabouts(space.solids["ball1"]).supports
+    supports = space.spatial_relations(space.solids["ball1"]).supports
     assert [(side.name, made.holds, made.share) for side, made in supports] == [
         ("board1", True, 0.0),
         ("board2", True, 0.0),
@@ -166,7 +166,7 @@ def test_what_leans_and_stands_on_the_floor_is_on_nothing():
     low = boards(height=0.0)
     for there in ([ROOM, *low], low):  # also where no floor is known
         space = Space([*there, thing("ball1", (-0.235, 0.0, 0.0))])
-        assert space.whereabouts(space.solids["ball1"]).supports == ()
+        assert space.spatial_relations(space.solids["ball1"]).supports == ()
 
 
 @given(
@@ -177,7 +177,7 @@ def test_who_is_around_is_the_same_whether_it_is_remembered_or_not(places, margi
     space = Space([ROOM, TABLE, *(thing(f"cup{k}", (x, y, TOP)) for k, (x, y) in enumerate(places))])
     for solid in space.solids.values():
         expected = [set(space.around(solid, margin)) for margin in margins]
-        with space.remembering(of_few=True):
+        with space.caching(of_few=True):
             assert [set(space.around(solid, margin)) for margin in margins] == expected
-            assert set(space.bearers_around(solid)) == set(space.grid.around(solid.bounds, 0.0, solid))
-    assert space.memory is None
+            assert set(space.supporters_around(solid)) == set(space.grid.around(solid.bounds, 0.0, solid))
+    assert space.cache is None

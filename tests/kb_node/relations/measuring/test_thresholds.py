@@ -4,7 +4,7 @@ import pytest
 
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
-from semmap.nodes.kb_node.relations.measuring.thresholds import ANNOTATIONS, Thresholds, of_tbox
+from semmap.nodes.kb_node.relations.measuring.thresholds import ANNOTATIONS, Thresholds, read_thresholds
 from semmap.ontology import HOUSEHOLD_TTL
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -15,15 +15,15 @@ def said(**values):
     """A TBox that says these: isOn_greatestGap="0.01"."""
     triples = {tuple(key.split("_")): v.literal(text, v.XSD_FLOAT) for key, text in values.items()}
     names = {(v.dm(p), v.dm(a)): value for (p, a), value in triples.items()}
-    return of_tbox(lambda p, a: [names[p, a]] if (p, a) in names else [])
+    return read_thresholds(lambda p, a: [names[p, a]] if (p, a) in names else [])
 
 
 def test_the_household_says_all_of_them_and_the_same_as_a_tbox_that_says_none():
     triples = rdf.parse(HOUSEHOLD_TTL.read_bytes(), HOUSEHOLD_TTL.name)
     about = [(v.dm(a.property), v.dm(a.annotation)) for a in ANNOTATIONS]
     assert all(any((s, p) == one for s, p, _ in triples) for one in about)
-    assert of_tbox(lambda s, p: [o for a, b, o in triples if (a, b) == (s, p)]) == Thresholds()
-    assert of_tbox(lambda s, p: ()) == Thresholds()
+    assert read_thresholds(lambda s, p: [o for a, b, o in triples if (a, b) == (s, p)]) == Thresholds()
+    assert read_thresholds(lambda s, p: ()) == Thresholds()
 
 
 def test_another_tbox_draws_the_line_elsewhere():

@@ -3,9 +3,9 @@
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.support import on_nothing
+from semmap.nodes.kb_node.relations.support import describe_unsupported
 from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas.entities import Pose
 from tests.kb_node.relations.facts.test_many_at_once import require_alike
@@ -24,8 +24,8 @@ def on_tray(x, above=0.0, model="cup"):
 def bearers(name, things):
     space = Space([ROOM, *things])
     solid = space.solids[name]
-    assert on_nothing(space, solid) is None
-    return [other.name for other, _ in space.whereabouts(solid).supports]
+    assert describe_unsupported(space, solid) is None
+    return [other.name for other, _ in space.spatial_relations(solid).supports]
 
 
 @pytest.mark.parametrize("model", ["cup", "glass", "bottle"])
@@ -46,9 +46,11 @@ def test_it_is_on_the_tray_while_that_is_in_the_air():
 def test_what_lies_across_the_rims_is_on_them():
     """A board that is wider than the tray rests on its rims, a little or more above the floor."""
     pose = Pose(position_m=(0.0, 0.0, TOP + 0.04), orientation_wxyz=(1.0, 0.0, 0.0, 0.0))
-    board = Placed(name="board1", iri="urn:board1", pose=pose, size_m=(0.4, 0.1, 0.01), place=False, model="")
+    board = PlacedEntity(
+        name="board1", iri="urn:board1", pose=pose, size_m=(0.4, 0.1, 0.01), place=False, model=""
+    )
     space = Space([TABLE, thing("tray1", (0.0, 0.0, TOP)), board])
-    ((tray, made),) = space.whereabouts(space.solids["board1"]).supports
+    ((tray, made),) = space.spatial_relations(space.solids["board1"]).supports
     assert (tray.name, made.gap_m) == ("tray1", pytest.approx(0.0))
 
 
@@ -59,7 +61,7 @@ def test_two_trays_at_one_spot_do_not_stand_on_one_another():
 
 def held(entity, holder):
     """An entity that is grasped where it is."""
-    return structs.replace(Placed.of(entity), held_by=holder)
+    return structs.replace(PlacedEntity.of(entity), held_by=holder)
 
 
 def test_what_a_carried_tray_took_along_is_on_it_still():
@@ -69,13 +71,13 @@ def test_what_a_carried_tray_took_along_is_on_it_still():
     apple = thing("apple1", (0.0, 0.15, TOP + FLOOR_M + 0.02))
     along = [held(one, "tray1") for one in (cup, bowl, apple)]
     space = Space([TABLE, held(tray, "gripper1"), *along])
-    found = {name: space.whereabouts(solid) for name, solid in space.solids.items()}
+    found = {name: space.spatial_relations(solid) for name, solid in space.solids.items()}
     assert [other.name for other, _ in found["cup1"].supports] == ["tray1"]
     assert [other.name for other, _ in found["bowl1"].supports] == ["tray1"]
     assert found["apple1"].container[0].name == "bowl1"
     assert (found["tray1"].container, found["tray1"].supports) == (None, ())
-    assert space.may_bear(space.solids["tray1"], space.solids["cup1"])
-    assert not space.may_bear(space.solids["table1"], space.solids["tray1"])
+    assert space.may_support(space.solids["tray1"], space.solids["cup1"])
+    assert not space.may_support(space.solids["table1"], space.solids["tray1"])
 
 
 def test_what_anything_else_grasps_is_on_nothing():
@@ -87,13 +89,15 @@ def test_what_anything_else_grasps_is_on_nothing():
         [held(cup, "tray2"), held(tray, "gripper1"), thing("tray2", (1.0, 0.0, TOP))],
     ):
         space = Space([table, *things])
-        assert space.whereabouts(space.solids["cup1"]).supports == ()
+        assert space.spatial_relations(space.solids["cup1"]).supports == ()
 
 
 def test_it_is_on_the_table_again_where_that_is_supposed():
     table, tray, cup = on_tray(0.0)
     space = Space([table, held(tray, "gripper1"), held(cup, "tray1")])
-    with space.supposing([Placed.of(tray)], without=("cup1",)):
-        assert [other.name for other, _ in space.whereabouts(space.solids["tray1"]).supports] == ["table1"]
-    assert space.whereabouts(space.solids["tray1"]).supports == ()
-    assert [other.name for other, _ in space.whereabouts(space.solids["cup1"]).supports] == ["tray1"]
+    with space.with_changes([PlacedEntity.of(tray)], without=("cup1",)):
+        assert [other.name for other, _ in space.spatial_relations(space.solids["tray1"]).supports] == [
+            "table1"
+        ]
+    assert space.spatial_relations(space.solids["tray1"]).supports == ()
+    assert [other.name for other, _ in space.spatial_relations(space.solids["cup1"]).supports] == ["tray1"]

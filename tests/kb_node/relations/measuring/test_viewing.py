@@ -5,7 +5,7 @@ import math
 import pytest
 
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.telling import relations
+from semmap.nodes.kb_node.relations.relation_reports import list_relations
 from semmap.schemas.commands import Relations
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 
@@ -16,7 +16,7 @@ PERSON = thing("person1", (-2.5, 0.0, 0.0), model="person")
 
 def told(*entities, **fields):
     space = Space([ROOM, TABLE, CUP, *entities])
-    return {(r.relation, r.object): r for r in relations(space, Relations(name="cup1", **fields))}
+    return {(r.relation, r.object): r for r in list_relations(space, Relations(name="cup1", **fields))}
 
 
 def test_what_nothing_is_in_the_way_of_is_visible():

@@ -8,7 +8,7 @@ import pytest
 from semmap.nodes.kb_node import undo
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.compaction import compaction, leftovers
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal, index_check
 from semmap.nodes.kb_node.storage.journal.verification import verify
 from semmap.nodes.kb_node.storage.repair.repair import repair
@@ -61,7 +61,7 @@ def opened(data):
 
 @pytest.mark.parametrize("until", range(1, 10))
 def test_the_map_and_what_is_kept_of_its_past_stay_as_they_were(tmp_path, semantic_map, until):
-    journal, past = semantic_map._journal, Past(semantic_map._journal)
+    journal, past = semantic_map._journal, HistoryReader(semantic_map._journal)
     before, commits, origin = state(semantic_map), list(journal.commits()), journal.origin()
     as_of = {seq: past.entities(seq) for seq in range(1, 11)}
     compaction.compact(journal, past, until)
@@ -76,7 +76,7 @@ def test_the_map_and_what_is_kept_of_its_past_stay_as_they_were(tmp_path, semant
     }
     journal = Journal(tmp_path / FILENAME)
     assert (journal.first, journal.last, journal.origin()) == (until + 1, 12, origin)
-    assert not leftovers.are_there(journal)
+    assert not leftovers.exist(journal)
     journal.close()
     assert repair(tmp_path).startswith("nothing is damaged")
 
@@ -91,7 +91,7 @@ def test_what_is_older_is_told_by_time(semantic_map, day):
     assert older(30) == (0, 0)
     assert older(3) == (7, 7)
     assert older(0.25) == (9, 9)  # the last one stays
-    compaction.compact(journal, Past(journal), 4)
+    compaction.compact(journal, HistoryReader(journal), 4)
     assert older(3) == (7, 3)
     assert older(30) == (4, 0)
 
@@ -108,7 +108,7 @@ def test_a_clock_that_went_wrong_does_not_decide(tmp_path, day):
 
 
 def test_where_the_history_begins_is_said(semantic_map, day):
-    journal, past = semantic_map._journal, Past(semantic_map._journal)
+    journal, past = semantic_map._journal, HistoryReader(semantic_map._journal)
     stamp_ns = journal.stamps.of(6)
     compaction.compact(journal, past, 6)
     first, *rest = past.history(History())
@@ -146,25 +146,25 @@ def test_an_end_in_the_middle_loses_nothing(tmp_path, semantic_map, monkeypatch)
     with monkeypatch.context() as patch:
         patch.setattr(index_check, "write", fail)
         with pytest.raises(MemoryError):
-            compaction.compact(journal, Past(journal), 6)
+            compaction.compact(journal, HistoryReader(journal), 6)
     assert list(journal.commits()) == commits
     with monkeypatch.context() as patch:
         patch.setattr(leftovers, "delete", lambda _: None)
-        compaction.compact(journal, Past(journal), 6)
+        compaction.compact(journal, HistoryReader(journal), 6)
     home.close(semantic_map)
     after, kept = opened(tmp_path)
     assert {e.name for e in after[2].entities} == {e.name for e in expected[2].entities}
     assert kept == commits[6:]
     journal = Journal(tmp_path / FILENAME)
-    assert leftovers.are_there(journal)
+    assert leftovers.exist(journal)
     leftovers.delete(journal)
-    assert not leftovers.are_there(journal)
+    assert not leftovers.exist(journal)
     verify(journal)
     journal.close()
 
 
 def test_compacting_again_goes_further(tmp_path, semantic_map):
-    journal, past = semantic_map._journal, Past(semantic_map._journal)
+    journal, past = semantic_map._journal, HistoryReader(semantic_map._journal)
     expected, commits = past.entities(10), list(journal.commits())
     for until in (3, 6, 9):
         compaction.compact(journal, past, until)
@@ -184,7 +184,7 @@ def test_the_room_is_given_back(tmp_path):
     home.close(semantic_map)
     size = (tmp_path / FILENAME).stat().st_size
     journal = Journal(tmp_path / FILENAME)
-    compaction.compact(journal, Past(journal), 190)
+    compaction.compact(journal, HistoryReader(journal), 190)
     journal.close()
     assert (tmp_path / FILENAME).stat().st_size < size / 3
 
@@ -193,7 +193,7 @@ def test_the_room_is_given_back(tmp_path):
 @pytest.mark.parametrize("part", ["head", "body"])
 def test_a_snapshot_that_is_damaged_is_noticed(tmp_path, semantic_map, checkpoint, part):
     expected = state(semantic_map)
-    compaction.compact(semantic_map._journal, Past(semantic_map._journal), 6)
+    compaction.compact(semantic_map._journal, HistoryReader(semantic_map._journal), 6)
     if checkpoint:
         semantic_map.checkpoint()
     home.close(semantic_map)
@@ -212,7 +212,7 @@ def test_a_snapshot_that_is_damaged_is_noticed(tmp_path, semantic_map, checkpoin
 
 
 def test_repair_keeps_the_snapshot(tmp_path, semantic_map):
-    compaction.compact(semantic_map._journal, Past(semantic_map._journal), 6)
+    compaction.compact(semantic_map._journal, HistoryReader(semantic_map._journal), 6)
     home.close(semantic_map)
     flip(tmp_path / FILENAME, "commits", 8)
     assert repair(tmp_path).startswith("the map continues from commit 10 (commit 8 is damaged and left out)")

@@ -1,7 +1,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semmap.nodes.kb_node.storage.encoding import checkpoint_encoding, dense
+from semmap.nodes.kb_node.storage.encoding import body_encoding, checkpoint_encoding
 from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint, decode, encode
 from semmap.schemas import codec
 from tests.recorder.messages import entity
@@ -48,4 +48,4 @@ def test_entities_share_what_they_have_in_common():
 def test_what_an_older_version_wrote_is_read():
     checkpoint = Checkpoint(seq=7, triples=(("<urn:a>", "<urn:b>", '"c"'),), entities=(entity("a", "Cup"),))
     assert decode(codec.encode(checkpoint)) == checkpoint
-    assert decode(dense.encode(checkpoint, dense_from=1)) == checkpoint
+    assert decode(body_encoding.encode(checkpoint, dense_from=1)) == checkpoint

@@ -61,7 +61,7 @@ ALL = {f"chair{number}" for number in range(1, 9)}
 )
 def test_a_transaction_may_be_unfinished_only_if_the_machine_lost_power(is_before_boot, recovered, lost):
     log = Log(Path("journal"), io.BytesIO(), (3, 6, 9), is_before_boot)
-    assert log.lost(recovered) is lost
+    assert log.has_lost_commits(recovered) is lost
 
 
 def test_a_sound_log_is_read(data):
