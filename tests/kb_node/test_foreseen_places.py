@@ -158,7 +158,7 @@ def test_a_process_that_dies_costs_nothing_but_time(new_map, few_are_many, monke
     monkeypatch.setattr(map_state, "Ahead", partial(Precomputation, command=DIES))
     semantic_map, load = new_map(), wanted(things())
     there = seen(semantic_map, semantic_map.commit(load))
-    assert "working out ahead" in caplog.text
+    assert "precomputes facts failed" in caplog.text
     assert there == alone(monkeypatch, new_map(), load)
 
 

@@ -1,8 +1,8 @@
-"""What goes along when a thing is carried away: all that stands on it or is inside it, and so on upward.
+"""The contents of an object: all that moves with it, standing on it or inside it, at any depth.
 
-Not what reaches deep into it: of two things whose shapes overlap, as those of an armchair pushed into a couch
-do, neither rests on the other, even where some part of one meets a part of the other from above. Nor what
-something holds: that goes where its holder goes.
+Objects that penetrate each other do not support each other. An example is an armchair pushed into a couch,
+even where a part of one touches a part of the other from above. Attached objects move with their holder and
+are not contents of anything else.
 """
 
 from __future__ import annotations
@@ -18,22 +18,31 @@ from semmap.nodes.kb_node.relations.measuring.space import Space
 
 
 class Carrier(NamedTuple):
-    """What a thing is inside, or else stands on; of several supports that which counts most."""
+    """The object that contains or supports another.
+
+    Of several supports it is the one with the largest share.
+    """
 
     name: str
     is_inside: bool
 
 
 class Contents:
-    """What things bear: as `facts` are kept of them or, without any, as they stand. A place bears nothing."""
+    """The contents of objects, from the stored `facts` or measured if there are none.
+
+    A place has no contents.
+    """
 
     def __init__(self, space: Space, facts: Facts | None = None) -> None:
         self._space = space
         self._facts = facts
-        self._bearers: dict[str, Carrier | None] = {}
+        self._carriers: dict[str, Carrier | None] = {}
 
     def find_all(self, name: str, leave: Collection[str] = ()) -> list[str]:
-        """What a thing bears, what bears before what is borne; without `leave` and what only that bears."""
+        """Return the contents of an object, supports before what they support.
+
+        Objects in `leave`, and those supported only by them, are left out.
+        """
         found: dict[str, None] = {}
         waiting = deque([name])
         while waiting:
@@ -44,34 +53,34 @@ class Contents:
         return list(found)
 
     def find_direct(self, name: str) -> Iterator[tuple[str, Carrier]]:
-        """What stands on a thing itself, or is inside it, in the order of names."""
+        """Yield what stands directly on an object or is inside it, ordered by name."""
         solid = self._space.solids.get(name)
         if solid is None or solid.is_place:
             return
         if self._facts is not None:
-            beside = [other for other in map(self._space.solids.get, self._facts.about(name)) if other]
+            candidates = [other for other in map(self._space.solids.get, self._facts.about(name)) if other]
         else:
-            beside = [o for o in self._space.around(solid) if self._space.may_support(solid, o)]
-        for other in sorted(beside, key=lambda other: other.name):
+            candidates = [o for o in self._space.around(solid) if self._space.may_support(solid, o)]
+        for other in sorted(candidates, key=lambda other: other.name):
             if other.name in self._space.holders:
                 continue
-            bearer = self._bearer(other)
-            if bearer is None or bearer.name != name:
+            carrier = self._carrier(other)
+            if carrier is None or carrier.name != name:
                 continue
-            if bearer.is_inside or not self._overlap(solid, other):
-                yield other.name, bearer
+            if carrier.is_inside or not self._overlap(solid, other):
+                yield other.name, carrier
 
     def _overlap(self, solid: Solid, other: Solid) -> bool:
-        """Whether two reach into one another by more than what rests may be off."""
+        """Return whether two objects penetrate each other by more than the position tolerance."""
         contact = measures.touches(solid, other, self._space.limits)
         return contact is not None and contact.gap_m < -self._space.limits.gap_m
 
-    def _bearer(self, solid: Solid) -> Carrier | None:
-        if solid.name not in self._bearers:
-            self._bearers[solid.name] = self._looked_up(solid)
-        return self._bearers[solid.name]
+    def _carrier(self, solid: Solid) -> Carrier | None:
+        if solid.name not in self._carriers:
+            self._carriers[solid.name] = self._find_carrier(solid)
+        return self._carriers[solid.name]
 
-    def _looked_up(self, solid: Solid) -> Carrier | None:
+    def _find_carrier(self, solid: Solid) -> Carrier | None:
         if solid.is_place:
             return None
         if self._facts is not None:

@@ -1,4 +1,4 @@
-"""The space of a map, brought up to date when somebody asks."""
+"""The space of a map, updated on access."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from semmap.schemas.entities import Entity
 
 
 class LazySpace:
-    """Commits only note whom they touched; the first question costs as much as the map is large."""
+    """A space that is updated when it is read.
+
+    Commits only record which entities they touched. The first access builds the space of the whole map.
+    """
 
     def __init__(
         self,
@@ -18,7 +21,10 @@ class LazySpace:
         find: Callable[[str], Entity | None],
         limits: Callable[[], Thresholds] = Thresholds,
     ) -> None:
-        """`entities()` are all that there are now, `find(name)` is one; `limits()` are the TBox's."""
+        """Read entities with `entities()` (all) and `find(name)` (one).
+
+        `limits()` returns the thresholds of the TBox.
+        """
         self._entities = entities
         self._find = find
         self._limits = limits
@@ -26,12 +32,12 @@ class LazySpace:
         self._touched: set[str] = set()
 
     def mark_changed(self, names: Iterable[str]) -> None:
-        """These entities came, went, or are otherwise now."""
+        """Record that these entities were added, changed or removed."""
         if self._space is not None:
             self._touched.update(names)
 
     def space(self) -> Space:
-        """The solids as they are now."""
+        """Return the space with all recorded changes applied."""
         limits = self._limits()
         if self._space is None or self._space.limits != limits:
             self._space = Space(self._entities(), limits)

@@ -1,4 +1,4 @@
-"""Where things are, asked pair by pair: what a description in words is held against."""
+"""Spatial relations of a map, evaluated pair by pair to resolve descriptions in words."""
 
 from __future__ import annotations
 
@@ -23,20 +23,24 @@ _Measured = Callable[[Space, Solid, Solid, Set[Fact]], bool]
 
 
 MOST_PAIRS: Final = 20_000
-"""So many pairs are looked at for one description: who asks for more holds up everybody else."""
+"""The most pairs that are compared for one description, because other requests wait meanwhile."""
 
-_AS_LONG_AS: Final = 200
-"""What is between two things takes as long as so many pairs."""
+_PAIRS_PER_BETWEEN: Final = 200
+"""The cost of finding what is between two objects, in pairs."""
 
 
 class RelationCache:
-    """The relations of a map as they are now, each measured when it is asked for and only once.
+    """The current relations of a map, each measured on first use and then cached.
 
-    Raises BadRequest once more than `MOST_PAIRS` pairs have been asked for.
+    Methods raise BadRequest after more than `MOST_PAIRS` pairs have been compared.
     """
 
     def __init__(self, space: Space, view: View | None = None, left_out: Set[Fact] = frozenset()) -> None:
-        """view: of who looks, if anybody does; what is `left_out` does not count."""
+        """Evaluate the relations in `space`.
+
+        `view` is the viewpoint for left, right, in front and behind, if there is one. Facts in `left_out`
+        do not count.
+        """
         self._space: Final = space
         self._left_out: Final = left_out
         self._view: Final = view
@@ -46,11 +50,11 @@ class RelationCache:
 
     @property
     def has_viewer(self) -> bool:
-        """Whether somebody looks."""
+        """Return whether there is a viewpoint."""
         return self._view is not None
 
     def related(self, relation: RelationName, name: str, other: str) -> bool:
-        """Whether a relation holds of two, as `list` and `relations` mean it."""
+        """Return whether a relation holds for two entities, as in `list` and `relations`."""
         self._count()
         key = (relation, name, other)
         if key not in self._known:
@@ -61,8 +65,8 @@ class RelationCache:
             elif measured is not None:
                 self._known[key] = measured(self._space, one, two, self._left_out)
             else:
-                view = self._seen()
-                self._known[key] = not self._is_borne(one, two) and is_on_side(
+                view = self._require_view()
+                self._known[key] = not self._is_support_pair(one, two) and is_on_side(
                     self._space, relation, one, two, view
                 )
         return self._known[key]
@@ -71,47 +75,49 @@ class RelationCache:
         self._pairs += pairs
         if self._pairs > MOST_PAIRS:
             raise errors.BadRequest(
-                f"more than {MOST_PAIRS} pairs of things would have to be compared;"
-                " say of what kind the things are"
+                f"too many objects to compare (more than {MOST_PAIRS} pairs); name the class of the objects"
             )
 
-    def _is_borne(self, one: Solid, two: Solid) -> bool:
-        """Whether one bears the other: a cup on a desk is not right of the desk."""
+    def _is_support_pair(self, one: Solid, two: Solid) -> bool:
+        """Return whether one supports the other. A cup on a desk is not right of the desk."""
         return two in find_supporters(self._space, one) or one in find_supporters(self._space, two)
 
     def between(self, one: str, other: str) -> frozenset[str]:
-        """What is between two things."""
+        """Return the names of the objects between two objects."""
         key = (min(one, other), max(one, other))
         if key not in self._between:
-            self._count(_AS_LONG_AS)
+            self._count(_PAIRS_PER_BETWEEN)
             pair = [solid for name in key if (solid := self._space.solids.get(name)) is not None]
             found = find_between(self._space, *pair) if len(pair) == 2 else []
             self._between[key] = frozenset(solid.name for solid in found)
         return self._between[key]
 
     def position(self, name: str) -> tuple[float, float, float] | None:
-        """Its bottom centre [m]."""
+        """Return the bottom centre [m]."""
         solid = self._space.solids.get(name)
         return None if solid is None else solid.position
 
     def size(self, name: str) -> tuple[float, float, float] | None:
-        """Its extent along its own axes [m]; None where it is not known."""
+        """Return the extent along the object's own axes [m], or None if it is unknown."""
         solid = self._space.solids.get(name)
         return solid.size if solid is not None and solid.is_measured else None
 
     def distance(self, name: str, other: str) -> float:
-        """From centre to centre in the plan [m]; infinite for what has no position."""
+        """Return the horizontal distance between two centres [m], infinite without a position."""
         one, two = self._space.solids.get(name), self._space.solids.get(other)
         return math.inf if one is None or two is None else math.dist(one.centre[:2], two.centre[:2])
 
     def distance_from_viewer(self, name: str) -> float:
-        """In the plan [m]. Raises BadRequest where nobody looks."""
+        """Return the horizontal distance [m]. Raises BadRequest without a viewpoint."""
         solid = self._space.solids.get(name)
-        return math.inf if solid is None else math.dist(solid.centre[:2], self._seen().eyes[:2])
+        return math.inf if solid is None else math.dist(solid.centre[:2], self._require_view().eyes[:2])
 
     def bearing(self, name: str) -> float:
-        """To the left of where the viewer looks [rad]. Raises BadRequest where nobody looks."""
-        view, solid = self._seen(), self._space.solids.get(name)
+        """Return the angle from the viewing direction, positive to the left [rad].
+
+        Raises BadRequest without a viewpoint.
+        """
+        view, solid = self._require_view(), self._space.solids.get(name)
         if solid is None:
             return math.inf
         dx, dy = solid.centre[0] - view.eyes[0], solid.centre[1] - view.eyes[1]
@@ -119,7 +125,7 @@ class RelationCache:
         return math.atan2(fx * dy - fy * dx, fx * dx + fy * dy)
 
     def holds_anything(self, name: str) -> bool:
-        """Whether anything is in or on it; of a place whether anything is in it."""
+        """Return whether anything is in or on an object, or in a place."""
         solid = self._space.solids.get(name)
         if solid is None:
             return False
@@ -128,12 +134,12 @@ class RelationCache:
         return next(iter(find_contents(self._space, solid)), None) is not None
 
     def is_on_floor(self, name: str) -> bool:
-        """Whether a thing stands on the floor of its place, and in or on nothing else."""
+        """Return whether an object stands on the floor of its place and in or on nothing else."""
         solid = self._space.solids.get(name)
         return solid is not None and stands_on_floor(self._space, solid)
 
     def spatial_relations(self, name: str) -> tuple[tuple[RelationName, str], ...]:
-        """What a thing is inside, what it is on, and in which place, those that it has."""
+        """Return what an object is inside, what it is on, and its place, as far as they exist."""
         if (solid := self._space.solids.get(name)) is None:
             return ()
         container, supports, place = self._space.spatial_relations(solid)
@@ -146,11 +152,11 @@ class RelationCache:
             found.append(("isLocatedIn", place[0].name))
         return tuple(found)
 
-    def _seen(self) -> View:
+    def _require_view(self) -> View:
         if self._view is None:
             raise errors.BadRequest(
-                "left, right, in front, behind and nearest depend on who looks; say who it is: --from VIEWER,"
-                " or --from-pose X Y Z YAW"
+                "left, right, in front, behind and nearest require a viewpoint; add --from VIEWER or"
+                " --from-pose X Y Z YAW"
             )
         return self._view
 

@@ -1,4 +1,4 @@
-"""Relations in words: the sentence with the measurement behind it."""
+"""Relations of an object as sentences with the measured values."""
 
 from __future__ import annotations
 
@@ -36,18 +36,19 @@ from semmap.schemas import errors
 from semmap.schemas.commands import Relations
 from semmap.schemas.relations import Relation, RelationName
 
-_ABOUT_BETWEEN = 8
-"""So many neighbours are looked at for what a thing is between."""
+_NEIGHBOURS_BETWEEN = 8
+"""The number of neighbours considered for `isBetween`."""
 _MOST_BETWEEN = 2
-"""So many pairs, the closest, are told of all that a thing is between."""
+"""The number of pairs reported for `isBetween`, closest first."""
 _MOST_SIDES = 4
-"""Of so many neighbours, the nearest, it is told on which side of them a thing is."""
+"""The number of neighbours, nearest first, for which sides are reported."""
 
 
 def list_relations(space: Space, query: Relations, *, is_fixed: bool = False) -> Iterator[Relation]:
-    """What is asked for. Nothing need bear what is fixed, so of that it is not told that nothing does.
+    """Yield the relations that a query asks for.
 
-    Raises UnknownName, Refused for what has no position, BadRequest for what is to be seen from itself.
+    A fixed object needs no support, so a missing one is not reported. Raises UnknownName. Raises Refused
+    for an object without a position, and BadRequest if the viewer is the object itself.
     """
     for name in filter(None, (query.other, query.viewer)):
         if name not in space.solids:
@@ -59,9 +60,7 @@ def list_relations(space: Space, query: Relations, *, is_fixed: bool = False) ->
     else:
         yield from list_relations_of(space, query.name, is_fixed=is_fixed)
     if query.viewer == query.name:
-        raise errors.BadRequest(
-            f"{query.name} cannot be seen from itself; the viewer (--from) must be another entity"
-        )
+        raise errors.BadRequest(f"{query.name} cannot be its own viewer (--from); name another entity")
     viewer = None if query.viewer is None else space.solids[query.viewer]
     if viewer is not None or query.viewpoint is not None:
         view = View.of(viewer) if viewer is not None else View.at(*query.viewpoint or (0.0, 0.0, 0.0, 0.0))
@@ -73,9 +72,10 @@ def list_relations(space: Space, query: Relations, *, is_fixed: bool = False) ->
 
 
 def list_relations_of(space: Space, name: str, *, is_fixed: bool = False) -> Iterator[Relation]:
-    """What a thing is in and on, hangs on, bears, touches, is under, above, next to, near to and between.
+    """Yield the relations of an object to its surroundings.
 
-    What it bears is told as that of the other one: `isOn` or `isInside`, of which it is the object.
+    What it supports or contains is reported from the other object: `isOn` or `isInside` with this one as
+    the object.
     """
     solid = _solid(space, name)
     yield from (found := list(list_locations(space, name)))
@@ -86,7 +86,7 @@ def list_relations_of(space: Space, name: str, *, is_fixed: bool = False) -> Ite
     above = set[str]()
     for relation, upper, (_, measure) in find_contents(space, solid):
         above.add(upper.name)
-        yield _told(space, relation, upper, solid, measure)
+        yield _make_relation(space, relation, upper, solid, measure)
     told = {relation.object for relation in found}
     measure_pair = [o for o in space.counted_around(solid, space.limits.near_most_m) if not o.is_place]
     measure_pair = sorted(measure_pair, key=lambda other: (measures.gap(solid, other), other.name))
@@ -94,23 +94,25 @@ def list_relations_of(space: Space, name: str, *, is_fixed: bool = False) -> Ite
         if other.name not in told:
             holding = (relation for relation in _beside(space, solid, other) if relation.holds)
             is_borne = other.name in above
-            yield from _special(r for r in holding if not (is_borne and r.relation == "touches"))
-    near = [other for other in measure_pair if other.name not in told and not other.is_place][:_ABOUT_BETWEEN]
+            yield from _drop_implied_near(r for r in holding if not (is_borne and r.relation == "touches"))
+    near = [other for other in measure_pair if other.name not in told and not other.is_place][
+        :_NEIGHBOURS_BETWEEN
+    ]
     pairs = sorted(combinations(near, 2), key=lambda pair: measures.gap(*pair))
     amid = (pair for pair in pairs if solid in find_between(space, *pair))
     yield from (_between(solid, *pair) for pair in islice(amid, _MOST_BETWEEN))
 
 
 def _nearest(space: Space, name: str, list_sides: Iterable[Relation], viewer: str | None) -> set[str]:
-    """The viewer, and those next of which it is told on which side of them a thing is."""
+    """Return the viewer and the nearest neighbours, for which sides are reported."""
     others = {side.object for side in list_sides if side.object in space.solids and side.object != viewer}
     solid = space.solids[name]
     near = sorted(others, key=lambda other: (measures.gap(solid, space.solids[other]), other))
     return {*near[:_MOST_SIDES], *filter(None, (viewer,))}
 
 
-def _special(list_relations: Iterable[Relation]) -> Iterator[Relation]:
-    """Without near where they are next to one another."""
+def _drop_implied_near(list_relations: Iterable[Relation]) -> Iterator[Relation]:
+    """Drop `isNear` between objects that are next to each other."""
     found = tuple(list_relations)
     is_next = any(relation.relation == "isNextTo" for relation in found)
     return (relation for relation in found if not (is_next and relation.relation == "isNear"))
@@ -125,50 +127,50 @@ def _between(solid: Solid, one: Solid, other: Solid) -> Relation:
         object=first,
         and_object=second,
         gap_m=round(apart, 4),
-        text=f"{solid.name} is between {first} and {second}: it is on the strip that joins them, which are"
+        text=f"{solid.name} is between {first} and {second}: it is on the strip that joins them; they are"
         f" {format_length(apart)} apart",
     )
 
 
 def list_locations(space: Space, name: str) -> Iterator[Relation]:
-    """What a thing is inside, on, attached to and in; nothing for one without a position."""
+    """Yield what an object is inside, on, attached to and located in; nothing without a position."""
     if (solid := space.solids.get(name)) is None:
         return
     container, supports, place = space.spatial_relations(solid)
     if container is not None:
-        yield _told(space, "isInside", solid, *container)
+        yield _make_relation(space, "isInside", solid, *container)
     for support in supports:
-        yield _told(space, "isOn", solid, *support)
+        yield _make_relation(space, "isOn", solid, *support)
     for other in () if solid.is_place else find_attachments(space, solid):
         if (made := measure_attachment(space, solid, other)) is not None:
-            yield _told(space, "isAttachedTo", solid, other, made)
+            yield _make_relation(space, "isAttachedTo", solid, other, made)
     if place is not None:
-        yield _told(space, "isLocatedIn", solid, *place)
+        yield _make_relation(space, "isLocatedIn", solid, *place)
 
 
 def list_relations_between(space: Space, name: str, other_name: str) -> Iterator[Relation]:
-    """All that can be measured of a pair, also what does not hold."""
+    """Yield all relations that can be measured between two objects, also negative ones."""
     solid, other = _solid(space, name), _solid(space, other_name)
     if solid is other:
-        raise errors.BadRequest(f"{name} is in no relation to itself; name two different things")
+        raise errors.BadRequest(f"{name} has no relation to itself; name two different objects")
     wanted: tuple[RelationName, ...] = ("isLocatedIn",) if other.is_place else ("isOn", "isInside")
     found = [
-        _told(space, relation, solid, other, measure)
+        _make_relation(space, relation, solid, other, measure)
         for relation in wanted
         if (measure := measure_relation(space, relation, solid, other)) is not None
     ]
     if not other.is_place and not any(relation.relation == "isOn" for relation in found):
-        found.insert(0, _denied(space, "isOn", solid, other))
+        found.insert(0, _make_negative(space, "isOn", solid, other))
     found += _beside(space, solid, other)
     if not other.is_place and not any(relation.relation == "touches" for relation in found):
-        found += filter(None, (_touches_by_the_way(space, solid, other),))
+        found += filter(None, (_find_implied_touch(space, solid, other),))
     yield from found
     if not (solid.is_place or other.is_place):
         yield from (_between(third, solid, other) for third in find_between(space, solid, other))
 
 
-def _touches_by_the_way(space: Space, solid: Solid, other: Solid) -> Relation | None:
-    """What is on a thing or attached to it touches it, within what a pose is worth; else None."""
+def _find_implied_touch(space: Space, solid: Solid, other: Solid) -> Relation | None:
+    """Return `touches` for an object that is on or attached to the other within the tolerance, or None."""
     for one, two in ((solid, other), (other, solid)):
         find_contents: tuple[tuple[RelationName, Measure | None], ...] = (
             ("isOn", measure_relation(space, "isOn", one, two)),
@@ -176,7 +178,7 @@ def _touches_by_the_way(space: Space, solid: Solid, other: Solid) -> Relation | 
         )
         for relation, made in find_contents:
             if made is not None and made.holds:
-                told = _told(space, relation, one, two, made)
+                told = _make_relation(space, relation, one, two, made)
                 text = f"{solid.name} touches {other.name}, because {told.text}"
                 return structs.replace(
                     told, relation="touches", subject=solid.name, object=other.name, share=1.0, text=text
@@ -184,7 +186,7 @@ def _touches_by_the_way(space: Space, solid: Solid, other: Solid) -> Relation | 
     return None
 
 
-def _denied(space: Space, relation: RelationName, solid: Solid, other: Solid) -> Relation:
+def _make_negative(space: Space, relation: RelationName, solid: Solid, other: Solid) -> Relation:
     return Relation(
         relation=relation,
         subject=solid.name,
@@ -192,36 +194,37 @@ def _denied(space: Space, relation: RelationName, solid: Solid, other: Solid) ->
         holds=False,
         gap_m=round(measures.gap(solid, other), 4),
         share=0.0,
-        text=f"{solid.name} {phrase_relation(relation, False)} {other.name}: {explain_absence(space, relation, solid, other)}",
+        text=f"{solid.name} {phrase_relation(relation, False)} {other.name}:"
+        f" {explain_absence(space, relation, solid, other)}",
     )
 
 
 def explain_relation(space: Space, name: str, relation: RelationName, other_name: str) -> Relation | None:
-    """Whether a relation holds of two, and why or why not, as measured; None where one has no position.
+    """Return whether a relation holds and why, as measured, or None if a position is unknown.
 
-    What depends on who looks is seen from the other one, by its own front.
+    View-dependent relations are evaluated from `other`, facing along its own front.
     """
     solid, other = space.solids.get(name), space.solids.get(other_name)
     if solid is None or other is None:
         return None
     found: Iterable[Relation] = ()
     if solid is not other:
-        depends_on_who_looks = relation in (*SIDES, "isVisibleFrom")
+        is_view_dependent = relation in (*SIDES, "isVisibleFrom")
         found = (
             list_relations_from_view(space, name, View.of(other), other)
-            if depends_on_who_looks
+            if is_view_dependent
             else list_relations_between(space, name, other_name)
         )
     for told in found:
         if told.relation == relation and told.object == other_name:
             return told
-    return _denied(space, relation, solid, other)
+    return _make_negative(space, relation, solid, other)
 
 
 def measure_relation(space: Space, relation: RelationName, solid: Solid, other: Solid) -> Measure | None:
-    """The measurement behind one relation; None where nothing can be measured.
+    """Return the measurement behind a relation, or None if it cannot be measured.
 
-    Of what a thing could be on or inside only the nearest counts: the others are told as not holding.
+    Only the nearest support and the smallest container count. For others the relation does not hold.
     """
     limits = space.limits
     if relation == "isLocatedIn":
@@ -240,9 +243,9 @@ def measure_relation(space: Space, relation: RelationName, solid: Solid, other: 
 
 
 def list_relations_from_view(space: Space, name: str, view: View, viewer: Solid | None) -> Iterator[Relation]:
-    """Whether a thing can be seen by a viewer, and on which side of its neighbours and the viewer it is.
+    """Yield whether an object is visible, and its sides relative to neighbours and the viewer.
 
-    Of what bears it, or is borne by it, nobody says that: a cup on a desk is not right of the desk.
+    Side relations to its supports and contents are left out: a cup on a desk is not right of the desk.
     """
     solid = _solid(space, name)
     if solid.is_place:
@@ -259,7 +262,8 @@ def list_relations_from_view(space: Space, name: str, view: View, viewer: Solid 
             subject=name,
             object=other.name,
             gap_m=round(by_m, 4),
-            text=f"{name} {phrase_relation(relation)} {other.name}, by {format_length(by_m)} from centre to centre",
+            text=f"{name} {phrase_relation(relation)} {other.name},"
+            f" by {format_length(by_m)} from centre to centre",
         )
     share, blocker = measure_visibility(space, solid, view, viewer)
     reason = f"{share:.0%} of the lines of sight reach it" + (f"; {blocker} is in the way" if blocker else "")
@@ -277,12 +281,14 @@ def list_relations_from_view(space: Space, name: str, view: View, viewer: Solid 
 
 def _beside(space: Space, solid: Solid, other: Solid) -> Iterator[Relation]:
     if is_separate(space, solid, other) and (made := measure_attachment(space, solid, other)) is not None:
-        yield _told(space, "isAttachedTo", solid, other, made)
+        yield _make_relation(space, "isAttachedTo", solid, other, made)
     for relation, measure in measure_pair(space, solid, other):
-        yield _told(space, relation, solid, other, measure)
+        yield _make_relation(space, relation, solid, other, measure)
 
 
-def _told(space: Space, relation: RelationName, solid: Solid, other: Solid, measure: Measure) -> Relation:
+def _make_relation(
+    space: Space, relation: RelationName, solid: Solid, other: Solid, measure: Measure
+) -> Relation:
     reason = (
         explain_measure(relation, solid, other, measure)
         if measure.holds
@@ -303,4 +309,6 @@ def _solid(space: Space, name: str) -> Solid:
     try:
         return space.solids[name]
     except KeyError:
-        raise errors.Refused(f"{name} has no position, so it is in no relation to anything") from None
+        raise errors.Refused(
+            f"{name} has no position, so its relations are unknown; set one: semmap update {name} --at X Y Z"
+        ) from None

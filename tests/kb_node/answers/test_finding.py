@@ -202,9 +202,9 @@ def test_what_stands_beside_and_what_leads_where(flat, text, meant):
 def test_who_looks_and_who_asks_must_be_there(flat):
     with pytest.raises(errors.UnknownName):
         Finding(flat).find(Find(text="my cup", asker="nobody"))
-    with pytest.raises(errors.BadRequest, match="depend on who looks"):
+    with pytest.raises(errors.BadRequest, match="require a viewpoint"):
         Finding(flat).find(Find(text="the leftmost book"))
-    with pytest.raises(errors.BadRequest, match="'chair' may mean"):
+    with pytest.raises(errors.BadRequest, match="'chair' is ambiguous"):
         Finding(flat).find(Find(text="the leftmost book", viewer="chair"))
 
 

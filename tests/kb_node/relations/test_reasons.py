@@ -39,28 +39,28 @@ def told(name, relation, other):
     [
         ("apple1", "isOn", "table1", "it is inside bowl1, which is on table1"),
         ("cup1", "isOn", "table1", "it is on tray1, which is on table1"),
-        ("milk1", "isOn", "fridge1", "it is inside fridge1, and what is inside a thing is not also on it"),
+        ("milk1", "isOn", "fridge1", "it is inside fridge1, and an object inside another is not also on it"),
         ("cup1", "isOn", "cup2", "it is over no surface of cup2"),
         ("cup3", "isOn", "table1", "cm above the nearest surface of table1"),
         ("box1", "isOn", "table1", "cm below the nearest surface of table1"),
         ("cup1", "isOn", "kitchen1", "kitchen1 is a place"),
-        ("thing1", "isOn", "table1", "the size of thing1 is not known"),
-        ("apple1", "isInside", "table1", "table1 has no hollow"),
+        ("thing1", "isOn", "table1", "the size of thing1 is unknown"),
+        ("apple1", "isInside", "table1", "table1 has no known hollow"),
         ("cup1", "isInside", "bowl1", "none of its volume is within a hollow of bowl1"),
         ("cup1", "isLocatedIn", "table1", "table1 is not a place"),
         ("cup1", "isLocatedIn", "corner1", "m from it"),
-        ("cup1", "isAttachedTo", "table1", "it is on tray1, so it does not hang"),
-        ("cup1", "touches", "cup2", "apart (touching is up to 1.5 mm)"),
-        ("cup1", "isUnder", "table1", "nothing of table1 is above the top of cup1"),
+        ("cup1", "isAttachedTo", "table1", "it is on tray1, so it is not attached to a side"),
+        ("cup1", "touches", "cup2", "apart (touches allows up to 1.5 mm)"),
+        ("cup1", "isUnder", "table1", "no part of table1 is above the top of cup1"),
         ("cup1", "isUnder", "shelf1", "seen from above, they are"),
-        ("table1", "isAbove", "cup1", "nothing of table1 is above the top of cup1"),
+        ("table1", "isAbove", "cup1", "no part of table1 is above the top of cup1"),
         ("cup2", "isUnder", "table1", "it is on table1"),
-        ("cup1", "isNear", "shelf1", "near is up to"),
-        ("cup1", "isNextTo", "shelf1", "near is up to"),
+        ("cup1", "isNear", "shelf1", "isNear allows up to"),
+        ("cup1", "isNextTo", "shelf1", "isNear allows up to"),
         ("plate1", "isNextTo", "cup1", "but plate1 is on table1 and cup1 is on tray1"),
-        ("cup1", "isLeftOf", "shelf1", "by the front of shelf1, it is in front of it"),
+        ("cup1", "isLeftOf", "shelf1", "relative to the front of shelf1, it is in front of it"),
         ("shelf1", "isVisibleFrom", "cup1", "0% of the lines of sight reach it"),
-        ("cup1", "isOn", "cup1", "nothing is so of itself"),
+        ("cup1", "isOn", "cup1", "an object has no relation to itself"),
     ],
 )
 def test_why_not(name, relation, other, reason):
@@ -90,14 +90,14 @@ def test_what_is_on_a_thing_touches_it_whoever_is_asked():
 
 
 def test_no_pair_of_one():
-    with pytest.raises(errors.BadRequest, match="name two different things"):
+    with pytest.raises(errors.BadRequest, match="name two different objects"):
         list(list_relations(Space(MAP), Relations(name="cup1", other="cup1")))
 
 
 def test_of_two_that_hang_neither_stands():
     hanging = [thing(f"cup{n}", (0.09 * n, 3.0, 1.4 + 0.06 * n)) for n in (1, 2)]
     found = explain_relation(Space([ROOM, *hanging]), "cup1", "isNextTo", "cup2")
-    assert "neither stands on anything that is known" in found.text
+    assert "neither has a known support" in found.text
 
 
 def test_no_length_of_nothing():
@@ -114,7 +114,7 @@ def test_of_what_is_not_compared_in_a_crowd_that_is_said():
     found = explain_relation(crowd, "can999", "isOn", "can1")
     assert not found.holds
     assert found.text.endswith(
-        "more things are in this spot than are compared, and can1 is not one of the larger ones"
+        "too many objects are here to compare all of them, and can1 is not among the largest"
     )
     assert explain_relation(crowd, "can149", "isOn", "table1").holds
     assert explain_relation(Space([TABLE, cans[1], upper]), "can999", "isOn", "can1").holds
@@ -125,4 +125,6 @@ def test_what_is_on_a_thing_is_on_no_side_of_it():
     for name, other, borne in (("cup1", "table1", "it is on table1"), ("table1", "cup1", "cup1 is on it")):
         found = explain_relation(space, name, "isLeftOf", other)
         assert not found.holds
-        assert found.text.endswith(f"{borne}, and what bears a thing is on no side of it")
+        assert found.text.endswith(
+            f"{borne}; side relations are not defined between an object and its support"
+        )

@@ -74,7 +74,7 @@ def test_who_is_nowhere():
 
 
 def test_nothing_is_seen_from_itself():
-    with pytest.raises(errors.BadRequest, match="cannot be seen from itself"):
+    with pytest.raises(errors.BadRequest, match="cannot be its own viewer"):
         told("cup1", viewer="cup1")
 
 
@@ -138,8 +138,14 @@ def test_nothing_is_left_of_what_bears_it():
     [
         ((1.5, 1.5, 0.42), "is on nothing: its bottom is 42.0 cm above the floor of corner1"),
         ((1.5, 1.5, -0.04), None),
-        ((1.5, 1.5, -0.3), "is on nothing: its bottom is at a height of -30.0 cm, and it is in no place"),
-        ((9.0, 9.0, 0.42), "is on nothing: its bottom is at a height of 42.0 cm, and it is in no place"),
+        (
+            (1.5, 1.5, -0.3),
+            "is on nothing: its bottom is at a height of -30.0 cm, and it is not in a place with a floor",
+        ),
+        (
+            (9.0, 9.0, 0.42),
+            "is on nothing: its bottom is at a height of 42.0 cm, and it is not in a place with a floor",
+        ),
         ((0.0, 0.0, TOP + 0.2), "is on nothing: its bottom is 20.0 cm above a surface of table1"),
         ((0.0, 0.0, TOP), None),
         ((1.5, 1.5, 0.0), None),
@@ -161,7 +167,7 @@ def test_too_little_of_its_base_over_an_edge_is_on_nothing():
     edge = TABLE.size_m[0] / 2
     box = thing("box1", (edge + 0.09, 0.0, TOP), size=(0.2, 0.2, 0.1))
     (found,) = (r for r in list_relations(Space([ROOM, TABLE, box]), Relations(name="box1")) if not r.object)
-    assert found.text.endswith("level with a surface of table1, but 8% of its base is over that")
+    assert found.text.endswith("level with a surface of table1, but 8% of its base is over it")
 
 
 def test_what_hangs_or_is_on_a_plan_is_not_said_to_hover():
@@ -177,7 +183,7 @@ def test_what_has_no_known_size_is_told_what_is_missing():
     (found,) = (
         r for r in list_relations(Space([ROOM, TABLE, relic]), Relations(name="relic1")) if not r.object
     )
-    assert "give it a size: semmap update relic1 --size X Y Z" in found.text
+    assert "set a size: semmap update relic1 --size X Y Z" in found.text
 
 
 def test_what_has_no_known_size_is_near_nothing():

@@ -97,7 +97,7 @@ def test_a_class_as_it_is_written_is_not_one_thing_that_is_called_so():
 def test_a_word_that_means_one_only():
     assert resolve_single(MAP, "my cup") == "cup1"
     assert resolve_single(MAP, "kitchen") == "kitchen1"
-    with pytest.raises(errors.BadRequest, match="'Cup' may mean cup1 and cup2; name one of them"):
+    with pytest.raises(errors.BadRequest, match="'Cup' is ambiguous: cup1 and cup2; name one of them"):
         resolve_single(MAP, "Cup")
     with pytest.raises(errors.UnknownName):
         resolve_single(MAP, "nobody")
@@ -112,7 +112,7 @@ def test_what_does_not_go_alone(where):
 @pytest.mark.parametrize(
     ("where", "reason"),
     [
-        ({"on": "kitchen1"}, "kitchen1 is a place: things are in a place, and not on it"),
+        ({"on": "kitchen1"}, "kitchen1 is a place: objects are in a place, not on it"),
         ({"in_": "table1"}, "nothing can be in table1"),
     ],
 )
@@ -123,7 +123,7 @@ def test_what_nothing_can_be_on_or_in(where, reason):
 
 def test_a_place_of_unknown_extent():
     nowhere = thing("k1", (0.0, 0.0, 0.0), place=True)
-    with pytest.raises(errors.Refused, match="the extent of k1 is not known"):
+    with pytest.raises(errors.Refused, match="the extent of k1 is unknown"):
         select_entities(Space([*MAP, nowhere]), MAP, Where(in_="k1"), [*MAP, nowhere])
 
 
@@ -142,10 +142,10 @@ def test_near_is_the_fact_that_a_query_sees():
 @pytest.mark.parametrize(
     ("where", "reason"),
     [
-        ({"near": "kitchen1"}, r"kitchen1 is a place: only things are near one another; use in \(--in\)"),
-        ({"on": "ghost1"}, "ghost1 has no position, so what is on there is not known"),
-        ({"near": "ghost1"}, "ghost1 has no position, so what is near there is not known"),
-        ({"on": "relic1"}, "the size of relic1 is not known, so neither is what is on it"),
+        ({"near": "kitchen1"}, r"kitchen1 is a place: near holds between objects only; use in \(--in\)"),
+        ({"on": "ghost1"}, "ghost1 has no position, so what is on there is unknown"),
+        ({"near": "ghost1"}, "ghost1 has no position, so what is near there is unknown"),
+        ({"on": "relic1"}, "the size of relic1 is unknown, so what is on it is unknown"),
     ],
 )
 def test_what_is_not_known_is_no_empty_list(where, reason):

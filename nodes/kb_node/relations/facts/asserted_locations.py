@@ -1,4 +1,4 @@
-"""What is asserted of where things are, found by whom it is about."""
+"""Asserted facts about locations, indexed by the entities in them."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ from semmap.nodes.kb_node.relations.facts.contradictions import PROPERTIES, fact
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.schemas.explanations import Term, Triple
 
-_SAY_WHERE = frozenset(PROPERTIES)
+_LOCATION_PROPERTIES = frozenset(PROPERTIES)
 
 
 class AssertedLocations:
-    """An index of the asserted triples of `said.PROPERTIES`; kept in step with commits once it is built."""
+    """An index of the asserted triples of `contradictions.PROPERTIES`, updated with commits once built."""
 
     def __init__(self, asserted: Callable[[Term], Iterable[Triple]]) -> None:
-        """`asserted(property)` are the triples of a property; the first question asks for all."""
+        """`asserted(property)` returns the triples of a property. All are read on first access."""
         self._asserted = asserted
         self._about: dict[str, dict[Triple, Fact]] | None = None
 
     def __bool__(self) -> bool:
-        """Is there anything?"""
+        """Return whether there is any such triple."""
         return bool(self._index())
 
     def about(self, names: Iterable[str]) -> dict[Triple, Fact]:
-        """What is said of these things' places, or of other things by way of them."""
+        """Return the location triples with any of these names as subject or object."""
         index = self._index()
         return {triple: fact for name in names for triple, fact in index.get(name, {}).items()}
 
     def change(self, gone: Iterable[Triple], come: Iterable[Triple]) -> None:
-        """Triples of all kinds were retracted and inserted."""
+        """Apply retracted and inserted triples of any kind."""
         if self._about is None:
             return
         for triple in filter_location_triples(gone) if self._about else ():
@@ -58,8 +58,8 @@ class AssertedLocations:
 
 
 def filter_location_triples(triples: Iterable[Triple]) -> list[Triple]:
-    """Those that say where a thing is."""
-    return [triple for triple in triples if triple[1] in _SAY_WHERE]
+    """Return the triples that state a location."""
+    return [triple for triple in triples if triple[1] in _LOCATION_PROPERTIES]
 
 
 def _names(fact: Fact) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Where things are, as triples: what their poses tell, and what these deny of what is asserted."""
+"""Computed facts as triples, and asserted facts that contradict the geometry."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Term, Triple
 
 _MANY: Final = 32
-"""Facts that are worth being turned into triples together."""
+"""From this number on, facts are converted to triples together."""
 Known = Callable[[str], Entity | None]
-"""The entity of a name."""
+"""A function that returns the entity with a name."""
 
 
 class Step(NamedTuple):
-    """What a change of the map does: computed facts come and go, asserted ones are denied or no longer."""
+    """The effect of a change: computed triples that come and go, asserted ones newly or no longer denied."""
 
     come: Collection[Triple]
     gone: Collection[Triple]
@@ -30,36 +30,41 @@ class Step(NamedTuple):
 
 
 class ComputedFacts:
-    """Follows poses and what is said of places. Of properties that the TBox does not have nothing is told."""
+    """Computed triples, updated with poses and asserted locations.
+
+    Only properties that the TBox declares are used.
+    """
 
     def __init__(self, properties: Set[Term], limits: Thresholds | None = None) -> None:
-        """`properties` are those that the TBox has."""
+        """`properties` are those of the TBox."""
         self._properties: Final = {COMPUTED[p]: p for p in properties if p in COMPUTED}
         self.facts = Facts(limits)
-        self._said: dict[str, dict[Triple, None]] = {}
-        """By the names that a triple is about."""
+        self._asserted: dict[str, dict[Triple, None]] = {}
+        """Asserted location triples by the names in them."""
         self.denied: set[Triple] = set()
         self._was_flat = True
-        """Of a plan geometry denies less."""
+        """On a flat map geometry denies less."""
 
     @property
     def is_idle(self) -> bool:
-        """Whether the TBox has no property that could be computed."""
+        """Return whether the TBox has no property that could be computed."""
         return not self._properties
 
     def placed(self) -> None:
-        """All solids are where they are, though not all facts have been worked out."""
+        """Record that all solids are in place, although not all facts have been computed."""
         self._was_flat = self.facts.space.is_flat
 
     def of(self, names: Iterable[str], known: Known) -> set[Triple]:
-        """The triples about some names as subjects."""
+        """Return the triples with these names as subjects."""
         facts = self.facts
         return set(self._triples([(name, *about) for name in names for about in facts.of(name)], known))
 
-    def begin(self, known: Known, said: Iterable[Triple]) -> Step:
-        """All facts are new, and so is all that is said of places."""
+    def begin(self, known: Known, asserted: Iterable[Triple]) -> Step:
+        """Return the step from an empty map to all facts and asserted triples."""
         self._was_flat = self.facts.space.is_flat
-        denied = {t for t in self._take_up((), _of_places(said)) if self._is_so_no_more(t, known)}
+        denied = {
+            t for t in self._index_asserted((), _filter_locations(asserted)) if self._is_denied(t, known)
+        }
         self.denied |= denied
         return Step(self._triples(list(self.facts), known), (), denied, set())
 
@@ -71,9 +76,9 @@ class ComputedFacts:
         retracted: Iterable[Triple],
         inserted: Iterable[Triple],
     ) -> Step:
-        """Entities are otherwise now or went, and triples are no longer asserted or are now.
+        """Apply changed and removed entities, and retracted and inserted triples.
 
-        `before` knows the entities as they were.
+        `before` returns the entities as they were.
         """
         now = {entity.name: entity for entity in changed}
         reborn: list[str] = []
@@ -98,17 +103,17 @@ class ComputedFacts:
 
         went = self._triples(gone, before)
         came = self._triples(come, as_it_is)
-        retracted, inserted = _of_places(retracted), _of_places(inserted)
+        retracted, inserted = _filter_locations(retracted), _filter_locations(inserted)
         if still := [triple for triple in retracted if self._still_holds(triple, as_it_is)]:
             came = {*came, *still}
         if went:
             came, went = set(came) - set(went), set(went) - set(came)
         touched = {*removed, *now, *shifted}
-        newly, no_longer = self._judge(touched, gone | come, retracted, inserted, as_it_is)
+        newly, no_longer = self._find_denied(touched, gone | come, retracted, inserted, as_it_is)
         return Step(came, went, newly, no_longer)
 
     def _triples(self, facts: Collection[Fact], known: Known) -> Collection[Triple]:
-        """Those about entities, by properties that the TBox has. Each fact is there once."""
+        """Return triples about entities with properties of the TBox. Facts must be distinct."""
         if len(facts) < _MANY:
             return [t for fact in facts if (t := self._triple(fact, known)) is not None]
         names, relations, others = zip(*facts, strict=True)
@@ -137,7 +142,7 @@ class ComputedFacts:
         return v.iri(entity.iri), property_, v.iri(its.iri)
 
     def _still_holds(self, triple: Triple, known: Known) -> bool:
-        """Whether what is no longer asserted is computed."""
+        """Return whether a retracted triple is still computed."""
         s, p, o = triple
         relation = COMPUTED.get(p)
         if relation not in self._properties:
@@ -145,7 +150,7 @@ class ComputedFacts:
         fact = (v.entity_name(s), relation, v.entity_name(o))
         return self.facts.holds(fact) and _are((known(fact[0]), known(fact[2])), (s, o))
 
-    def _judge(
+    def _find_denied(
         self,
         touched: Set[str],
         facts: Set[Fact],
@@ -153,42 +158,42 @@ class ComputedFacts:
         inserted: Iterable[Triple],
         known: Known,
     ) -> tuple[set[Triple], set[Triple]]:
-        """What is newly denied of what is asserted, and what no longer is."""
-        looked_at = self._take_up(retracted, inserted)
+        """Return the asserted triples that are newly denied, and those that no longer are."""
+        looked_at = self._index_asserted(retracted, inserted)
         if self._was_flat != self.facts.space.is_flat:
             self._was_flat = not self._was_flat
-            looked_at.update(triple for said in self._said.values() for triple in said)
-        elif self._said:
+            looked_at.update(triple for asserted in self._asserted.values() for triple in asserted)
+        elif self._asserted:
             for name in self.facts.with_contents({*touched, *(fact[0] for fact in facts)}):
-                looked_at.update(self._said.get(name, ()))
+                looked_at.update(self._asserted.get(name, ()))
         if not looked_at:
             return set(), set()
-        denied = {triple for triple in looked_at if self._is_so_no_more(triple, known)}
+        denied = {triple for triple in looked_at if self._is_denied(triple, known)}
         newly, no_longer = denied - self.denied, (looked_at & self.denied) - denied
         self.denied |= newly
         self.denied -= no_longer
         return newly, no_longer
 
-    def _take_up(self, retracted: Iterable[Triple], inserted: Iterable[Triple]) -> set[Triple]:
-        """Remember what is said of places, and forget what is not any more; all of that."""
+    def _index_asserted(self, retracted: Iterable[Triple], inserted: Iterable[Triple]) -> set[Triple]:
+        """Update the index of asserted locations, and return the affected triples."""
         concerned: set[Triple] = set()
         for triple in retracted:
             concerned.add(triple)
             for name in _names(triple):
-                said = self._said.get(name, {})
-                said.pop(triple, None)
-                if not said:
-                    self._said.pop(name, None)
+                asserted = self._asserted.get(name, {})
+                asserted.pop(triple, None)
+                if not asserted:
+                    self._asserted.pop(name, None)
         for triple in inserted:
             concerned.add(triple)
             for name in _names(triple):
-                self._said.setdefault(name, {})[triple] = None
+                self._asserted.setdefault(name, {})[triple] = None
         return concerned
 
-    def _is_so_no_more(self, triple: Triple, known: Known) -> bool:
-        """Whether it is asserted of two entities, and geometry denies it."""
+    def _is_denied(self, triple: Triple, known: Known) -> bool:
+        """Return whether a triple is asserted of two entities and denied by geometry."""
         fact = fact_of(triple)
-        if fact is None or triple not in self._said.get(fact[0], ()):
+        if fact is None or triple not in self._asserted.get(fact[0], ()):
             return False
         ends = (triple[0], triple[2]) if fact[0] == v.entity_name(triple[0]) else (triple[2], triple[0])
         if not _are((known(fact[0]), known(fact[2])), ends):
@@ -196,12 +201,12 @@ class ComputedFacts:
         return find_contradiction(self.facts.space, fact) is not None
 
 
-def _of_places(triples: Iterable[Triple]) -> list[Triple]:
+def _filter_locations(triples: Iterable[Triple]) -> list[Triple]:
     return [triple for triple in triples if triple[1] in PROPERTIES and fact_of(triple) is not None]
 
 
 def _are(entities: tuple[Entity | None, Entity | None], iris: tuple[Term, Term]) -> bool:
-    """Whether two entities are those with these IRIs."""
+    """Return whether two entities have these IRIs."""
     return all(e is not None and v.iri(e.iri) == iri for e, iri in zip(entities, iris, strict=True))
 
 
@@ -210,5 +215,5 @@ def _names(triple: Triple) -> tuple[str, str]:
 
 
 def _stays(was: Entity, now: Entity) -> bool:
-    """Whether nothing that relations depend on is otherwise: a reference changed, or a property."""
+    """Return whether nothing changed on which relations depend, only a label or a property."""
     return was.pose == now.pose and PlacedEntity.of(was) == PlacedEntity.of(now)

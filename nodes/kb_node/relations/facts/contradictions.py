@@ -1,4 +1,4 @@
-"""Said against seen: which of the things that somebody said of a place do not hold as things stand."""
+"""Asserted locations that contradict the geometry."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ PROPERTIES: Final[dict[Term, tuple[RelationName, bool]]] = {
     v.dm("contains"): ("isLocatedIn", True),
     **{p: (name, False) for known in shipped() for name, p in known.relations.items()},
 }
-"""The properties that say where a thing is, as relations; of the inverse ones the object is the thing.
+"""Properties that state a location, as relations, and whether subject and object are swapped.
 
-They are the household's and those of the vocabularies that there is an alignment with.
+They are those of the household TBox and of the vocabularies with an alignment.
 """
 
 
 def fact_of(triple: Triple) -> Fact | None:
-    """What a triple says of where a thing is; None for one about anything else."""
+    """Return the location that a triple states, or None if it states something else."""
     s, p, o = triple
     if p not in PROPERTIES or o.startswith('"'):
         return None
@@ -41,31 +41,31 @@ def fact_of(triple: Triple) -> Fact | None:
     return (other, relation, thing) if is_inverse else (thing, relation, other)
 
 
-def find_contradictions(space: Space, said: Iterable[Fact]) -> Iterator[Relation]:
-    """Those of the facts that geometry denies, once each, with the reason."""
-    for fact in dict.fromkeys(said):
+def find_contradictions(space: Space, asserted: Iterable[Fact]) -> Iterator[Relation]:
+    """Yield the distinct facts that geometry denies, with the reason."""
+    for fact in dict.fromkeys(asserted):
         relation = find_contradiction(space, fact)
         if relation is not None:
             yield relation
 
 
-def find_contradiction(space: Space, said: Fact) -> Relation | None:
-    """Why a fact does not hold as things stand; None where geometry agrees, or cannot tell.
+def find_contradiction(space: Space, fact: Fact) -> Relation | None:
+    """Return why geometry denies a fact, or None if it agrees or cannot decide.
 
-    It cannot where a position or a size is missing, or the whole map is flat. It does not deny that what
-    hangs is on a wall, nor what is a matter of a few centimetres, nor what is on what in a crowd.
+    It cannot decide without a position or size, or on a flat map. It does not deny attachment to a wall,
+    differences of a few centimetres, or supports in a crowd.
     """
-    name, relation, other_name = said
+    name, relation, other_name = fact
     solid, other = space.solids.get(name), space.solids.get(other_name)
     if name == other_name:
-        reason: str | None = "nothing is on, in or inside itself"
+        reason: str | None = "an object cannot be on, in or inside itself"
     elif solid is None or other is None or not other.is_measured:
         return None
     else:
         reason = _against(space, relation, solid, other)
     if reason is None:
         return None
-    spoken = PHRASES[relation].replace("is ", "to be ", 1)
+    phrase = PHRASES[relation].replace("is ", "to be ", 1)
     return Relation(
         relation=relation,
         subject=name,
@@ -73,7 +73,7 @@ def find_contradiction(space: Space, said: Fact) -> Relation | None:
         holds=False,
         gap_m=0.0 if solid is None or other is None else round(measures.gap(solid, other), 4),
         share=0.0,
-        text=f"{name} was said {spoken} {other_name}; {reason}",
+        text=f"{name} was asserted {phrase} {other_name}; {reason}",
     )
 
 
@@ -87,24 +87,24 @@ def _against(space: Space, relation: RelationName, solid: Solid, other: Solid) -
         return (
             explain_measure(relation, solid, other, made)
             if apart < limits.touch_m
-            else _stands_off(solid, apart)
+            else _describe_distance(solid, apart)
         )
     if other.is_place or solid.is_place or not solid.is_measured or space.is_flat:
         return None
     if space.is_crowded(solid) and distance(solid.outline, other.outline) <= limits.gap_m:
-        return None  # it may be borne by what is not looked at
-    if other in _bearers(space, solid):
+        return None  # its support may not be among the compared objects
+    if other in _find_supporters(space, solid):
         return None
     apart = measures.gap(solid, other)
     if apart > limits.gap_m:
-        return _stands_off(solid, apart)
+        return _describe_distance(solid, apart)
     if relation == "isInside":
         share = _share_within_box(solid, other, limits.gap_m)
         return f"{share:.0%} of its volume is within it" if share < limits.inside_share else None
     carrier = space.spatial_relations(solid)
-    is_borne = bool(carrier.supports) or carrier.container is not None
-    if not other.supports or not (is_borne or solid.bottom <= other.bottom + limits.gap_m):
-        return None  # it may hang or lean there
+    is_supported = bool(carrier.supports) or carrier.container is not None
+    if not other.supports or not (is_supported or solid.bottom <= other.bottom + limits.gap_m):
+        return None  # it may be attached or lean there
     made = measures.over(solid, other, limits)
     return (
         f"it is over no surface of {other.name}"
@@ -113,8 +113,8 @@ def _against(space: Space, relation: RelationName, solid: Solid, other: Solid) -
     )
 
 
-def _bearers(space: Space, solid: Solid) -> set[Solid]:
-    """What it is on or inside, what that is on or inside, and so on."""
+def _find_supporters(space: Space, solid: Solid) -> set[Solid]:
+    """Return what a solid is on or inside, directly or not."""
     found: set[Solid] = set()
     waiting = [solid]
     while waiting:
@@ -126,12 +126,12 @@ def _bearers(space: Space, solid: Solid) -> set[Solid]:
 
 
 def _share_within_box(inner: Solid, outer: Solid, margin_m: float) -> float:
-    """The share of a volume that is within the other's box: its hollow may not be known."""
+    """Return the share of a volume within the box of another solid, because its hollow may be unknown."""
     x, y, z = (extent / 2 + margin_m for extent in outer.size)
     points = [outer.to_own(point) for point in inner.samples]
     within = sum(abs(px) <= x and abs(py) <= y and abs(pz - z + margin_m) <= z for px, py, pz in points)
     return within / len(points)
 
 
-def _stands_off(solid: Solid, apart_m: float) -> str:
+def _describe_distance(solid: Solid, apart_m: float) -> str:
     return f"it {'stands' if solid.is_upright else 'lies'} {format_length(apart_m)} from it"

@@ -1,7 +1,7 @@
-"""Relations of two things that are beside one another, measured when somebody asks for them.
+"""Relations between neighbouring objects, measured only on request.
 
-They are too many to be kept for all at each commit: fifty things in a room are near to most of one another.
-In a crowd only those are compared that count there (`measuring.crowds`), so that the work stays bounded.
+There are too many to store all of them at each commit: fifty objects in a room are near most of the others.
+In a crowd only counted objects are compared (`measuring.crowds`), so that the work is bounded.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ MIRRORED: Final[dict[RelationName, RelationName]] = {
     "isNextTo": "isNextTo",
     "isNear": "isNear",
 }
-"""The relations that are measured here, and what they are when seen from the other thing."""
+"""The relations measured here, each with its inverse."""
 _MEASURES: Final[dict[RelationName, Callable[[Space, Solid, Solid], Measure | None]]] = {
     "touches": lambda space, one, other: (
         None if other.is_place else measures.touches(one, other, space.limits)
@@ -39,13 +39,16 @@ _MEASURES: Final[dict[RelationName, Callable[[Space, Solid, Solid], Measure | No
 }
 _ALL: Final = frozenset(MIRRORED)
 _SupportState = tuple[str | None, frozenset[str]]
-"""What a thing is inside, and what it is on."""
+"""What an object is inside, and what it is on."""
 
 
 def measure_pair(
     space: Space, solid: Solid, other: Solid, wanted: Set[RelationName] = _ALL
 ) -> Iterator[tuple[RelationName, Measure]]:
-    """What is measured of a pair. Nobody says that a thing is near or under what it is on or inside."""
+    """Yield the measured relations of a pair.
+
+    An object is not reported as near or under what it is on or inside.
+    """
     if is_separate(space, solid, other):
         names: Iterable[RelationName] = (name for name in MIRRORED if name in wanted)
     else:
@@ -57,7 +60,7 @@ def measure_pair(
 
 
 def is_separate(space: Space, solid: Solid, other: Solid) -> bool:
-    """Whether a thing is neither on or inside another, nor bears or holds it and is larger."""
+    """Return whether `solid` is not on or in `other`, nor a larger support or container of it."""
     bears = _is_on_or_in(space, other, solid) and solid.footprint >= other.footprint
     return not (bears or _is_on_or_in(space, solid, other))
 
@@ -68,7 +71,7 @@ def _is_on_or_in(space: Space, solid: Solid, other: Solid) -> bool:
 
 
 def are_near(space: Space, one: Solid, other: Solid) -> bool:
-    """Whether `isNear` is a fact of two: `list --near` and SPARQL mean the same by it."""
+    """Return whether `isNear` is a fact, with the same meaning as in `list --near` and SPARQL."""
     made = measures.near(one, other, space.limits)
     if made is None or not made.holds or not (space.counts(one) and space.counts(other)):
         return False
@@ -76,23 +79,23 @@ def are_near(space: Space, one: Solid, other: Solid) -> bool:
 
 
 class PairFacts:
-    """What holds of the pairs that somebody asks about, kept in step with a map.
+    """The requested facts of pairs, updated with the map.
 
-    A fact is told of a pair once, from the one whose name comes first; the other has the mirrored one.
+    A fact is reported once for a pair, with the alphabetically first name as its subject.
     """
 
     def __init__(self, space: Space) -> None:
-        """It has the space to itself: no one else changes it."""
+        """`space` must not be changed by anything else."""
         self.space = space
         space.pop_shifted()
         self._whole: frozenset[RelationName] = frozenset()
         self._some: frozenset[str] = frozenset()
         self._pairs: dict[str, dict[str, tuple[RelationName, ...]]] = {}
-        """By either name."""
+        """By both names."""
         self._support_states: dict[str, _SupportState] = {}
 
     def set_scope(self, whole: Iterable[RelationName], some: Iterable[str]) -> Changed:
-        """From now on keep these relations of all things, and all relations of these things."""
+        """Keep the relations `whole` of all objects, and all relations of the objects `some`, from now on."""
         whole, some = frozenset(whole), frozenset(some)
         whole |= {MIRRORED[relation] for relation in whole}
         more, others = whole - self._whole, some - self._some
@@ -112,13 +115,13 @@ class PairFacts:
         return Changed(gone, come)
 
     def holds(self, name: str, relation: RelationName, other: str) -> bool:
-        """Whether it holds of a pair, in either order."""
+        """Return whether a fact holds for a pair, in either order."""
         if other < name:
             name, other, relation = other, name, MIRRORED[relation]
         return relation in self._pairs.get(name, {}).get(other, ())
 
     def update(self, changed: Iterable[Entity | PlacedEntity], removed: Iterable[str] = ()) -> Changed:
-        """Some entities came or are otherwise now, others went."""
+        """Apply added, changed and removed entities."""
         space, moved = self.space, list[Solid]()
         if not self._support_states and (self._whole or self._some):
             with space.caching():
@@ -155,7 +158,7 @@ class PairFacts:
         return self._compute(names, moved)
 
     def _takes_part(self, solid: Solid) -> bool:
-        """Whether it is in any pair."""
+        """Return whether an object is in any pair."""
         return not solid.is_place and self.space.counts(solid)
 
     def _support_state(self, solid: Solid) -> _SupportState:
@@ -165,9 +168,9 @@ class PairFacts:
     def _compute(
         self, names: Iterable[str], moved: Iterable[Solid] = (), more: Set[RelationName] = frozenset()
     ) -> Changed:
-        """All pairs of some, and those that what moved was or is between.
+        """Compute all pairs of these objects, and the pairs that moved objects were or are between.
 
-        With `more` only these relations are measured; the pairs keep those that are known.
+        With `more`, only these relations are measured, and known ones are kept.
         """
         gone, come = set[Fact](), set[Fact]()
         done = set[tuple[str, str]]()
@@ -196,7 +199,7 @@ class PairFacts:
         return Changed(gone, come)
 
     def _pairs_across(self, moved: Iterable[Solid]) -> Iterator[tuple[str, str]]:
-        """The pairs that these solids may be or have been between."""
+        """Yield the pairs that these solids may be or have been between."""
         space = self.space
         if "isNextTo" not in self._whole and not self._some:
             return
@@ -223,7 +226,7 @@ class PairFacts:
         wanted = _ALL if name in self._some or other_name in self._some else more or self._whole
         if not wanted:
             return ()
-        # Of a small thing that bears a larger one only its own side is told.
+        # If a small object supports a larger one, only relations of the small one are measured.
         one, two = (solid, other) if is_separate(self.space, solid, other) else (other, solid)
         found = {relation for relation, made in measure_pair(self.space, one, two, wanted) if made.holds}
         if one is other:
@@ -254,7 +257,7 @@ class PairFacts:
 
 
 def _may_be_beside(space: Space, one: Solid, other: Solid) -> bool:
-    """Whether two are close enough for any of the relations: a quick look at their bounds."""
+    """Return whether two objects are close enough for any of the relations, by their bounds."""
     limits = space.limits
     reach = max(measures.near_limit(one, other, limits), limits.contact_m)
     return measures.overlap(one.bounds, other.bounds, reach)

@@ -1,4 +1,4 @@
-"""What relations of two things are called in a TBox: their properties, and those that these imply."""
+"""The TBox properties that follow from a relation of two objects."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ _SUB: Final = v.iri(v.RDFS + "subPropertyOf")
 _EQUIVALENT: Final = v.iri(v.OWL + "equivalentProperty")
 _INVERSE: Final = v.iri(v.OWL + "inverseOf")
 _SYMMETRIC: Final = v.iri(v.OWL + "SymmetricProperty")
-_Way = tuple[Term, bool]
-"""A property, and whether it is told of the other thing."""
+_Implication = tuple[Term, bool]
+"""A property, and whether subject and object are swapped."""
 
 
 class PairProperties:
-    """The properties that hold of a pair by its relations, of those that a TBox declares."""
+    """The TBox properties that hold for a pair because of its relations."""
 
     def __init__(self, triples: Iterable[Triple] = ()) -> None:
-        """`triples` has the TBox's; others do not matter."""
-        implied: dict[Term, set[_Way]] = defaultdict(set)
+        """`triples` must contain the TBox. Other triples are ignored."""
+        implied: dict[Term, set[_Implication]] = defaultdict(set)
         declared = set[Term]()
         for s, p, o in triples:
             if p == v.RDF_TYPE:
@@ -39,46 +39,54 @@ class PairProperties:
             elif p == _INVERSE:
                 implied[s].add((o, True))
                 implied[o].add((s, True))
-        self._ways: dict[RelationName, frozenset[_Way]] = {
+        self._implications: dict[RelationName, frozenset[_Implication]] = {
             relation: _closed(implied, relation, declared) for relation in MIRRORED
         }
         self.sources: dict[Term, frozenset[RelationName]] = {
-            property_: frozenset(r for r, ways in self._ways.items() if any(p == property_ for p, _ in ways))
-            for ways in self._ways.values()
-            for property_, _ in ways
+            property_: frozenset(
+                r
+                for r, implications in self._implications.items()
+                if any(p == property_ for p, _ in implications)
+            )
+            for implications in self._implications.values()
+            for property_, _ in implications
         }
-        """By property, of which relations it may follow."""
+        """By property, the relations from which it may follow."""
 
     def triples(self, fact: Fact, iris: dict[str, Term]) -> Iterator[Triple]:
-        """What holds of a pair by one of its relations. `iris` by the things' names."""
+        """Yield the triples that follow from a fact. `iris` are by name."""
         name, relation, other = fact
         s, o = iris[name], iris[other]
-        for property_, is_turned in self._ways[relation]:
-            yield (o, property_, s) if is_turned else (s, property_, o)
+        for property_, is_inverse in self._implications[relation]:
+            yield (o, property_, s) if is_inverse else (s, property_, o)
 
     def holds(self, triple: Triple, pairs: PairFacts, names: dict[Term, str]) -> bool:
-        """Whether a triple holds by what is measured. `names` by IRI."""
+        """Return whether a triple follows from measured relations. `names` are by IRI."""
         s, p, o = triple
         name, other = names.get(s), names.get(o)
         if name is None or other is None:
             return False
         return any(
-            pairs.holds(*((other, relation, name) if is_turned else (name, relation, other)))
+            pairs.holds(*((other, relation, name) if is_inverse else (name, relation, other)))
             for relation in self.sources.get(p, ())
-            for property_, is_turned in self._ways[relation]
+            for property_, is_inverse in self._implications[relation]
             if property_ == p
         )
 
 
-def _closed(implied: dict[Term, set[_Way]], relation: RelationName, declared: Set[Term]) -> frozenset[_Way]:
+def _closed(
+    implied: dict[Term, set[_Implication]], relation: RelationName, declared: Set[Term]
+) -> frozenset[_Implication]:
     own, mirrored = v.dm(relation), v.dm(MIRRORED[relation])
-    found: set[_Way] = {way for way in ((own, False), (mirrored, True)) if way[0] in declared}
+    found: set[_Implication] = {
+        implication for implication in ((own, False), (mirrored, True)) if implication[0] in declared
+    }
     waiting = list(found)
     while waiting:
-        property_, is_turned = waiting.pop()
-        for further, turns in implied.get(property_, ()):
-            way = (further, is_turned != turns)
-            if way not in found and further.startswith("<"):
-                found.add(way)
-                waiting.append(way)
+        property_, is_inverse = waiting.pop()
+        for further, inverts in implied.get(property_, ()):
+            implication = (further, is_inverse != inverts)
+            if implication not in found and further.startswith("<"):
+                found.add(implication)
+                waiting.append(implication)
     return frozenset(found)

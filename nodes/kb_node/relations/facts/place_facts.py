@@ -1,7 +1,7 @@
-"""Which relations hold in a map, kept in step with it for whoever a change concerns.
+"""The computed facts of a map, updated incrementally with it.
 
-What is kept is a function of the poses alone (`rules`), so that a restart, another order of commits and a
-past moment give the same.
+They are a function of the poses alone (`rules`), so that a restart, another order of commits, or a past
+state gives the same facts.
 """
 
 from __future__ import annotations
@@ -26,76 +26,76 @@ from semmap.schemas.relations import RelationName
 Fact = tuple[str, RelationName, str]
 """Name, relation, name: ("cup1", "isOn", "table1")."""
 _STEP = 1000
-"""Entities that are worked out in some tens of milliseconds."""
+"""Entities per step of some tens of milliseconds."""
 _MOST_AT_ONCE = 16_000
-"""So many are surveyed together where nobody waits: those around them are looked up less often."""
-_FORGOTTEN = 8
-"""Solids for each that an update touches."""
-_MOST_TO_FORGET = 1000
-_BEARING: frozenset[RelationName] = frozenset({"isOn", "isInside", "isLocatedIn"})
-"""Along these `upward` goes."""
+"""Entities surveyed together if nothing waits. Larger groups need fewer neighbour searches."""
+_CLEARED_PER_CHANGE = 8
+"""Solids whose caches are cleared for each one that an update touches."""
+_MOST_TO_CLEAR = 1000
+_CONTAINING: frozenset[RelationName] = frozenset({"isOn", "isInside", "isLocatedIn"})
+"""The relations that `with_contents` follows."""
 
 
 class Changed(NamedTuple):
-    """Which facts no longer hold, and which do now."""
+    """The facts that no longer hold, and those that newly hold."""
 
     gone: set[Fact]
     come: set[Fact]
 
 
 class Facts:
-    """The facts that hold in a map, by their subject, and whom else they speak of."""
+    """The facts of a map, indexed by subject and by object."""
 
     def __init__(self, limits: Thresholds | None = None, rules: Sequence[Rule] = RULES) -> None:
         self.space = Space(limits=limits)
-        self._kept = [_Kept(rule) for rule in rules]
+        self._kept = [_RuleFacts(rule) for rule in rules]
         self._margin_m = max(rule.margin_m(self.space.limits) for rule in rules)
         self._in_turn: Iterator[Solid] = iter(())
-        self._to_forget = 0
+        self._to_clear = 0
         self._waiting: dict[str, Solid] = {}
-        """While `filling`: those that have been placed, and nothing else."""
+        """During `fill_steps`: the solids whose facts have not been computed."""
         self._precomputation: Precomputation | None = None
         self.shifted: frozenset[str] = frozenset()
-        """Who came to count in a crowd by the last update, or does not any more, because of others."""
+        """Objects that the last update made count, or no longer count, because of others in a crowd."""
 
     def set_precomputation(self, ahead: Precomputation) -> None:
-        """The next update is about those who are foreseen, and `ahead` works out what will hold."""
+        """Use the result of `ahead` in the next update, which adds the expected entities."""
         self._precomputation = ahead
 
     def discard_precomputation(self) -> None:
-        """That update does not come."""
+        """Stop the precomputation, because the expected update does not come."""
         ahead, self._precomputation = self._precomputation, None
         if ahead is not None:
             ahead.discard()
 
     def by_rule(self) -> tuple[FactsByName, ...]:
-        """All that hold, by rule and name."""
+        """Return all facts, by rule and name."""
         return tuple(kept.of for kept in self._kept)
 
     def __iter__(self) -> Iterator[Fact]:
-        """All that hold."""
+        """Yield all facts."""
         for kept in self._kept:
             yield from kept.all()
 
     def holds(self, fact: Fact) -> bool:
-        """Whether one of them does."""
+        """Return whether a fact holds."""
         name, relation, other = fact
         return any((relation, other) in kept.of.get(name, ()) for kept in self._kept)
 
     def of(self, name: str) -> Iterator[About]:
-        """What holds of a thing; of what it is on and inside, what counts most comes first."""
+        """Yield the facts of an object. Of several supports the most important one comes first."""
         for kept in self._kept:
             yield from kept.of.get(name, ())
 
     def about(self, name: str) -> set[str]:
-        """Of whom a fact holds that speaks of a thing."""
+        """Return the subjects of the facts about an object."""
         return {other for kept in self._kept for other in kept.about.get(name, ())}
 
     def with_contents(self, names: Iterable[str]) -> set[str]:
-        """These things, what is on, inside or in them, and what is on or inside that."""
+        """Return these objects, and everything on, inside or in them, at any depth."""
         found = set(names)
         waiting = list(found)
-        bearing = [kept for kept in self._kept if not _BEARING.isdisjoint(kept.rule.relations)]
+        bearing = [kept for kept in self._kept if not _CONTAINING.isdisjoint(kept.rule.relations)]
         while waiting:
             name = waiting.pop()
             for kept in bearing:
@@ -106,19 +106,19 @@ class Facts:
         return found
 
     def fill_steps(self, entities: Iterable[Entity | PlacedEntity]) -> Iterator[None]:
-        """Begin with these, in steps of some tens of milliseconds."""
+        """Start with these entities, in steps of some tens of milliseconds."""
         yield from self.insert_steps(entities)
         yield from self.compute_steps()
 
     def insert_steps(self, entities: Iterable[Entity | PlacedEntity]) -> Iterator[None]:
-        """The first half of `filling`, between whose steps nothing changes."""
+        """Insert the entities. The map must not change between these steps."""
         for _ in self.space.put_all(entities):
             yield
         self.space.pop_shifted()
-        self._waiting = {solid.name: solid for solid in self._movable_solids(self.space.solids)}
+        self._waiting = {solid.name: solid for solid in self._find_objects(self.space.solids)}
 
     def compute_steps(self) -> Iterator[None]:
-        """The second half, between whose steps there may be updates: these see to what they concern first."""
+        """Compute the facts. Updates between these steps first compute the facts that they affect."""
         for some in parts(sort_by_place(list(self._waiting.values())), _STEP, _nothing):
             self._compute_waiting(solid for solid in some if self._waiting.get(solid.name) is solid)
             yield
@@ -130,11 +130,11 @@ class Facts:
 
     @property
     def is_complete(self) -> bool:
-        """Whether nobody is left who has only been placed."""
+        """Return whether all facts have been computed."""
         return not self._waiting
 
     def _compute_waiting(self, waiting: Iterable[Solid]) -> None:
-        """Work out the facts of some whom nobody has looked at since they were placed."""
+        """Compute the facts of solids that have only been inserted."""
         solids = list(waiting)
         for _ in self._compute_in_steps(solids, set(), set(), _STEP):
             pass
@@ -142,7 +142,7 @@ class Facts:
             del self._waiting[solid.name]
 
     def _compute_affected(self, changed: Sequence[Entity | PlacedEntity], removed: Sequence[str]) -> None:
-        """While they are being worked out: of whom a change may speak is worked out as it is before that."""
+        """Compute the waiting facts that a change may affect, as they are before it."""
         waiting, space = self._waiting, self.space
         if len(changed) + len(removed) >= MANY:
             self._compute_waiting(list(waiting.values()))
@@ -154,15 +154,15 @@ class Facts:
                 concerned.update((other.name, None) for other in space.around(solid, self._margin_m))
         self._compute_waiting([waiting[name] for name in concerned if name in waiting])
 
-    def _movable_solids(self, names: Iterable[str]) -> list[Solid]:
-        """Those that are there and are no places."""
+    def _find_objects(self, names: Iterable[str]) -> list[Solid]:
+        """Return the solids of these names that exist and are not places."""
         solids = self.space.solids
         return [solid for name in names if (solid := solids.get(name)) is not None and not solid.is_place]
 
     def _compute_in_steps(
         self, solids: Sequence[Solid], gone: set[Fact], come: set[Fact], step: int
     ) -> Iterator[None]:
-        """Work out the facts of many, `step` at a time, and add what is otherwise to `gone` and `come`."""
+        """Compute the facts of many solids, `step` at a time, and add differences to `gone` and `come`."""
         space = self.space
         for some in parts(sort_by_place(solids) if len(solids) > step else solids, step, _nothing):
             survey = Survey(space, some) if len(some) >= MANY else None
@@ -179,11 +179,11 @@ class Facts:
         return None if ahead is None else ahead.facts(came)
 
     def clear_caches(self) -> None:
-        """Let some solids, in turn, forget what can be worked out again: more of them than updates touched.
+        """Clear the caches of some solids in turn, more than updates touched.
 
-        Nobody need wait for that; only where it is not called for long, `update` does it.
+        Call it when idle. `update` calls it only if it has not been called for long.
         """
-        count, self._to_forget = self._to_forget, 0
+        count, self._to_clear = self._to_clear, 0
         forgot = 0
         for solid in islice(self._in_turn, count):
             solid.clear_cache()
@@ -192,12 +192,12 @@ class Facts:
             self._in_turn = iter(tuple(self.space.solids.values()))
 
     def _counted(self, name: str) -> Solid | None:
-        """One that others look at."""
+        """Return a solid that is counted as a neighbour, or None."""
         solid = self.space.solids.get(name)
         return solid if solid is not None and self.space.counts(solid) else None
 
     def update(self, changed: Iterable[Entity | PlacedEntity], removed: Iterable[str] = ()) -> Changed:
-        """Some entities came or are otherwise now, others went."""
+        """Apply added, changed and removed entities."""
         changed, removed = list(changed), list(removed)
         if not (changed or removed):
             self.shifted = frozenset()
@@ -231,7 +231,7 @@ class Facts:
                 for kept in self._kept:
                     kept.compute(space, concerned, gone, come)
         if len(concerned) >= MANY:
-            things = self._movable_solids(concerned)
+            things = self._find_objects(concerned)
             if len(things) < len(concerned):
                 left_over = concerned.keys() - {solid.name for solid in things}
                 for kept in self._kept:
@@ -242,14 +242,14 @@ class Facts:
             else:
                 for kept, of in zip(self._kept, found, strict=True):
                     kept.set_facts(space, things, [of.get(solid.name, ()) for solid in things], gone, come)
-        self._to_forget = min(self._to_forget + _FORGOTTEN * len(moved), len(space.solids))
-        if self._to_forget > _MOST_TO_FORGET:
+        self._to_clear = min(self._to_clear + _CLEARED_PER_CHANGE * len(moved), len(space.solids))
+        if self._to_clear > _MOST_TO_CLEAR:
             self.clear_caches()
         self.shifted = frozenset([solid.name for solid in shifted])
         return Changed(gone, come)
 
     def _affected(self, moved: dict[str, None], solids: Sequence[Solid]) -> dict[str, None]:
-        """Of whom something else may hold now: those who moved, and others by how `solids` were or are."""
+        """Return the names whose facts may change: moved ones, and neighbours of `solids`."""
         space, found = self.space, dict(moved)
         for kept in self._kept:
             if kept.about:
@@ -279,15 +279,15 @@ def _nothing() -> None:
     pass
 
 
-class _Kept:
+class _RuleFacts:
     """The facts of one rule."""
 
     def __init__(self, rule: Rule) -> None:
         self.rule = rule
         self.of: dict[str, tuple[About, ...]] = {}
-        """What holds of a thing."""
+        """By subject."""
         self.about: dict[str, dict[str, None]] = {}
-        """Of whom a fact holds that speaks of a thing."""
+        """By object, the subjects."""
 
     def all(self) -> Iterator[Fact]:
         for name, found in self.of.items():
@@ -302,7 +302,7 @@ class _Kept:
         gone: set[Fact],
         come: set[Fact],
     ) -> None:
-        """Have what was found of some, and add what is otherwise to `gone` and `come`; None is measured."""
+        """Store facts of solids and add differences to `gone` and `come`. None means to measure."""
         facts, of, about = self.rule.facts, self.of, self.about
         if not of and found.count(()) == len(found):
             return
@@ -324,7 +324,7 @@ class _Kept:
                     about[other] = {name: None}
 
     def compute(self, space: Space, names: Iterable[str], gone: set[Fact], come: set[Fact]) -> None:
-        """Work out the facts of some, and add what is otherwise to `gone` and `come`."""
+        """Compute the facts of these names and add differences to `gone` and `come`."""
         for name in names:
             before = self.of.get(name, ())
             now = self._compute(space, name)

@@ -1,4 +1,4 @@
-"""Where everything will be after a large commit, worked out by a process while the reasoner takes that in."""
+"""A process that computes the facts after a large commit while the reasoner processes that commit."""
 
 from __future__ import annotations
 
@@ -26,22 +26,28 @@ log = logging.getLogger(__name__)
 
 
 class Precomputation:
-    """A process that works out what holds when those have come who are foreseen."""
+    """A process that computes the facts that will hold after the expected entities are added."""
 
     def __init__(
-        self, foreseen: PrecomputeRequest, progress: Callable[[], None], command: Sequence[str] = _COMMAND
+        self, message: PrecomputeRequest, progress: Callable[[], None], command: Sequence[str] = _COMMAND
     ) -> None:
-        """`progress` is called now and then while it is waited for. Raises OSError when it does not start."""
+        """Start the process.
+
+        Raises OSError if it does not start. `progress` is called while waiting for it.
+        """
         self._progress = progress
-        with ExitStack() as opened, TemporaryFile() as said:
-            said.write(codec.encode(foreseen))
-            said.seek(0)
+        with ExitStack() as opened, TemporaryFile() as request:
+            request.write(codec.encode(message))
+            request.seek(0)
             self._found = opened.enter_context(TemporaryFile())
-            self._process = subprocess.Popen(command, stdin=said, stdout=self._found)
+            self._process = subprocess.Popen(command, stdin=request, stdout=self._found)
             opened.pop_all()
 
-    def facts(self, came: Iterable[Entity | PlacedEntity]) -> Sequence[FactsByName] | None:
-        """What holds now that these have come, rule by rule; None if that was not foreseen, or not done."""
+    def facts(self, added: Iterable[Entity | PlacedEntity]) -> Sequence[FactsByName] | None:
+        """Return the facts by rule after these entities were added.
+
+        None if other entities were expected, or the process failed.
+        """
         while self._process.poll() is None:
             self._progress()
             try:
@@ -50,14 +56,16 @@ class Precomputation:
                 continue
         with self._found:
             if self._process.returncode:
-                log.warning("working out ahead where things are ended with %d", self._process.returncode)
+                log.warning(
+                    "the process that precomputes facts failed with exit status %d", self._process.returncode
+                )
                 return None
             self._found.seek(0)
             found: PrecomputeResult = codec.decode(self._found.read(), PrecomputeResult)
-        return found.match(came)
+        return found.match(added)
 
     def discard(self) -> None:
-        """Nobody wants it any more."""
+        """Stop the process and drop its result."""
         self._process.kill()
         self._process.wait()
         self._found.close()

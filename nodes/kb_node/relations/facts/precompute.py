@@ -1,6 +1,6 @@
-"""Works out where everything will be: `python -m semmap.nodes.kb_node.relations.facts.precompute`.
+"""Program that computes facts: `python -m semmap.nodes.kb_node.relations.facts.precompute`.
 
-What is foreseen comes on stdin, and the facts go to stdout.
+It reads a `PrecomputeRequest` from stdin and writes a `PrecomputeResult` to stdout.
 """
 
 from __future__ import annotations
@@ -17,22 +17,25 @@ from semmap.nodes.kb_node.relations.facts.precompute_messages import (
 from semmap.schemas import codec
 
 
-def compute_facts(foreseen: PrecomputeRequest) -> PrecomputeResult:
-    """What holds when those have come who are foreseen. Raises ValueError or IndexError for a bad number."""
-    coming = list(foreseen.coming.placed())
-    facts = Facts(foreseen.limits)
-    facts.update([*foreseen.there, *coming])
+def compute_facts(request: PrecomputeRequest) -> PrecomputeResult:
+    """Return the facts after the expected entities are added.
+
+    Raises ValueError or IndexError for a bad number.
+    """
+    coming = list(request.coming.placed())
+    facts = Facts(request.limits)
+    facts.update([*request.there, *coming])
     return PrecomputeResult(compute_digest(coming), facts.by_rule())
 
 
 def main() -> None:
-    """From stdin to stdout."""
-    gc.disable()  # nearly all that is made stays to the end
-    foreseen: PrecomputeRequest = codec.decode(sys.stdin.buffer.read(), PrecomputeRequest)
+    """Answer the request on stdin."""
+    gc.disable()  # almost all objects live until the end
+    request: PrecomputeRequest = codec.decode(sys.stdin.buffer.read(), PrecomputeRequest)
     try:
-        found = compute_facts(foreseen)
+        found = compute_facts(request)
     except (ValueError, IndexError) as error:
-        raise SystemExit(f"a pose or size that is foreseen makes no sense: {error}") from None
+        raise SystemExit(f"invalid pose or size of an expected entity: {error}") from None
     sys.stdout.buffer.write(codec.encode(found))
 
 

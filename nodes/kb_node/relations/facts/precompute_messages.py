@@ -1,4 +1,4 @@
-"""Where the entities of a map will be after a large commit, as far as that is plain before it is made."""
+"""Messages between the knowledge base and the process that precomputes facts of a large commit."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ from semmap.schemas.explanations import Term
 
 
 class ClassModel(NamedTuple):
-    """What a class says of how its entities look."""
+    """The model of the entities of a class, and whether they are places."""
 
     model: str
     place: bool
 
 
 FactsByName = dict[str, tuple[About, ...]]
-"""What holds of each by a rule, by name; of others nothing does."""
+"""The facts of one rule by subject. Names without facts are missing."""
 Numbers = tuple[float | Term | None, ...]
-"""As they are wanted, or as literals; all are None of what has none of them."""
+"""Numbers or literals. A None among them means that the value is missing."""
 
 
 class ExpectedEntity(NamedTuple):
-    """One that comes, and which of some looks it has. Its position and size are in metres."""
+    """An entity that a commit adds, with an index into `classes`. Position and size in metres."""
 
     iri: Term
     look: int
@@ -43,7 +43,7 @@ class ExpectedEntity(NamedTuple):
 
 
 class ExpectedEntities(Struct, frozen=True, array_like=True):
-    """The entities that come; whatever has no position is not among them."""
+    """The entities that a commit adds, without those that have no position."""
 
     looks: Sequence[ClassModel]
     arrivals: Sequence[ExpectedEntity]
@@ -52,7 +52,7 @@ class ExpectedEntities(Struct, frozen=True, array_like=True):
         return len(self.arrivals)
 
     def placed(self) -> Iterator[PlacedEntity]:
-        """Each of them. Raises ValueError, IndexError for what is no number."""
+        """Yield each entity. Raises ValueError or IndexError for an invalid number."""
         for iri, look, position, orientation, size in self.arrivals:
             name, (model, place) = v.entity_name(iri), self.looks[look]
             position_m, turn, size_m = map(_read, (position, orientation, size))
@@ -67,7 +67,7 @@ class ExpectedEntities(Struct, frozen=True, array_like=True):
 
 
 class PrecomputeRequest(Struct, frozen=True, array_like=True):
-    """Who is there already and stays as it is, and who comes."""
+    """The entities that stay as they are, and those that are added."""
 
     limits: Thresholds
     there: tuple[PlacedEntity, ...]
@@ -75,30 +75,30 @@ class PrecomputeRequest(Struct, frozen=True, array_like=True):
 
 
 class PrecomputeResult(Struct, frozen=True, array_like=True):
-    """The facts of all who are there then, by rule and name."""
+    """The facts of all these entities, by rule and name."""
 
     mark: bytes
-    """Of those of whom it was foreseen that they come."""
+    """The digest of the expected entities."""
     facts: tuple[FactsByName, ...]
 
-    def match(self, came: Iterable[Entity | PlacedEntity]) -> tuple[FactsByName, ...] | None:
-        """The facts if it is these who came, each as it was foreseen."""
+    def match(self, added: Iterable[Entity | PlacedEntity]) -> tuple[FactsByName, ...] | None:
+        """Return the facts if exactly the expected entities were added, else None."""
         placed = (
             one if isinstance(one, PlacedEntity) else PlacedEntity.of(one)
-            for one in came
+            for one in added
             if one.pose is not None
         )
         return self.facts if self.mark == compute_digest(placed) else None
 
 
 def compute_digest(placed: Iterable[PlacedEntity]) -> bytes:
-    """Differs where any of some entities is otherwise; their order does not matter."""
+    """Return a digest of entities that does not depend on their order."""
     in_order = sorted(placed, key=attrgetter("name"))
     return hashlib.blake2b(codec.encode(in_order), digest_size=16).digest()
 
 
 def _read(numbers: Numbers | None) -> Any:
-    """Floats; None of what has none."""
+    """Return floats, or None if a value is missing."""
     if numbers is None or None in numbers:
         return None
     return tuple([float(n.split('"', 2)[1]) if isinstance(n, str) else n for n in numbers])

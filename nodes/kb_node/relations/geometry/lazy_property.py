@@ -1,4 +1,4 @@
-"""Attributes that are worked out when they are first asked for."""
+"""A property that is computed on first access."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ T = TypeVar("T")
 
 
 class lazy_property(Generic[T]):  # noqa: N801 - it is used as a decorator
-    """Like `functools.cached_property`, without its lock, which took a quarter of the time of all relations.
+    """A `functools.cached_property` without a lock, which took a quarter of the time of all relations.
 
-    So an object that has such attributes belongs to one thread.
+    Therefore objects with such properties must be used by one thread only.
     """
 
     def __init__(self, compute: Callable[[Any], T]) -> None:

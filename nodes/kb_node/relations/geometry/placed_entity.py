@@ -1,4 +1,4 @@
-"""An entity as far as relations need it: what is sent to another process that works them out."""
+"""The part of an entity that relations depend on, as sent to another process that computes them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from semmap.schemas.polygons import EXTENT
 
 
 class PlacedEntity(Struct, frozen=True, kw_only=True, array_like=True):
-    """Where an entity is and how large, by the names that `Entity` has for it."""
+    """The location and size of an entity, with the field names of `Entity`."""
 
     name: str
     iri: str
@@ -23,13 +23,13 @@ class PlacedEntity(Struct, frozen=True, kw_only=True, array_like=True):
     extent: str = ""
     """The WKT of a place whose extent is a polygon."""
     held_by: str = ""
-    """What grasps it; "" for nothing."""
+    """The holder to which it is attached, or ""."""
     joints: Positions = AS_DRAWN
-    """Where the joints of its model stand."""
+    """The joint positions of its model."""
 
     @classmethod
     def of(cls, entity: Entity) -> PlacedEntity:
-        """As much of an entity."""
+        """Return the relevant part of an entity."""
         return cls(
             name=entity.name,
             iri=entity.iri,
@@ -44,14 +44,14 @@ class PlacedEntity(Struct, frozen=True, kw_only=True, array_like=True):
 
 
 def holder_in(entity: Entity | PlacedEntity) -> str:
-    """What grasps an entity; "" for nothing."""
+    """Return the holder to which an entity is attached, or ""."""
     if isinstance(entity, PlacedEntity):
         return entity.held_by
     return holder_of(entity) if entity.grip_provenance is not None else ""
 
 
 def joints_in(entity: Entity | PlacedEntity) -> Positions:
-    """Where the joints of an entity's model stand, as far as the map states it."""
+    """Return the joint positions of an entity's model, as far as the map states them."""
     if isinstance(entity, PlacedEntity):
         return entity.joints
     if not entity.properties:
@@ -60,7 +60,7 @@ def joints_in(entity: Entity | PlacedEntity) -> Positions:
 
 
 def extent_in(entity: Entity | PlacedEntity) -> str:
-    """The WKT of an extent that is a polygon; "" for one that is a box, and for what is no place."""
+    """Return the WKT of a polygon extent, or "" for a box and for objects."""
     if not entity.place:
         return ""
     if isinstance(entity, PlacedEntity):

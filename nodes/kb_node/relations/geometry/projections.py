@@ -1,6 +1,6 @@
-"""What stands upright, seen from above: how deep two such shadows reach into one another, at least.
+"""Projections of upright parts onto the floor plan, and a lower bound of their overlap depth.
 
-A shadow is a disc or a parallelogram. For an ellipse stands the disc within it.
+A projection is a disc or a parallelogram. An ellipse is replaced by its inscribed disc.
 """
 
 from __future__ import annotations
@@ -13,18 +13,21 @@ from semmap.nodes.geometry.polygons import Point
 from semmap.schemas.entities import Vector
 
 _SQUARE = 1e-9
-"""The cosine of what is no right angle, if it is more."""
+"""The largest cosine of an angle that counts as right."""
 
 
 class Projection(NamedTuple):
-    """A parallelogram by half of each of its sides [m], or a disc by its radius [m]."""
+    """A parallelogram by half of each side [m], or a disc by its radius [m]."""
 
     sides: tuple[Point, ...]
     radius: float = 0.0
 
 
 def project(level: Sequence[Vector], round_: Sequence[Vector]) -> Projection | None:
-    """That of a part with these level vectors besides an upright one; None for what is both or neither."""
+    """Return the projection of a part with these level vectors and an upright one.
+
+    None if both or neither.
+    """
     sides = tuple([(x, y) for x, y, _ in level])
     if len(sides) == 2 and not round_:
         return Projection(sides)
@@ -38,9 +41,9 @@ def project(level: Sequence[Vector], round_: Sequence[Vector]) -> Projection | N
 
 
 def overlap_depth(x: float, y: float, one: Projection, other: Projection) -> float:
-    """How far along whichever direction one would have to be moved, at least, until the two are apart [m].
+    """Return a lower bound of the distance by which two projections must be moved apart [m].
 
-    `x` and `y` lead from the middle of the other to that of the one. Negative where they may be apart.
+    `x` and `y` lead from the centre of `other` to that of `one`. Negative if they may be apart.
     """
     if one.sides and other.sides:
         return -max(_gap(x, y, side, (*one.sides, *other.sides)) for side in (*one.sides, *other.sides))
@@ -57,7 +60,7 @@ def overlap_depth(x: float, y: float, one: Projection, other: Projection) -> flo
 
 
 def _gap(x: float, y: float, side: Point, sides: Sequence[Point]) -> float:
-    """Between two parallelograms with these half sides, across one of them."""
+    """Return the gap of two parallelograms across one of their half sides."""
     nx, ny = -side[1], side[0]
     length = math.hypot(nx, ny)
     if not length:

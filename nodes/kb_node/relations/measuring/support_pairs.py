@@ -1,4 +1,4 @@
-"""What bears what, of many pairs at once, as far as it is plain: `measures.on` of what is on flat tops."""
+"""Supports of many pairs at once: the clear cases of `measures.on`, on flat tops."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 
 
 class SupportPairs(NamedTuple):
-    """Of pairs of an upper and a lower solid, those of which something can be said; the others are apart."""
+    """Pairs of an upper and a lower solid that may be in contact. All other pairs are apart."""
 
     upper: Ints
     """(N,) rows."""
     lower: Ints
     holds: Bools
-    """(N,) whether the upper one plainly rests on the other; else that is open."""
+    """(N,) whether the upper one clearly rests on the lower one. False means undecided."""
     gap_m: Floats
-    """(N,) how far it is above that."""
+    """(N,) height above the lower one [m]."""
 
 
 class _Meeting(NamedTuple):
-    """Pairs of parts that may meet, those of one pair of solids together."""
+    """Pairs of parts that may meet, grouped by pair of solids."""
 
     pair: Ints
     upper: Ints
@@ -39,10 +39,10 @@ class _Meeting(NamedTuple):
     above: Floats
     """From the top of the lower part to the bottom of the upper one [m]."""
     slack: Floats
-    """By how much they are near enough to be compared [m]."""
+    """How far the parts are within the limit of comparison [m]."""
 
     def nearer(self, slack: Floats) -> _Meeting:
-        """Those of them that this leaves near enough, or nearly."""
+        """Return the pairs that remain within the limit after it is reduced to `slack`."""
         slack = np.minimum(self.slack, slack)
         kept = slack > -GUARD
         return _Meeting(
@@ -52,7 +52,7 @@ class _Meeting(NamedTuple):
 
 
 def find_supports(columns: Columns, one: Ints, other: Ints, limits: Thresholds) -> SupportPairs:
-    """`one` stand upright; of each pair the bounds meet."""
+    """Return the support pairs among `one` and `other`, whose bounds meet. `one` stand upright."""
     step = columns.bottom[one] - columns.bottom[other] + limits.contact_m
     is_level = columns.forms.is_level[columns.form[other]]
     may = (columns.bottom[one] - columns.top[other] < limits.gap_m + GUARD) & ((step > -GUARD) | ~is_level)
@@ -78,7 +78,7 @@ def find_supports(columns: Columns, one: Ints, other: Ints, limits: Thresholds) 
     a, b = np.zeros_like(low), np.zeros_like(low)
     a[:, 0], b[:, 1] = ((high - low) / 2).T
     carries = are_on_top(*reach(over + (low + high) / 2, a, b, u, v), is_disc)
-    # Or the middle of its base is over that, and then it is balanced there, whatever its share.
+    # An object whose base centre is over the top is balanced there, whatever its share.
     carries |= are_on_top(*along(over + _middle_of_base(forms)[form], u, v), is_disc)
     carries &= parts.low[meeting.upper, 2] - forms.bottom[form] < LOWEST_M - 2.0 * GUARD
 
@@ -86,7 +86,7 @@ def find_supports(columns: Columns, one: Ints, other: Ints, limits: Thresholds) 
     holds &= np.logical_or.reduceat(carries & is_nearest, begins)
     holds &= (step[pair] > GUARD) | ~is_level[pair]
     one, other = one[pair], other[pair]
-    # The other one does not rest on this one rather.
+    # Exclude pairs in which the lower one rests on the upper one.
     holds &= columns.bottom[other] < columns.bottom[one] - limits.contact_m - GUARD
     return SupportPairs(one, other, holds, gap)
 
@@ -94,7 +94,7 @@ def find_supports(columns: Columns, one: Ints, other: Ints, limits: Thresholds) 
 def _meeting(
     columns: Columns, one: Ints, other: Ints, most: Floats, is_level: Bools, limits: Thresholds
 ) -> _Meeting:
-    """The pairs of parts that `measures.on` compares; `most` is how far above one may be."""
+    """Return the pairs of parts that `measures.on` compares, with the greatest height `most` above one."""
     parts, form, its = columns.forms.parts, columns.form[one], columns.form[other]
     number = parts.count[its]
     pair, turn = repeat_rows(parts.count[form] * number)
@@ -115,7 +115,7 @@ def _meeting(
 
 
 def _middle_of_base(forms: FormColumns) -> Floats:
-    """(F, 2) of what stands on one box or cylinder; else NaN."""
+    """Return the (F, 2) centre of a base of one box or cylinder, else NaN."""
     found = np.full((len(forms.footing), 2), np.nan)
     stands_on_one = forms.footing >= 0
     found[stands_on_one] = forms.parts.centre[forms.footing[stands_on_one]]

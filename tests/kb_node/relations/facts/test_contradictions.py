@@ -54,13 +54,13 @@ def against(relation, entity, other, *others):
             "isOn",
             thing("cup1", (1.0, 2.0, 0.0)),
             TABLE,
-            "cup1 was said to be on table1; it stands 1.45 m from it",
+            "cup1 was asserted to be on table1; it stands 1.45 m from it",
         ),
         ("isOn", thing("cup1", (0.0, 0.0, 0.0)), TABLE, "below a surface of table1"),
         ("isOn", thing("cup1", (2.0, 0.0, CHAIR.size_m[2] / 2)), TABLE, "it stands 1.56"),
-        ("isInside", thing("apple1", (0.8, 0.3, TOP)), BOWL, "apple1 was said to be inside bowl1; it stands"),
+        ("isInside", thing("apple1", (0.8, 0.3, TOP)), BOWL, "was asserted to be inside bowl1; it stands"),
         ("isInside", thing("apple1", (0.34, 0.2, TOP)), BOWL, "% of its volume is within it"),
-        ("isLocatedIn", thing("cup1", (5.0, 0.0, 0.0)), ROOM, "was said to be in kitchen1; it stands 1.9"),
+        ("isLocatedIn", thing("cup1", (5.0, 0.0, 0.0)), ROOM, "asserted to be in kitchen1; it stands 1.9"),
         ("isLocatedIn", thing("x1", (5.0, 0.0, 0.0), "unheard of"), ROOM, "it stands 1.99"),
         ("isLocatedIn", thing("cup1", (1.0, 1.0, 0.0)), CORNER, "it stands"),
     ],
@@ -78,7 +78,7 @@ def test_nothing_is_said_of_what_is_not_there(said):
 def test_nothing_is_on_itself():
     found = find_contradiction(Space([TABLE]), ("table1", "isOn", "table1"))
     assert found is not None
-    assert found.text == "table1 was said to be on table1; nothing is on, in or inside itself"
+    assert found.text == "table1 was asserted to be on table1; an object cannot be on, in or inside itself"
 
 
 def test_a_fact_is_read_off_either_of_two_inverse_properties():

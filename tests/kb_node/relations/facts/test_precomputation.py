@@ -119,7 +119,9 @@ def test_with_a_process_and_without_the_facts_are_the_same(there, rows):
         for facts in (alone, helped):
             facts.update(there)
         helped.set_precomputation(AtOnce(foreseen(there, wanted)))
-        with patch.object(Facts, "_compute_in_steps", side_effect=AssertionError("it was worked out already")):
+        with patch.object(
+            Facts, "_compute_in_steps", side_effect=AssertionError("it was worked out already")
+        ):
             changed = helped.update(come)
         assert changed == alone.update(come)
         assert state(helped) == state(alone)
@@ -173,7 +175,7 @@ def test_a_process_that_dies_leaves_the_work_to_this_one(many, caplog, end):
         Precomputation(foreseen([], [TABLE, CUP]), lambda: None, [sys.executable, "-c", end])
     )
     assert facts.update([TABLE, CUP]).come >= ON
-    assert "working out ahead where things are ended" in caplog.text
+    assert "the process that precomputes facts failed" in caplog.text
 
 
 def test_a_number_that_is_none_ends_the_process_and_the_work_is_done_here(many):

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from semmap.nodes.kb_node.relations.geometry.convex import _searched, contact, make_convex
+from semmap.nodes.kb_node.relations.geometry.convex import _search_contact, contact, make_convex
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
 from tests.kb_node.relations.made import thing
 
@@ -62,7 +62,7 @@ def upright(draw):
 def test_what_stands_upright_is_as_far_apart_as_the_search_finds(one, other):
     if one.is_square and other.is_square:
         return
-    found, searched = contact(one, other), _searched(one, other, math.inf)
+    found, searched = contact(one, other), _search_contact(one, other, math.inf)
     assert found.distance == pytest.approx(searched.distance, abs=1e-12)
     assert found.normal == pytest.approx(searched.normal, abs=1e-12)
 

@@ -65,8 +65,8 @@ def test_thousands_are_on_the_table_that_is_under_them_all():
     assert {(f"cup{k}", "isLocatedIn", "kitchen1") for k in range(1500)} <= set(facts)
     assert max(len(one) for one, _, _ in looked_at) < 1502 * 2 * crowds.MOST
     assert facts.space.describe_crowds() == [
-        "1501 things are within 1 m of (0.5, 0.5): "
-        "what they are on, inside or beside is looked for among the 100 largest"
+        "1501 objects are within 1 m of (0.5, 0.5); "
+        "relations (on, inside, beside) are computed only with the 100 largest"
     ]
 
 

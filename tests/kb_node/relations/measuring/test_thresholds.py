@@ -36,5 +36,5 @@ def test_another_tbox_draws_the_line_elsewhere():
 
 @pytest.mark.parametrize("text", ["-0.1", "1.5", "nan", "wide"])
 def test_what_is_no_threshold_is_refused_in_words(text):
-    with pytest.raises(errors.BadRequest, match="the leastShare of isInside is from 0 to 1, not"):
+    with pytest.raises(errors.BadRequest, match="invalid leastShare of isInside"):
         said(isInside_leastShare=text)
