@@ -72,7 +72,7 @@ def test_a_time_is_as_long_as_it_is_written(seen, monkeypatch):
     second_ns = int(datetime(2026, 3, 1, 12, 30, 5).timestamp()) * 10**9
     stamps = dict(enumerate((-1, 0, 999_999_999, 10**9, 55 * 10**9 - 1, 55 * 10**9), start=1))
     monkeypatch.setattr(past._journal.stamps, "of", lambda seq: second_ns + stamps[seq])
-    monkeypatch.setattr(past._journal.stamps, "_so_far", lambda: [second_ns + s for s in stamps.values()])
+    monkeypatch.setattr(past._journal.stamps, "_read_all", lambda: [second_ns + s for s in stamps.values()])
     for when, seqs in {
         "2026-03-01T12:30:04": [1],
         "2026-03-01T12:30:05": [2, 3],
@@ -92,9 +92,9 @@ def test_a_time_is_as_long_as_it_is_written(seen, monkeypatch):
     ("when", "text"),
     [
         (7, "there is no commit 7 yet; the last one is 6"),
-        (0, "there was no map then; it begins with commit 1 at 20"),
-        ("2001-01-01", "there was no map then; it begins with commit 1 at 20"),
-        (4e9, "that is in the future"),
+        (0, "there was no map at that time; it begins with commit 1 at 20"),
+        ("2001-01-01", "there was no map at that time; it begins with commit 1 at 20"),
+        (4e9, "the time is in the future"),
     ],
 )
 def test_the_future_and_what_was_before_it_all_are_refused(seen, when, text):
@@ -192,6 +192,6 @@ def test_where_the_clock_was_set_back_commits_are_found_by_their_stamps(tmp_path
     assert [len(past.entities(at(hour))) for hour in (2.5, 3.2, 3.8, 4.5, 5.0)] == [1, 3, 4, 4, 5]
     monkeypatch.setattr("time.time_ns", lambda: start_ns + int(3.6 * 3600e9))  # set back again
     assert len(past.entities(at(5.0))) == 5
-    with pytest.raises(errors.Refused, match="that is in the future"):
+    with pytest.raises(errors.Refused, match="the time is in the future"):
         past.entities(at(5.1))
     home.close(semantic_map)

@@ -155,5 +155,5 @@ def test_a_tbox_may_be_a_folder_and_imports_may_be_said(data, files, tmp_path):
 
 
 def test_a_file_is_no_data_folder(files):
-    with pytest.raises(errors.Refused, match=r"cannot keep a map in .*: File exists"):
+    with pytest.raises(errors.Refused, match=r"cannot create a map in .*: File exists"):
         seed(files[1], files[0], None)

@@ -1,7 +1,7 @@
-"""A journal as the content of a backup, a part at a time: whoever has one part asks for the next.
+"""The content of a backup, read from a journal in parts. The client requests one part after another.
 
-Nothing is kept between two parts. What was written does not change any more, so all parts together are the
-journal as it was when the first was asked for, whatever has been committed since.
+Nothing is stored between two parts. Written commits never change, so all parts together are the journal at
+the time of the first request, whatever has been committed since.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _KINDS: Final[tuple[Kind, ...]] = ("tbox", "beginning", "snapshot", "commit", "c
 
 
 class Position(NamedTuple):
-    """Where a part begins: in the content of a row, of a journal of so many commits that begins there."""
+    """The start of a part: an offset within a row, in a journal with this start and end."""
 
     begins: int
     last: int
@@ -37,39 +37,41 @@ class Position(NamedTuple):
 
     @classmethod
     def read(cls, text: str) -> Position:
-        """As `written` gives it. Raises BadRequest."""
+        """Parse the text from `format`. Raises BadRequest."""
         try:
             place = cls._make(map(int, text.split(".")))
         except (ValueError, TypeError):
             place = None
         if place is None or not 0 <= place.kind < len(_KINDS):
-            raise errors.BadRequest(f"'{text}' is not where a part of a backup begins; leave it out")
+            raise errors.BadRequest(
+                f"invalid position of a backup part: '{text}'; leave it out to start a backup"
+            )
         return place
 
-    def written(self) -> str:
-        """As a text."""
+    def format(self) -> str:
+        """Return it as text."""
         return ".".join(map(str, self))
 
 
 def read_part(journal: Journal, at: str, *, size: int = PART_BYTES) -> BackupPart:
-    """The first part of a backup or, `at` what the part before names as next, another one.
+    """Return the first part of a backup or the one `at` the position that the previous part named.
 
-    Raises Refused when the history was compacted meanwhile, BadRequest.
+    Raises Refused if the history was compacted meanwhile, BadRequest.
     """
     if at:
         place, content = Position.read(at), list[bytes]()
     else:
-        opening = _opening(journal)  # commits go on: it says once which one is the last
+        opening = _opening(journal)  # commits continue, so the last one is fixed here
         place = Position(journal.beginning.seq, opening.last, 0, -1, 0)
         content = [MAGIC, framed(opening)]
     if place.begins != journal.beginning.seq:
-        raise errors.Refused("the history has been compacted meanwhile; begin the backup again")
+        raise errors.Refused("the history was compacted during the backup; start the backup again")
     filled = 0
     for following, piece in _pieces(journal, place, size):
         content.append(framed(piece))
         filled += len(piece.content)
         if filled >= size:
-            return BackupPart(content=b"".join(content), next=following.written())
+            return BackupPart(content=b"".join(content), next=following.format())
     content.append(framed(End(last=place.last)))
     return BackupPart(content=b"".join(content))
 
@@ -89,7 +91,7 @@ def _opening(journal: Journal) -> Opening:
 
 
 def _pieces(journal: Journal, place: Position, size: int) -> Iterator[tuple[Position, Piece]]:
-    """The pieces from a place on, each with the place after it."""
+    """Yield the pieces from a position on, each with the position after it."""
     for number in range(place.kind, len(_KINDS)):
         kind = _KINDS[number]
         begun = number == place.kind
@@ -111,7 +113,7 @@ def _pieces(journal: Journal, place: Position, size: int) -> Iterator[tuple[Posi
 
 
 def _stored(journal: Journal, kind: Kind, *, after: int, until: int) -> Iterator[Row]:
-    """What the journal has of one kind, with numbers later than `after` and up to `until`, in order."""
+    """Yield the rows of one kind with numbers after `after` and up to `until`, in order."""
     after = max(after, journal.beginning.seq) if kind == "commit" else after
     while True:
         with journal.file.reading() as db:

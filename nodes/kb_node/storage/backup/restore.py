@@ -1,4 +1,4 @@
-"""A data folder from a backup: checked before anything that is there is touched."""
+"""Creation of a data folder from a backup, which is checked before existing data changes."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from semmap.schemas.commits import Commit
 def restore(
     file: Path, data: Path, *, replace: bool = False, tell: Callable[[str], None] = lambda text: None
 ) -> Restored:
-    """Make the map of the backup `file` that of the folder `data`.
+    """Restore the backup `file` to the folder `data`.
 
-    A map that is there is moved to `data/kept/<time>/` if `replace`. `tell` is told how far long work is.
-    Raises BadFile for what is no sound backup; Refused when there is a map, one that is in use too, or the
-    disk does not take it. Then nothing has changed.
+    With `replace`, an existing map is moved to `data/kept/<time>/`. `tell` is called with the progress of
+    long work. Raises BadFile for an invalid backup. Raises Refused if there is a map, it is in use, or the
+    disk rejects it. Then nothing has changed.
     """
     path = data / FILENAME
     if path.exists() and not replace:
@@ -37,7 +37,7 @@ def restore(
     try:
         data.mkdir(parents=True, exist_ok=True)
         seed.require_unused(path)
-        opening, size = _made(file, new, tell)
+        opening, size = _write_journal(file, new, tell)
         kept = seed.install_journal(new, path)
     except OSError as error:
         raise errors.Refused(f"the map cannot be restored to {data}: {error.strerror}") from None
@@ -46,8 +46,8 @@ def restore(
     return Restored(opening=opening, entities=size, kept=None if kept is None else str(kept))
 
 
-def _made(file: Path, new: Path, tell: Callable[[str], None]) -> tuple[Opening, int]:
-    """A journal with what a backup has; how many entities the map has."""
+def _write_journal(file: Path, new: Path, tell: Callable[[str], None]) -> tuple[Opening, int]:
+    """Write the journal of a backup, and return its opening and the number of entities."""
     seed.delete_journal(new)
     rows = backups.read(file)
     opening = next(rows)

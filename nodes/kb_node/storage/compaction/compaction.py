@@ -1,4 +1,4 @@
-"""Compacting: what is older than so long becomes a snapshot, which the history begins with from then on."""
+"""Compaction: old commits are replaced by a snapshot, with which the history then begins."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from semmap.schemas.explanations import Triple
 
 
 class CompactedRange(NamedTuple):
-    """How much of the history becomes the snapshot."""
+    """The part of the history that becomes the snapshot."""
 
     last: int
-    """The last commit of it; the one that the history begins with already where nothing is old enough."""
+    """Its last commit. Without old commits it is the one with which the history already begins."""
     commits: int
 
 
@@ -34,9 +34,9 @@ class _Changes(Struct):
 
 
 def share(journal: Journal, *, keep_ns: int, now_ns: int) -> CompactedRange:
-    """What is older than `keep_ns`: the commits before the first that is not.
+    """Return the commits older than `keep_ns`, before the first younger one.
 
-    Stamps of the future, by a clock that went wrong, say nothing. The last commit always stays.
+    Stamps in the future, from a wrong clock, are ignored. The last commit is always kept.
     """
     begins, last = journal.beginning.seq, journal.last
     young = journal.stamps.within(now_ns - keep_ns, now_ns)
@@ -45,10 +45,10 @@ def share(journal: Journal, *, keep_ns: int, now_ns: int) -> CompactedRange:
 
 
 def compact(journal: Journal, past: HistoryReader, until: int) -> None:
-    """Let the history begin with the map as it was after commit `until`. Raises NotWritten, Refused.
+    """Start the history with the map after commit `until`. Raises NotWritten, Refused.
 
-    Either all of it is done or nothing; commits may be made meanwhile. An end in the middle of the cleaning
-    up costs nothing but room.
+    The change is atomic, and commits may be made meanwhile. An interruption while old commits are deleted
+    only costs disk space.
     """
     map_id, begun_ns = journal.origin()
     abox = collect_asserted(journal, until).difference(rdf.parse(journal.tbox(until), "the TBox"))
@@ -68,7 +68,7 @@ def compact(journal: Journal, past: HistoryReader, until: int) -> None:
 
 
 def collect_asserted(journal: Journal, seq: int) -> set[Triple]:
-    """All that was asserted after a commit, the TBox with it: what commits brought and did not take away."""
+    """Return all asserted triples after a commit, with the TBox."""
     start = journal.snapshot()
     asserted = {*start.said(), *rdf.parse(journal.tbox(start.seq), f"the first TBox in {journal.path}")}
     terms: dict[str, str] = {}

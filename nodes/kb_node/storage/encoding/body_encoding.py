@@ -1,6 +1,6 @@
-"""Bodies on disk: MessagePack, compressed where that takes less time than to write it.
+"""The encoding of bodies on disk: MessagePack, compressed if that takes less time than writing it.
 
-Messages are never compressed: what comes over the wire must not grow when it is read.
+Messages over the network are never compressed, so that they cannot grow when they are read.
 """
 
 from __future__ import annotations
@@ -12,21 +12,21 @@ from semmap.schemas import codec
 from semmap.schemas.errors import BadRequest
 
 LARGEST: Final = 4 << 30
-"""Bytes that a body may unfold to."""
+"""The greatest size of a decompressed body [bytes]."""
 COMPRESSION_LEVEL: Final = 1
-"""How hard zlib tries: not very."""
+"""The fastest level of zlib."""
 _DENSE: Final = b"x"
-"""How zlib's format begins, and no MessagePack map."""
+"""The first byte of zlib data, with which no MessagePack map starts."""
 
 
-def encode(message: Any, *, dense_from: int) -> bytes:
-    """`message` as MessagePack, compressed (zlib) from `dense_from` bytes on; `decode` takes both."""
+def encode(message: Any, *, compressed_from: int) -> bytes:
+    """Return `message` as MessagePack, compressed (zlib) from `compressed_from` bytes on."""
     body = codec.encode(message)
-    return body if len(body) < dense_from else zlib.compress(body, COMPRESSION_LEVEL)
+    return body if len(body) < compressed_from else zlib.compress(body, COMPRESSION_LEVEL)
 
 
 def decode(body: bytes, kind: Any) -> Any:
-    """The message in `body`, of type `kind`. Raises BadRequest for one that is damaged."""
+    """Return the message of type `kind` in `body`. Raises BadRequest if it is damaged."""
     return codec.decode(_unfolded(body) if body[:1] == _DENSE else body, kind)
 
 

@@ -1,4 +1,4 @@
-"""Frames: pieces of a large body that are compressed one by one, beside other work."""
+"""Frames: parts of a large body that are compressed one by one, in parallel with other work."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from semmap.nodes.kb_node.storage.encoding import body_encoding
 
 
 class FrameCompressor:
-    """A thread that compresses frames while the next ones are made; to be used in a `with`."""
+    """A thread that compresses frames while the next ones are created. Use it in a `with`."""
 
     def __init__(self) -> None:
         self._executor = ThreadPoolExecutor(1)
@@ -26,16 +26,16 @@ class FrameCompressor:
         self._executor.shutdown()
 
     def compress(self, frame: bytes) -> Future[bytes]:
-        """A frame, compressed."""
+        """Compress a frame in the background."""
         return self._executor.submit(zlib.compress, frame, body_encoding.COMPRESSION_LEVEL)
 
 
 def decompress_frames(frames: Sequence[bytes]) -> Iterator[bytes]:
-    """Each frame as it was; the next one is unpacked while the last one is read."""
-    with ThreadPoolExecutor(1) as beside:
+    """Yield each frame decompressed. The next one is decompressed meanwhile."""
+    with ThreadPoolExecutor(1) as executor:
         ahead = deque[Future[bytes]]()
         for frame in frames:
-            ahead.append(beside.submit(zlib.decompress, frame))
+            ahead.append(executor.submit(zlib.decompress, frame))
             if len(ahead) > 1:
                 yield ahead.popleft().result()
         while ahead:

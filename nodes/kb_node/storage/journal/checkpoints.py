@@ -1,4 +1,4 @@
-"""The checkpoints in a journal: the whole map after some commit, for a start to go on from."""
+"""Checkpoints in a journal: the whole map after a commit, from which a start continues."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ log = logging.getLogger(__name__)
 
 
 def save(file: JournalFile, checkpoint: Checkpoint, *, begins: int, progress: Callable[[], None]) -> None:
-    """Write `checkpoint` down, in a journal that begins after commit `begins`; of the older ones one stays.
+    """Write `checkpoint` to a journal that begins after commit `begins`, and keep one older checkpoint.
 
-    Raises NotWritten, with nothing changed, when the disk does not take it.
+    Raises NotWritten, with nothing changed, if the disk rejects it.
     """
     body = checkpoint_encoding.encode(checkpoint, progress)
     row = (checkpoint.seq, body, chain_digest(b"", body))
@@ -30,7 +30,7 @@ def save(file: JournalFile, checkpoint: Checkpoint, *, begins: int, progress: Ca
 
 
 def load_newest(file: JournalFile, *, begins: int, progress: Callable[[], None]) -> Checkpoint | None:
-    """The newest that is sound, in a journal that begins after commit `begins`; None if there is none."""
+    """Return the newest intact checkpoint of a journal that begins after commit `begins`, or None."""
     with file.reading() as db:
         for seq, body, digest in db.execute("SELECT * FROM checkpoints ORDER BY seq DESC"):
             if is_intact(b"", body, digest):

@@ -1,4 +1,4 @@
-"""Commits as they stand in the file, read a page at a time and proved by their digests."""
+"""Stored commits, read in pages and verified by their digests."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PAGE: Final = 256
 
 
 class Damaged(errors.Refused):
-    """A commit is not as it was written. `last_good` is the number of the one before."""
+    """A commit is not as it was written. `last_good` is the number of the previous one."""
 
     def __init__(self, path: Path, seq: int) -> None:
         super().__init__(
@@ -24,7 +24,7 @@ class Damaged(errors.Refused):
 
 
 class Row(NamedTuple):
-    """A commit as it stands in the file."""
+    """A commit as stored in the file."""
 
     seq: int
     id: str
@@ -33,7 +33,7 @@ class Row(NamedTuple):
 
 
 def read_intact_rows(file: JournalFile, *, after: int, before: bytes, size: int = PAGE) -> Iterator[Row]:
-    """The commits later than `after`, which has the digest `before`. Raises Damaged at the first damaged."""
+    """Yield the commits after `after`, whose digest is `before`. Raises Damaged at the first damaged one."""
     seq = after
     while rows := read_page(file, seq, size):
         for row in rows:
@@ -45,7 +45,7 @@ def read_intact_rows(file: JournalFile, *, after: int, before: bytes, size: int 
 
 
 def read_page(file: JournalFile, after: int, size: int = PAGE) -> list[Row]:
-    """The next rows; where they cannot be read together, one at a time, so that the bad one is known."""
+    """Return the next rows. If they cannot be read together, read them one by one to find the damaged one."""
     query = "SELECT seq, command_id, body, digest FROM commits WHERE seq > ? ORDER BY seq LIMIT ?"
     try:
         with file.reading() as db:

@@ -1,4 +1,4 @@
-"""Whether everything in a journal is as it was written."""
+"""Verification of a whole journal."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from semmap.nodes.kb_node.storage.journal.rows import Damaged
 
 
 def verify(journal: Journal, progress: Callable[[], None] = lambda: None) -> None:
-    """Read everything that counts. Raises Damaged at the first damaged commit, Refused for the rest."""
+    """Read all contents. Raises Damaged at the first damaged commit, Refused for other damage."""
     since, expected = _indexed_until(journal), index_check.Expected()
     for row in journal.rows():
         if row.seq > since:
@@ -26,15 +26,15 @@ def verify(journal: Journal, progress: Callable[[], None] = lambda: None) -> Non
         if not index_check.is_well_formed(db):
             raise journal.damage_error("its structure is damaged")
         if not expected.matches(db, since):
-            raise journal.damage_error("an index in it is damaged")
+            raise journal.damage_error("an index is damaged")
         if journal.beginning.seq and beginning.body_of(db, journal.beginning) is None:
-            raise journal.damage_error("the snapshot that its history begins with is damaged")
+            raise journal.damage_error("the snapshot at the start of its history is damaged")
     for (seq,) in tboxes:
         journal.tbox(seq)
 
 
 def _indexed_until(journal: Journal) -> int:
-    """The commit up to which the indexes are as they were recorded. Raises Refused if they are not."""
+    """Return the last commit up to which the indexes are as recorded. Raises Refused if they are not."""
     begins = journal.beginning.seq
     with journal.file.reading() as db:
         try:
@@ -44,5 +44,5 @@ def _indexed_until(journal: Journal) -> int:
         if record is None or record.seq < begins:
             return begins
         if not index_check.is_as_recorded(db, begins, record):
-            raise journal.damage_error("an index in it is damaged")
+            raise journal.damage_error("an index is damaged")
         return record.seq

@@ -1,4 +1,4 @@
-"""What of a commit fits a map that lacks some commit before it."""
+"""Adaptation of a commit to a map in which an earlier commit is missing."""
 
 from __future__ import annotations
 
@@ -15,14 +15,15 @@ from semmap.schemas.explanations import Term, Triple
 
 
 class DoesNotFit(Exception):
-    """It changes what is not there."""
+    """The commit changes something that is missing."""
 
 
 def adapt_commit(state: MapState, commit: Commit) -> Commit:
-    """`commit` with the changes that it takes to do the same to the map as it is, without its effects.
+    """Return `commit` with the changes that have the same result in the current map, without effects.
 
-    What it removes goes as it is now. One value that it replaced by another may be another one now. Raises
-    DoesNotFit when something else is missing, or nothing is left to do. Another TBox always fits.
+    Removed entities are removed as they are now. A replaced single value may have another old value now.
+    Raises DoesNotFit if something else is missing, or nothing remains to be done. A commit with a new TBox
+    always fits.
     """
     if commit.tbox:
         return structs.replace(commit, changed=(), removed=(), digest="")
@@ -60,7 +61,7 @@ def _retracted(state: MapState, commit: Commit) -> list[Triple]:
 
 
 def _pairs(triples: Sequence[Triple]) -> Counter[tuple[Term, Term]]:
-    """How many values each individual has of each property."""
+    """Return the number of values of each property of each individual."""
     return Counter((s, p) for s, p, _ in triples)
 
 

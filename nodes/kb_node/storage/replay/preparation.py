@@ -1,4 +1,4 @@
-"""The journals of a replay: a copy of the whole, and a map that ends where the replay begins."""
+"""The journals of a replay: a full copy, and a map that ends where the replay begins."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from semmap.schemas import errors
 from semmap.schemas.moments import When
 
 SOURCE: Final = f"replayed-{FILENAME}"
-"""The copy that the commits come from, in the folder of the replay."""
+"""The copy that provides the commits, in the folder of the replay."""
 
 
 def prepare(data: Path, folder: Path, *, since: When | None = None, until: When | None = None) -> Span:
-    """Make the journals in `folder` for a replay of the map in the data folder `data`; the span it has.
+    """Create the journals in `folder` for a replay of the map in `data`, and return its span.
 
-    Raises BadFile when there is no map, Refused when it is damaged up to the end of the span or the span is
-    not there, BadRequest when the span is none.
+    Raises BadFile if there is no map. Raises Refused if it is damaged up to the end of the span or lacks
+    the span, BadRequest for an invalid span.
     """
     source = folder / SOURCE
     journal_copy.copy(data, source)
     try:
         with closing(Journal(source)) as journal:
             span = span_of(journal, since, until)
-            _require_sound(journal, span.until)
+            _require_intact(journal, span.until)
     except errors.Refused as error:
         raise journal_copy.name_original(error, source, data / FILENAME) from None
     shutil.copyfile(source, folder / FILENAME)
@@ -36,8 +36,8 @@ def prepare(data: Path, folder: Path, *, since: When | None = None, until: When 
     return span
 
 
-def _require_sound(journal: Journal, until: int) -> None:
-    """Raises Refused for damage among the commits up to one; what comes later is not needed."""
+def _require_intact(journal: Journal, until: int) -> None:
+    """Raise Refused for damage up to a commit. Later damage does not matter."""
     for row in journal.rows():
         if row.seq >= until:
             break

@@ -175,8 +175,8 @@ def test_one_that_is_overtaken_by_compacting_is_begun_again(tmp_path, semantic_m
     journal = semantic_map._journal
     part = backup_parts.read_part(journal, "", size=100)
     compaction.compact(journal, HistoryReader(journal), 7)
-    with pytest.raises(errors.Refused, match="has been compacted meanwhile; begin the backup again"):
+    with pytest.raises(errors.Refused, match="was compacted during the backup; start the backup again"):
         backup_parts.read_part(journal, part.next)
     for nonsense in ("x", "1.2", "0.8.9.0.0"):
-        with pytest.raises(errors.BadRequest, match="is not where a part of a backup begins"):
+        with pytest.raises(errors.BadRequest, match="invalid position of a backup part"):
             backup_parts.read_part(journal, nonsense)

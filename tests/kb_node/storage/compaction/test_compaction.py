@@ -120,9 +120,7 @@ def test_where_the_history_begins_is_said(semantic_map, day):
     assert [commit.seq for commit in past.history(History(since=8))] == [8, 9, 10]
     assert past.commits([3, 7]) == (journal.commit(7),)
     for when in (5, (stamp_ns - DAY_NS) / 1e9):
-        with pytest.raises(
-            errors.Refused, match=r"before commit 6 at .* has been compacted: the history begi"
-        ):
+        with pytest.raises(errors.Refused, match=r"before 6 at .* have been compacted: the history begi"):
             past.entities(when)
     assert len(past.entities((stamp_ns + DAY_NS // 2) / 1e9)) == 5
     with pytest.raises(
@@ -199,7 +197,7 @@ def test_a_snapshot_that_is_damaged_is_noticed(tmp_path, semantic_map, checkpoin
     home.close(semantic_map)
     edit(tmp_path / FILENAME, f"UPDATE beginning SET {part} = x'1234'")
     with pytest.raises(
-        errors.Refused, match=r"history begins(?: with)? is damaged; continue with what is good"
+        errors.Refused, match=r"start of (?:the|its) history is damaged; recover the intact commits"
     ):
         opened(tmp_path)
     if checkpoint:
@@ -207,7 +205,7 @@ def test_a_snapshot_that_is_damaged_is_noticed(tmp_path, semantic_map, checkpoin
         after, _ = opened(tmp_path)
         assert {e.name for e in after[2].entities} == {e.name for e in expected[2].entities}
     else:
-        with pytest.raises(errors.Refused, match="no checkpoint to go on from; restore a backup"):
+        with pytest.raises(errors.Refused, match="no checkpoint to continue from; restore a backup"):
             repair(tmp_path)
 
 
@@ -225,5 +223,5 @@ def test_an_older_journal_is_not_taken_for_a_compacted_one(tmp_path, semantic_ma
     home.close(semantic_map)
     copy = shutil.copytree(tmp_path, tmp_path / "copy")
     edit(copy / FILENAME, "UPDATE meta SET value = x'35' WHERE key = 'format'")
-    with pytest.raises(errors.Refused, match="where its history begins is damaged"):
+    with pytest.raises(errors.Refused, match="the start of its history is damaged"):
         Journal(copy / FILENAME)

@@ -12,11 +12,11 @@ from semmap.schemas.commits import Departed
 
 def test_what_is_large_is_compressed():
     body = Departed(name="chair1", types=("Chair",) * 1000)
-    small = body_encoding.encode(body, dense_from=1000)
+    small = body_encoding.encode(body, compressed_from=1000)
     assert len(small) < 100
     assert body_encoding.decode(small, Departed) == body_encoding.decode(codec.encode(body), Departed) == body
     assert msgpack.unpackb(zlib.decompress(small)) == {"name": "chair1", "types": ["Chair"] * 1000}
-    assert body_encoding.encode(body, dense_from=100_000) == codec.encode(body)
+    assert body_encoding.encode(body, compressed_from=100_000) == codec.encode(body)
 
 
 @pytest.mark.parametrize(

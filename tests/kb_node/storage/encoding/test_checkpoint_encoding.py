@@ -48,4 +48,4 @@ def test_entities_share_what_they_have_in_common():
 def test_what_an_older_version_wrote_is_read():
     checkpoint = Checkpoint(seq=7, triples=(("<urn:a>", "<urn:b>", '"c"'),), entities=(entity("a", "Cup"),))
     assert decode(codec.encode(checkpoint)) == checkpoint
-    assert decode(body_encoding.encode(checkpoint, dense_from=1)) == checkpoint
+    assert decode(body_encoding.encode(checkpoint, compressed_from=1)) == checkpoint

@@ -104,7 +104,7 @@ def test_a_damaged_tbox_is_noticed(path):
     write(path)
     edit(path, "UPDATE tboxes SET value = x'00' WHERE seq = 0")
     journal = Journal(path)
-    with pytest.raises(errors.Refused, match=r"the TBox in it is damaged; continue .* semmap repair"):
+    with pytest.raises(errors.Refused, match=r"its TBox is damaged; recover .* semmap repair"):
         journal.tbox(0)
     journal.close()
 

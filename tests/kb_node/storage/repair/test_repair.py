@@ -1,4 +1,4 @@
-"""Damaged journals: refused with the commit's number, and mended up to the last good one."""
+"""Damaged journals: refused with the commit's number, and repaired up to the last good one."""
 
 import os
 import random
@@ -68,11 +68,11 @@ def test_what_is_good_after_a_damaged_commit_is_kept(data, broken):
     )
     (kept,) = (data / "kept").iterdir()
     assert (kept / FILENAME).read_bytes() == damaged
-    (seq, _, snapshot), mended = opened(data)
+    (seq, _, snapshot), repaired = opened(data)
     assert seq == 8
-    assert mended[: broken - 1] == commits[: broken - 1]
-    assert (mended[broken - 1].inserted, mended[broken - 1].retracted) == ((), ())
-    assert [c.inserted for c in mended[broken:]] == [c.inserted for c in commits[broken:]]
+    assert repaired[: broken - 1] == commits[: broken - 1]
+    assert (repaired[broken - 1].inserted, repaired[broken - 1].retracted) == ((), ())
+    assert [c.inserted for c in repaired[broken:]] == [c.inserted for c in commits[broken:]]
     assert {e.name for e in snapshot.entities} == {f"chair{n}" for n in range(1, 9) if n not in (5, broken)}
     assert repair(data) == f"nothing is damaged in {data}: the map continues from commit 8"
 
@@ -112,9 +112,9 @@ def where(data):
 @pytest.mark.parametrize(
     ("broken", "unfit", "there"),
     [
-        (1, "left out, too, because it would not fit without that: commits 3 and 5", {"chair2": 1.0}),
+        (1, "also left out because of missing changes: commits 3 and 5", {"chair2": 1.0}),
         (3, "", {"chair1": 5.0, "chair2": 1.0}),  # where it is set from there is known to the next one
-        (4, "left out, too, because it would not fit without that: commit 6", {"chair1": 5.0, "chair2": 1.0}),
+        (4, "also left out because of missing changes: commit 6", {"chair1": 5.0, "chair2": 1.0}),
         (6, "", {"chair1": 5.0, "chair2": 1.0, "chair3": 1.0}),
     ],
 )
@@ -123,7 +123,7 @@ def test_what_does_not_fit_without_it_is_told(tmp_path, broken, unfit, there):
     flip(tmp_path / FILENAME, "commits", broken)
     said = repair(tmp_path)
     assert f"(commit {broken} is damaged and left out" in said
-    assert (unfit in said) if unfit else "left out, too" not in said
+    assert (unfit in said) if unfit else "also left out" not in said
     assert where(tmp_path) == there
     _, commits = opened(tmp_path)
     assert [c.reason for c in commits if "left out" not in c.reason] == [
@@ -139,11 +139,11 @@ def test_a_checkpoint_tells_what_damaged_commits_have_changed(tmp_path, broken):
     (_, triples, _), commits = opened(tmp_path)
     for seq in broken:
         flip(tmp_path / FILENAME, "commits", seq)
-    assert "known from the checkpoint after commit 6); the damaged file" in repair(tmp_path)
-    (_, mended_triples, _), mended = opened(tmp_path)
-    assert mended_triples == triples
+    assert "restored from the checkpoint after commit 6); the damaged file" in repair(tmp_path)
+    (_, repaired_triples, _), repaired = opened(tmp_path)
+    assert repaired_triples == triples
     assert where(tmp_path) == {"chair1": 5.0, "chair2": 1.0}
-    assert [c.inserted for c in mended[broken[-1] :]] == [c.inserted for c in commits[broken[-1] :]]
+    assert [c.inserted for c in repaired[broken[-1] :]] == [c.inserted for c in commits[broken[-1] :]]
 
 
 @pytest.mark.parametrize("seq", range(1, 9))
@@ -155,7 +155,7 @@ def test_a_digest_that_is_damaged_costs_nothing(data, seq):
         opened(data)
     said = repair(data)
     if seq < 8:
-        assert "(all of them are good)" in said
+        assert "(all commits are intact)" in said
         assert opened(data) == expected
     else:
         assert "commit 8 is damaged and left out" in said
@@ -171,11 +171,11 @@ def test_a_journal_that_was_cut_off_goes_on_from_what_is_left(data, left):
     first = data / "first.nt"
     first.write_text("".join(f"{s} {p} {o} .\n" for s, p, o in home.TBOX))
     assert repair(data, tbox=first).startswith("the map continues from commit ")
-    (seq, _, _), mended = opened(data)
+    (seq, _, _), repaired = opened(data)
     assert seq <= 8
     assert all(
         ours.id == theirs.id or "left out" in ours.reason
-        for ours, theirs in zip(mended, commits, strict=False)
+        for ours, theirs in zip(repaired, commits, strict=False)
     )
 
 
@@ -198,7 +198,7 @@ def test_a_full_disk_ends_the_repair_and_leaves_the_damaged_file(data, monkeypat
 
 
 def test_it_tells_how_far_it_is(data, monkeypatch):
-    monkeypatch.setattr(repair_module, "_TOLD_EVERY_S", 0.0)
+    monkeypatch.setattr(repair_module, "_REPORT_INTERVAL_S", 0.0)
     flip(data / FILENAME, "commits", 5)
     told = []
     repair(data, told.append)
@@ -237,9 +237,9 @@ def test_flipped_bits_are_noticed_or_do_no_harm(data, seed):
     found = attempt(looked_at, data)
     assert found == expected or "is damaged" in found
     if "start a new map with --fresh" not in attempt(repair, data):
-        _, mended = opened(data)
+        _, repaired = opened(data)
         theirs = {commit.seq: commit for commit in expected[0][1]}
-        assert all("commit" in ours.reason or ours.inserted == theirs[ours.seq].inserted for ours in mended)
+        assert all("commit" in ours.reason or ours.inserted == theirs[ours.seq].inserted for ours in repaired)
 
 
 def looked_at(data):
@@ -262,7 +262,7 @@ def test_what_cannot_be_mended_says_how_to_go_on(data):
 
 def test_a_commit_whose_tbox_is_damaged_is_left_out(data):
     edit(data / FILENAME, "UPDATE tboxes SET value = x'00' WHERE seq = 5")
-    with pytest.raises(errors.Refused, match="the TBox in it is damaged"):
+    with pytest.raises(errors.Refused, match="its TBox is damaged"):
         opened(data)
     assert repair(data).startswith("the map continues from commit 8 (commit 5 is damaged and left out)")
     assert {f"chair{n}" for n in (1, 2, 3, 4, 6, 7, 8)} <= where(data).keys()

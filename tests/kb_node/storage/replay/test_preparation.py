@@ -118,7 +118,7 @@ def test_the_log_that_is_begun_anew_during_a_copy_is_noticed(data, tmp_path, mon
             r"the end \(commit 3\) is before the beginning \(commit 5\)",
         ),
         ({"since": "someday"}, errors.BadRequest, "'someday' is neither a commit number nor a time"),
-        ({"since": 0}, errors.Refused, "there was no map then"),
+        ({"since": 0}, errors.Refused, "there was no map at that time"),
     ],
 )
 def test_a_span_that_is_not_there_is_refused(data, folder, span, kind, said):
@@ -132,7 +132,7 @@ def test_what_was_compacted_is_not_replayed_and_said_to_be_gone(data, folder):
     assert prepare(data, folder) == (3, 6)
     states, _ = replayed(folder, 6)
     assert len(states) == 4
-    with pytest.raises(errors.Refused, match=r"what was before commit 3 .* has been compacted"):
+    with pytest.raises(errors.Refused, match=r"commits before 3 .* have been compacted"):
         prepare(data, folder, since=2)
 
 
