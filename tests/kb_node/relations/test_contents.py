@@ -1,4 +1,4 @@
-"""What goes along with what."""
+"""The contents of objects."""
 
 import math
 
@@ -9,7 +9,7 @@ from semmap.nodes.kb_node.relations.contents import Contents
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.schemas.entities import Pose, carried, orientation_from_yaw
 from semmap.schemas.grips import IS_GRASPED_BY
-from tests.kb_node.relations.made import NOBODY, ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import PROVENANCE, ROOM, TABLE, TOP, thing
 
 TRAY = thing("tray1", (0.0, 0.0, TOP), "unheard of", size=(0.5, 0.4, 0.02))
 BOWL = thing("bowl1", (0.1, 0.0, TOP + 0.02))
@@ -29,31 +29,31 @@ def loads(request):
     return made
 
 
-def test_all_that_stands_on_it_or_is_inside_it_and_on_that(loads):
+def test_contents_at_any_depth(loads):
     there = loads(ROOM, TABLE, TRAY, BOWL, APPLE, CUP, BOOK, LOST)
     assert there.find_all("tray1") == ["bowl1", "cup1", "apple1"]
     assert there.find_all("table1") == ["book1", "tray1", "bowl1", "cup1", "apple1"]
     assert there.find_all("bowl1") == ["apple1"]
-    assert there.find_all("cup1") == there.find_all("cup2") == there.find_all("nobody") == []
+    assert there.find_all("cup1") == there.find_all("cup2") == there.find_all("missing") == []
 
 
-def test_a_place_bears_nothing(loads):
+def test_a_place_has_no_contents(loads):
     assert loads(ROOM, TABLE).find_all("kitchen1") == []
 
 
-def test_what_is_left_stays_with_all_that_only_it_bears(loads):
+def test_excluded_objects_keep_their_contents(loads):
     there = loads(ROOM, TABLE, TRAY, BOWL, APPLE, CUP, BOOK)
     assert there.find_all("tray1", {"bowl1"}) == ["cup1"]
     assert there.find_all("table1", {"tray1", "cup1"}) == ["book1"]
 
 
-def test_whether_it_is_inside_is_told(loads):
+def test_the_carrier_tells_inside_from_on(loads):
     there = loads(TABLE, BOWL, APPLE)
     assert [(name, bearer.is_inside) for name, bearer in there.find_direct("bowl1")] == [("apple1", True)]
 
 
-def test_things_in_one_spot_carry_one_another_at_most_once(loads):
-    """Equal boxes in one spot are on one another in no sensible order: there is an end to it."""
+def test_objects_at_one_spot_are_listed_once(loads):
+    """Equal boxes at one spot support each other in no sensible order. The search must end."""
     heap = [thing(f"box{i}", (0.0, 0.0, 0.0), "unheard of", size=(0.1, 0.1, 0.04)) for i in range(30)]
     borne = loads(*heap).find_all("box0")
     assert len(borne) == len(set(borne))
@@ -75,14 +75,14 @@ def test_carried_is_rigid(yaw):
 
 
 def test_carried_over_a_tilt():
-    """A tray that is tipped by a quarter about x: what was above it is beside it."""
+    """A tray is tilted by a quarter turn about x: what was above it is beside it."""
     half = math.sqrt(0.5)
     now = Pose(position_m=(0.0, 0.0, 1.0), orientation_wxyz=(half, half, 0.0, 0.0))
     there = carried(Pose(position_m=(0.1, 0.0, 0.2)), Pose(position_m=(0.0, 0.0, 0.0)), now)
     assert there.position_m == pytest.approx((0.1, -0.2, 1.0))
 
 
-def test_carried_without_a_turn_keeps_the_orientation():
+def test_a_move_without_rotation_keeps_the_orientation():
     cup = Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=orientation_from_yaw(0.123456))
     was, now = Pose(position_m=(0.0, 0.0, 0.0)), Pose(position_m=(1.0, 0.0, 0.0))
     assert carried(cup, was, now).position_m == (1.0, 0.0, 0.0)
@@ -90,13 +90,13 @@ def test_carried_without_a_turn_keeps_the_orientation():
 
 
 @pytest.mark.parametrize(("x", "y", "yaw"), [(-0.7, 0.5, 0.0), (-0.7, 0.5, math.pi / 2), (-0.8, 0.0, 0.4)])
-def test_furniture_that_overlaps_does_not_carry_the_other(loads, x, y, yaw):
+def test_overlapping_furniture_is_not_contents(loads, x, y, yaw):
     couch, armchair = thing("couch1", (0.0, 0.0, 0.0)), thing("armchair1", (x, y, 0.005), yaw=yaw)
     there = loads(ROOM, couch, armchair)
     assert "couch1" not in there.find_all("armchair1")
     assert "armchair1" not in there.find_all("couch1")
 
 
-def test_what_is_held_is_carried_by_its_holder_only(loads):
-    held = structs.replace(CUP, properties={IS_GRASPED_BY: "tray1"}, grip_provenance=NOBODY)
+def test_an_attached_object_is_contents_of_its_holder_only(loads):
+    held = structs.replace(CUP, properties={IS_GRASPED_BY: "tray1"}, grip_provenance=PROVENANCE)
     assert loads(ROOM, TABLE, TRAY, BOWL, held).find_all("table1") == ["tray1", "bowl1"]

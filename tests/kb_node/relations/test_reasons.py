@@ -1,4 +1,4 @@
-"""Why a relation does not hold, for each that there is."""
+"""Explanations of why a relation does not hold."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import explain_relation, list_relations
 from semmap.schemas import errors
 from semmap.schemas.commands import Relations
-from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
 FRIDGE = thing("fridge1", (2.0, -2.0, 0.0))
 TRAY = thing("tray1", (0.0, 0.0, TOP))
@@ -63,7 +63,7 @@ def told(name, relation, other):
         ("cup1", "isOn", "cup1", "an object has no relation to itself"),
     ],
 )
-def test_why_not(name, relation, other, reason):
+def test_explanations_of_absent_relations(name, relation, other, reason):
     found = told(name, relation, other)
     assert not found.holds
     assert reason in found.text
@@ -78,8 +78,8 @@ def test_there_is_a_reason_for_each_relation(relation):
         assert found.text
 
 
-def test_what_is_on_a_thing_touches_it_whoever_is_asked():
-    """Within what a pose is worth: the cup is 2 cm above the table in the map."""
+def test_a_supported_object_touches_in_both_directions():
+    """Within the pose tolerance: the cup is 2 cm above the table in the map."""
     assert told("cup2", "touches", "table1").text.startswith(
         "cup2 touches table1, because cup2 is on table1:"
     )
@@ -89,24 +89,24 @@ def test_what_is_on_a_thing_touches_it_whoever_is_asked():
     assert not told("apple1", "touches", "table1").holds
 
 
-def test_no_pair_of_one():
+def test_an_object_has_no_relation_to_itself():
     with pytest.raises(errors.BadRequest, match="name two different objects"):
         list(list_relations(Space(MAP), Relations(name="cup1", other="cup1")))
 
 
-def test_of_two_that_hang_neither_stands():
+def test_two_attached_objects_have_no_support():
     hanging = [thing(f"cup{n}", (0.09 * n, 3.0, 1.4 + 0.06 * n)) for n in (1, 2)]
     found = explain_relation(Space([ROOM, *hanging]), "cup1", "isNextTo", "cup2")
     assert "neither has a known support" in found.text
 
 
-def test_no_length_of_nothing():
+def test_no_length_of_zero_is_printed():
     assert explain_relation(
         Space([TABLE, thing("cup1", (0.0, 0.0, TOP))]), "cup1", "touches", "table1"
     ).text == ("cup1 touches table1: they meet")
 
 
-def test_of_what_is_not_compared_in_a_crowd_that_is_said():
+def test_a_crowd_is_named_as_the_reason():
     cans = [thing(f"can{k}", (0.0, 0.0, TOP)) for k in range(150)]
     upper = thing("can999", (0.0, 0.0, TOP + cans[0].size_m[2]))
     crowd = Space([ROOM, TABLE, *cans, upper])
@@ -120,7 +120,7 @@ def test_of_what_is_not_compared_in_a_crowd_that_is_said():
     assert explain_relation(Space([TABLE, cans[1], upper]), "can999", "isOn", "can1").holds
 
 
-def test_what_is_on_a_thing_is_on_no_side_of_it():
+def test_a_supported_object_has_no_side():
     space = Space([TABLE, thing("cup1", (0.2, 0.2, TOP))])
     for name, other, borne in (("cup1", "table1", "it is on table1"), ("table1", "cup1", "cup1 is on it")):
         found = explain_relation(space, name, "isLeftOf", other)

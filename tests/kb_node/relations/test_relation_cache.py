@@ -1,4 +1,4 @@
-"""Relations asked pair by pair are those that `list` and `relations` tell."""
+"""Relations of single pairs agree with `list` and `relations`."""
 
 import math
 
@@ -18,7 +18,7 @@ def space(flat):
 
 
 @pytest.mark.parametrize("where", ["on", "near", "in_"])
-def test_list_means_the_same(flat, space, where):
+def test_related_agrees_with_list(flat, space, where):
     asked, there = RelationCache(space), tuple(flat.entities())
     relation = {"on": "isOn", "near": "isNear", "in_": "isInside"}[where]
     for other in ("table1", "kitchen1", "bowl1", "desk1"):
@@ -32,7 +32,7 @@ def test_list_means_the_same(flat, space, where):
         assert not hanging or (where == "on" and all(flat.entity(name).fixed for name in hanging))
 
 
-def test_sides_are_those_that_relations_tells(space):
+def test_sides_agree_with_relations(space):
     view = View.at(8.2, 0.9, 0.0, math.pi / 2)
     asked = RelationCache(space, view)
     told = {
@@ -45,24 +45,24 @@ def test_sides_are_those_that_relations_tells(space):
     assert not asked.related("isLeftOf", "bowl1", "table1")  # it stands on it
 
 
-def test_without_a_viewer_there_is_no_left(space):
+def test_sides_require_a_viewer(space):
     with pytest.raises(errors.BadRequest, match="--from VIEWER"):
         RelationCache(space).bearing("cup1")
     with pytest.raises(errors.BadRequest):
         RelationCache(space).related("isBehind", "cup1", "laptop1")
 
 
-def test_what_has_no_position_is_nowhere(space):
+def test_an_entity_without_a_position_has_no_relations(space):
     asked = RelationCache(space, View.at(0, 0, 0, 0))
-    assert asked.position("nobody") is asked.size("nobody") is None
-    assert asked.distance("nobody", "cup1") == asked.distance_from_viewer("nobody") == math.inf
-    assert not asked.related("isOn", "nobody", "table1")
-    assert not asked.holds_anything("nobody")
-    assert asked.spatial_relations("nobody") == ()
-    assert asked.between("nobody", "cup1") == frozenset()
+    assert asked.position("missing") is asked.size("missing") is None
+    assert asked.distance("missing", "cup1") == asked.distance_from_viewer("missing") == math.inf
+    assert not asked.related("isOn", "missing", "table1")
+    assert not asked.holds_anything("missing")
+    assert asked.spatial_relations("missing") == ()
+    assert asked.between("missing", "cup1") == frozenset()
 
 
-def test_whereabouts_are_the_nearest_first(space):
+def test_spatial_relations_are_nearest_first(space):
     assert RelationCache(space).spatial_relations("apple1") == (
         ("isInside", "bowl1"),
         ("isLocatedIn", "dining_corner1"),
@@ -71,7 +71,7 @@ def test_whereabouts_are_the_nearest_first(space):
     assert not RelationCache(space).holds_anything("plate1")
 
 
-def test_what_would_take_too_long_is_refused(space, monkeypatch):
+def test_too_many_pairs_are_rejected(space, monkeypatch):
     monkeypatch.setattr("semmap.nodes.kb_node.relations.relation_cache.MOST_PAIRS", 10)
     asked = RelationCache(space)
     for _ in range(10):

@@ -4,7 +4,7 @@ from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import list_locations, list_relations
 from semmap.schemas import errors
 from semmap.schemas.commands import Relations
-from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
 MAP = [
     ROOM,
@@ -21,7 +21,7 @@ def told(name, **fields):
     return {(r.relation, r.object): r for r in list_relations(Space(MAP), Relations(name=name, **fields))}
 
 
-def test_the_measurement_is_said():
+def test_texts_contain_the_measurement():
     on = told("cup1")["isOn", "table1"]
     assert on.text == (
         f"cup1 is on table1: its bottom is 1.0 mm above a surface of table1, at {100 * TOP:.1f} cm,"
@@ -39,14 +39,14 @@ def test_neighbours():
     assert ("isAbove", "box1") in told("table1")
 
 
-def test_of_a_pair_what_does_not_hold_is_told_too():
+def test_negative_relations_of_a_pair_are_listed():
     other = told("cup1", other="cup2")
     assert not other["isOn", "cup2"].holds
     assert "it is over no surface of cup2" in other["isOn", "cup2"].text
     assert not told("cup1", other="corner1")["isLocatedIn", "corner1"].holds
 
 
-def test_why_milk_is_not_on_the_fridge_whose_board_it_stands_on():
+def test_milk_inside_the_fridge_is_not_on_it():
     fridge = thing("fridge1", (3.0, 0.0, 0.0))
     milk = thing("carton1", (3.0, 0.0, 0.867))
     space = Space([ROOM, fridge, milk])
@@ -57,7 +57,7 @@ def test_why_milk_is_not_on_the_fridge_whose_board_it_stands_on():
     assert "it is inside fridge1" in found["isOn"].text
 
 
-def test_directions_are_the_viewer_s():
+def test_directions_are_relative_to_the_viewer():
     west, east = told("cup1", viewpoint=(-3.0, 0.0, 0.0, 0.0)), told("cup1", viewpoint=(3.0, 0.0, 0.0, 0.0))
     assert ("isRightOf", "cup2") in west
     assert ("isLeftOf", "cup2") in east
@@ -66,25 +66,25 @@ def test_directions_are_the_viewer_s():
     assert ("isInFrontOf", "cup1") in told("cup2", viewpoint=(0.0, 3.0, 0.0, 0.0))
 
 
-def test_who_is_nowhere():
+def test_an_entity_without_a_position_is_rejected():
     with pytest.raises(errors.UnknownName, match="did you mean cup1"):
         told("cup1", other="cup9")
     with pytest.raises(errors.Refused, match="has no position"):
         list(list_relations(Space([TABLE]), Relations(name="ghost1")))
 
 
-def test_nothing_is_seen_from_itself():
+def test_an_object_cannot_be_its_own_viewer():
     with pytest.raises(errors.BadRequest, match="cannot be its own viewer"):
         told("cup1", viewer="cup1")
 
 
-def test_twins_in_one_place_are_neither_under_nor_above_one_another():
+def test_objects_in_one_place_are_not_above_each_other():
     space = Space([ROOM, TABLE, *(thing(f"cup{n}", (0.0, 0.0, TOP)) for n in (1, 2))])
     found = {r.relation for r in list_relations(space, Relations(name="cup1", other="cup2")) if r.holds}
     assert found.isdisjoint({"isUnder", "isAbove"})
 
 
-def test_of_many_neighbours_the_nearest_are_told():
+def test_the_nearest_neighbours_are_listed():
     crowd = [thing(f"cup{n}", (0.2 * (n % 5) - 0.4, 0.2 * (n // 5) - 0.3, TOP)) for n in range(20)]
     found = list(
         list_relations(Space([ROOM, TABLE, *crowd]), Relations(name="cup7", viewpoint=(-3, 0, 0, 0)))
@@ -95,7 +95,7 @@ def test_of_many_neighbours_the_nearest_are_told():
     assert sum(r.relation == "isVisibleFrom" for r in found) == 1
 
 
-def test_what_hangs_is_attached_to_something_where_it_is():
+def test_attachments_are_listed():
     wall = thing("wall1", (0.0, -2.95, 0.0), "wall", size=(6.0, 0.1, 2.5))
     picture = thing("picture1", (0.0, -2.88, 1.5), "picture", size=(0.5, 0.04, 0.4))
     assert [r.relation for r in list_locations(Space([ROOM, wall, picture]), "picture1")] == [
@@ -104,7 +104,7 @@ def test_what_hangs_is_attached_to_something_where_it_is():
     ]
 
 
-def test_what_a_thing_bears_is_told_of_the_other_one():
+def test_contents_are_reported_as_subjects():
     found = list(list_relations(Space(MAP), Relations(name="table1")))
     assert [(r.relation, r.subject) for r in found if r.object == "table1"] == [
         ("isOn", "cup1"),
@@ -117,7 +117,7 @@ def test_what_a_thing_bears_is_told_of_the_other_one():
     assert held == [("isOn", "bowl1", "table1"), ("isInside", "apple1", "bowl1")]
 
 
-def test_nothing_is_left_of_what_bears_it():
+def test_supports_have_no_sides():
     here = [*MAP, thing("bowl1", (0.0, -0.4, TOP)), thing("apple1", (0.0, -0.4, TOP + 0.02))]
     sides = {"isLeftOf", "isRightOf", "isInFrontOf", "isBehind"}
     for name in ("cup2", "apple1", "table1"):
@@ -152,7 +152,7 @@ def test_nothing_is_left_of_what_bears_it():
         ((9.0, 9.0, 0.0), None),
     ],
 )
-def test_what_hovers_is_on_nothing(at, said):
+def test_a_floating_object_is_on_nothing(at, said):
     space = Space([ROOM, CORNER, TABLE, thing("egg1", at)])
     found = [
         r for r in list_relations(space, Relations(name="egg1")) if r.relation == "isOn" and not r.object
@@ -163,14 +163,14 @@ def test_what_hovers_is_on_nothing(at, said):
     assert all(r.object for r in fixed)
 
 
-def test_too_little_of_its_base_over_an_edge_is_on_nothing():
+def test_an_object_over_an_edge_is_on_nothing():
     edge = TABLE.size_m[0] / 2
     box = thing("box1", (edge + 0.09, 0.0, TOP), size=(0.2, 0.2, 0.1))
     (found,) = (r for r in list_relations(Space([ROOM, TABLE, box]), Relations(name="box1")) if not r.object)
     assert found.text.endswith("level with a surface of table1, but 8% of its base is over it")
 
 
-def test_what_hangs_or_is_on_a_plan_is_not_said_to_hover():
+def test_attached_objects_and_flat_maps_are_not_reported_as_floating():
     wall = thing("wall1", (0.0, 0.0, 0.0), size=(0.1, 3.0, 2.5))
     picture = thing("picture1", (0.07, 0.0, 1.3))
     assert all(r.object for r in list_relations(Space([wall, picture]), Relations(name="picture1")))
@@ -178,7 +178,7 @@ def test_what_hangs_or_is_on_a_plan_is_not_said_to_hover():
     assert all(r.object for r in list_relations(Space(plan), Relations(name="lamp1")))
 
 
-def test_what_has_no_known_size_is_told_what_is_missing():
+def test_an_unknown_size_is_reported():
     relic = thing("relic1", (0.0, 0.0, TOP))
     (found,) = (
         r for r in list_relations(Space([ROOM, TABLE, relic]), Relations(name="relic1")) if not r.object
@@ -186,7 +186,7 @@ def test_what_has_no_known_size_is_told_what_is_missing():
     assert "set a size: semmap update relic1 --size X Y Z" in found.text
 
 
-def test_what_has_no_known_size_is_near_nothing():
+def test_an_object_of_unknown_size_is_near_nothing():
     relic = thing("relic1", (0.0, 0.0, TOP))
     space = Space([ROOM, TABLE, thing("cup1", (0.1, 0.0, TOP)), relic])
     assert [r.relation for r in list_relations(space, Relations(name="relic1")) if r.holds] == ["isLocatedIn"]

@@ -5,7 +5,7 @@ from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.selection import resolve_single, resolve_word, select_entities
 from semmap.schemas import errors
 from semmap.schemas.relations import Where
-from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
 MAP = [
     ROOM,
@@ -25,7 +25,7 @@ def names(**where):
     return [e.name for e in select_entities(Space(MAP), MAP, Where(**where), MAP)]
 
 
-def test_on_is_also_on_what_is_on_it():
+def test_on_is_transitive():
     assert names(on="table1") == ["tray1", "cup1", "cup2", "bowl1", "apple1"]
     assert names(on="tray1") == ["cup1"]
     assert names(on="bowl1") == []
@@ -47,7 +47,7 @@ def test_near_within_and_nearest():
     assert names(nearest=9, to="lamp2", within=1.0) == []
 
 
-def test_a_distance_includes_what_is_exactly_so_far_away():
+def test_a_distance_is_inclusive():
     boxes = [
         thing("box1", (1.0, 0.0, 0.0), size=(1.0, 1.0, 1.0)),
         thing("box2", (4.0, 0.0, 0.0), size=(2.0, 1.0, 1.0)),
@@ -76,7 +76,7 @@ def test_near_and_nearest_to_a_position():
         names(near="20000,0,0", within=1.0)
 
 
-def test_all_that_is_asked_must_hold():
+def test_all_conditions_must_hold():
     assert names(on="table1", near="cup2", within=0.02) == []
     assert names(on="kitchen table", in_="kitchen") == names(on="table1")
 
@@ -88,23 +88,23 @@ def test_words():
         resolve_word(MAP, "tabel1")
 
 
-def test_a_class_as_it_is_written_is_not_one_thing_that_is_called_so():
+def test_an_exact_class_takes_precedence_over_a_label():
     called = thing("table7", (5.0, 5.0, 0.0), ref="table")
     assert resolve_word([*MAP, called], "Table") == {"table1", "table7"}
     assert resolve_word([*MAP, called], "table") == {"table7"}
 
 
-def test_a_word_that_means_one_only():
+def test_a_word_for_a_single_entity():
     assert resolve_single(MAP, "my cup") == "cup1"
     assert resolve_single(MAP, "kitchen") == "kitchen1"
     with pytest.raises(errors.BadRequest, match="'Cup' is ambiguous: cup1 and cup2; name one of them"):
         resolve_single(MAP, "Cup")
     with pytest.raises(errors.UnknownName):
-        resolve_single(MAP, "nobody")
+        resolve_single(MAP, "missing")
 
 
 @pytest.mark.parametrize("where", [{"within": 1.0}, {"nearest": 2}, {"to": "cup1"}])
-def test_what_does_not_go_alone(where):
+def test_incomplete_conditions_are_rejected(where):
     with pytest.raises(errors.BadRequest, match="--"):
         names(**where)
 
@@ -116,7 +116,7 @@ def test_what_does_not_go_alone(where):
         ({"in_": "table1"}, "nothing can be in table1"),
     ],
 )
-def test_what_nothing_can_be_on_or_in(where, reason):
+def test_impossible_targets_are_rejected(where, reason):
     with pytest.raises(errors.Refused, match=reason):
         names(**where)
 
@@ -127,7 +127,7 @@ def test_a_place_of_unknown_extent():
         select_entities(Space([*MAP, nowhere]), MAP, Where(in_="k1"), [*MAP, nowhere])
 
 
-def test_near_is_the_fact_that_a_query_sees():
+def test_near_agrees_with_the_fact():
     space = Space(MAP)
     pairs = PairFacts(Space(MAP))
     pairs.set_scope(("isNear",), ())
@@ -148,17 +148,17 @@ def test_near_is_the_fact_that_a_query_sees():
         ({"on": "relic1"}, "the size of relic1 is unknown, so what is on it is unknown"),
     ],
 )
-def test_what_is_not_known_is_no_empty_list(where, reason):
+def test_unknown_locations_are_rejected(where, reason):
     everyone = [*MAP, thing("ghost1", None), thing("relic1", (1.0, 1.0, 0.0))]
     with pytest.raises(errors.Refused, match=reason):
         select_entities(Space(everyone), everyone, Where(**where), everyone)
 
 
-def test_how_far_from_a_place_can_be_asked():
+def test_a_distance_from_a_place():
     assert names(near="corner1", within=0.1) == ["lamp1"]
 
 
-def test_who_asks_for_a_thing_by_several_words_is_told_of_what_the_last_of_them_names():
+def test_an_unknown_name_of_several_words_gets_a_suggestion():
     everyone = [ROOM, CORNER, thing("table1", (0.0, 0.0, 0.0), ref="table")]
     with pytest.raises(errors.UnknownName, match="did you mean table, kitchen or"):
         resolve_word(everyone, "kitchen table")

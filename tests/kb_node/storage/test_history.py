@@ -25,7 +25,7 @@ A, B, C = (1.0, 2.0, 0.0), (3.0, 2.0, 0.0), (4.0, 2.0, 0.0)
 
 @pytest.fixture
 def seen(tmp_path):
-    """A map with a past, and each of its snapshots by commit."""
+    """A map with a history, and its snapshots by commit."""
     semantic_map = home.new_map(tmp_path, TBOX_WITH_SINK)
     snapshots = {}
     for step in (
@@ -67,7 +67,7 @@ def test_the_map_as_it_was_at_a_time(seen):
     assert past.entity("chair1", now).pose.position_m == C
 
 
-def test_a_time_is_as_long_as_it_is_written(seen, monkeypatch):
+def test_a_time_has_the_precision_of_its_text(seen, monkeypatch):
     past, snapshots = seen
     second_ns = int(datetime(2026, 3, 1, 12, 30, 5).timestamp()) * 10**9
     stamps = dict(enumerate((-1, 0, 999_999_999, 10**9, 55 * 10**9 - 1, 55 * 10**9), start=1))
@@ -97,14 +97,14 @@ def test_a_time_is_as_long_as_it_is_written(seen, monkeypatch):
         (4e9, "the time is in the future"),
     ],
 )
-def test_the_future_and_what_was_before_it_all_are_refused(seen, when, text):
+def test_times_outside_the_history_are_rejected(seen, when, text):
     past, _ = seen
     for ask in (lambda: past.entities(when), lambda: past.entity("chair1", when)):
         with pytest.raises(errors.Refused, match=text):
             ask()
 
 
-def test_who_was_not_there_then_is_named(seen):
+def test_an_absent_entity_is_named(seen):
     past, _ = seen
     with pytest.raises(errors.UnknownName, match=r"no entity was named 'chair2' after commit 5$"):
         past.entity("chair2", 5)
@@ -115,7 +115,7 @@ def test_who_was_not_there_then_is_named(seen):
     assert past.entity("sink", 1).class_ == "Door"
 
 
-def test_history_tells_who_when_why_and_what(seen):
+def test_history_contains_provenance_and_changes(seen):
     past, _ = seen
     commits = past.history(History())
     assert [c.seq for c in commits] == [1, 2, 3, 4, 5, 6]
@@ -150,7 +150,7 @@ def test_history_of_an_entity_and_of_a_span_of_time(seen, query, seqs):
     assert [c.seq for c in past.history(query)] == seqs
 
 
-def test_history_of_nobody_is_refused(seen):
+def test_history_of_an_unknown_name_is_rejected(seen):
     past, _ = seen
     with pytest.raises(errors.UnknownName, match=r"no entity was ever named 'chair3'; did you mean chair"):
         past.history(History(name="chair3"))
@@ -168,8 +168,8 @@ def test_last_seen_is_the_last_commit_that_touched_the_pose(seen):
         past.last_seen("chair9")
 
 
-def test_where_the_clock_was_set_back_commits_are_found_by_their_stamps(tmp_path, monkeypatch):
-    """Two o'clock, four, and then three, half past three, five."""
+def test_commits_are_found_after_a_clock_change(tmp_path, monkeypatch):
+    """The stamps are two, four, three, half past three and five o'clock."""
     semantic_map = home.new_map(tmp_path)
     start_ns = 1_700_000_000 * 10**9
     for number, hour in enumerate((2.0, 4.0, 3.0, 3.5, 5.0), start=1):

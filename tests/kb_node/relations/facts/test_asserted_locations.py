@@ -1,4 +1,4 @@
-"""What is asserted of places, by whom it is about."""
+"""The index of asserted locations."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -14,16 +14,16 @@ def sayings(*triples):
     return AssertedLocations(lambda p: [t for t in triples if t[1] == p])
 
 
-def test_it_is_found_by_both_that_it_is_about():
+def test_a_triple_is_found_by_subject_and_object():
     said = sayings((CUP, IS_ON, TABLE), (TABLE, SUPPORTS, TRAY), (CUP, COLOR, v.dm("color_red")))
     assert said
     assert set(said.about(["cup1"])) == {(CUP, IS_ON, TABLE)}
     assert set(said.about(["table1"])) == {(CUP, IS_ON, TABLE), (TABLE, SUPPORTS, TRAY)}
     assert said.about(["tray1"]) == {(TABLE, SUPPORTS, TRAY): ("tray1", "isOn", "table1")}
-    assert said.about(["nobody"]) == {}
+    assert said.about(["missing"]) == {}
 
 
-def test_nothing_said():
+def test_without_assertions():
     said = sayings((CUP, COLOR, v.dm("color_red")))
     assert not said
     said.change((), [(CUP, IS_ON, TABLE)])
@@ -37,7 +37,7 @@ triples = st.tuples(things, st.sampled_from([IS_ON, SUPPORTS, COLOR]), things)
 
 
 @given(st.lists(st.tuples(st.sets(triples), st.sets(triples)), max_size=6), st.sets(triples))
-def test_in_step_is_the_same_as_from_nothing(changes, begin):
+def test_incremental_updates_equal_a_rebuild(changes, begin):
     held = set(begin)
     said = sayings(*held)
     assert bool(said) == any(p != COLOR for _, p, _ in held)
@@ -46,7 +46,7 @@ def test_in_step_is_the_same_as_from_nothing(changes, begin):
         come = come - held - gone
         held = (held - gone) | come
         said.change(gone, come)
-    anew = sayings(*held)
+    rebuilt = sayings(*held)
     for name in ("cup1", "table1", "tray1"):
-        assert said.about([name]) == anew.about([name])
-    assert bool(said) == bool(anew)
+        assert said.about([name]) == rebuilt.about([name])
+    assert bool(said) == bool(rebuilt)

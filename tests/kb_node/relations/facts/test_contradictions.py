@@ -1,4 +1,4 @@
-"""Said against seen."""
+"""Asserted locations that contradict the geometry."""
 
 import math
 
@@ -18,7 +18,7 @@ from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Pose
 from tests.kb_node import home
-from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
 CHAIR = thing("chair1", (2.0, 0.0, 0.0))
 BOOK = thing("book1", (0.0, 0.0, TOP))
@@ -65,23 +65,23 @@ def against(relation, entity, other, *others):
         ("isLocatedIn", thing("cup1", (1.0, 1.0, 0.0)), CORNER, "it stands"),
     ],
 )  # fmt: skip
-def test_what_geometry_says_against_it(relation, entity, other, text):
+def test_geometry_denies_a_stated_location(relation, entity, other, text):
     found = against(relation, entity, other)
     assert found is None if text is None else text in found
 
 
 @pytest.mark.parametrize("said", [("cup1", "isOn", "gone"), ("gone", "isOn", "table1")])
-def test_nothing_is_said_of_what_is_not_there(said):
+def test_unknown_entities_are_not_denied(said):
     assert find_contradiction(Space([TABLE]), said) is None
 
 
-def test_nothing_is_on_itself():
+def test_no_object_is_on_itself():
     found = find_contradiction(Space([TABLE]), ("table1", "isOn", "table1"))
     assert found is not None
     assert found.text == "table1 was asserted to be on table1; an object cannot be on, in or inside itself"
 
 
-def test_a_fact_is_read_off_either_of_two_inverse_properties():
+def test_inverse_properties_give_the_same_fact():
     cup, table = v.entity_iri("cup1"), v.entity_iri("table1")
     assert (
         fact_of((cup, v.dm("isOn"), table))
@@ -96,7 +96,7 @@ def test_a_fact_is_read_off_either_of_two_inverse_properties():
     assert len(list(find_contradictions(Space([TABLE, cup]), twice))) == 1
 
 
-def test_what_was_said_of_the_flat_by_hand_holds(tmp_path):
+def test_the_asserted_locations_of_the_flat_hold(tmp_path):
     triples = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="h")
     flat = home.new_map(tmp_path, triples)
     flat.commit(home.transaction(1, rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")))
@@ -109,8 +109,8 @@ def test_what_was_said_of_the_flat_by_hand_holds(tmp_path):
     home.close(flat)
 
 
-def test_a_flat_map_denies_nothing_of_what_is_on_what():
-    """A plan has all things at height 0 and knows no sizes; a place may have an extent."""
+def test_a_flat_map_denies_no_support():
+    """A plan has all objects at height 0 and no sizes. A place may have an extent."""
 
     table, cup, book = (
         structs.replace(thing(name, at), size_m=None)
@@ -130,7 +130,7 @@ def test_a_flat_map_denies_nothing_of_what_is_on_what():
     )
 
 
-def test_whether_a_map_is_flat_is_kept_in_step():
+def test_is_flat_follows_changes():
     space = Space([thing("table1", (0.0, 0.0, 0.0), size=None)])
     flat = structs.replace(thing("cup1", (0.0, 0.0, 0.0)), size_m=None)
     space.remove("table1")

@@ -1,4 +1,4 @@
-"""Relations of pairs, kept for those who ask: what is kept is what a look at all gives."""
+"""Facts of pairs: the stored ones equal those of a full search."""
 
 import random
 
@@ -13,7 +13,7 @@ from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Pose
 from tests.depth import tries
-from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import ROOM, TABLE, TOP, thing
 
 EVERY = frozenset(MIRRORED)
 SUB, INVERSE = v.iri(v.RDFS + "subPropertyOf"), v.iri(v.OWL + "inverseOf")
@@ -33,7 +33,7 @@ def facts(pairs, there):
     return {(a, r, b) for a in names for b in names if a < b for r in MIRRORED if pairs.holds(a, r, b)}
 
 
-def anew(there, whole=EVERY, some=()):
+def rebuilt(there, whole=EVERY, some=()):
     pairs = PairFacts(Space(there))
     pairs.set_scope(whole, some)
     return facts(pairs, there)
@@ -43,7 +43,7 @@ def anew(there, whole=EVERY, some=()):
 @pytest.mark.parametrize(
     ("whole", "some"), [(EVERY, ()), (("isNextTo",), ()), ((), ("table1", "cup3")), (("isNear",), ("cup1",))]
 )
-def test_what_is_kept_is_what_a_look_at_all_gives(seed, whole, some):
+def test_stored_pairs_equal_a_full_search(seed, whole, some):
     dice = random.Random(seed)
     there = {entity.name: entity for entity in some_things(dice)}
     pairs = PairFacts(Space(there.values()))
@@ -60,33 +60,33 @@ def test_what_is_kept_is_what_a_look_at_all_gives(seed, whole, some):
             at = (x + dice.choice([0.0, 0.1, 0.4]), y, z)
             there[name] = structs.replace(there[name], pose=Pose(position_m=at))
             changed = pairs.update([there[name]])
-        now = anew(there.values(), whole, some)
+        now = rebuilt(there.values(), whole, some)
         assert facts(pairs, there.values()) == now
         assert {f for f in known - now if {f[0], f[2]} <= there.keys()} <= changed.gone <= known - now
         assert changed.come == now - known
         known = now
 
 
-def test_who_asks_for_less_has_less():
+def test_a_smaller_scope_keeps_fewer_facts():
     there = some_things(random.Random(1))
     pairs = PairFacts(Space(there))
     pairs.set_scope(EVERY, ())
     pairs.set_scope(("isNear",), ("cup1",))
-    assert facts(pairs, there) == anew(there, ("isNear",), ("cup1",))
+    assert facts(pairs, there) == rebuilt(there, ("isNear",), ("cup1",))
     pairs.set_scope(("isNear", "touches"), ())
-    assert facts(pairs, there) == anew(there, ("isNear", "touches"))
+    assert facts(pairs, there) == rebuilt(there, ("isNear", "touches"))
     pairs.set_scope((), ())
     assert facts(pairs, there) == set()
 
 
-def test_one_who_is_on_another_is_not_near_it():
+def test_an_object_on_another_is_not_near_it():
     space = Space([TABLE, thing("cup1", (0.0, 0.0, TOP)), thing("chair1", (0.9, 0.0, 0.0))])
     cup, table, chair = (space.solids[name] for name in ("cup1", "table1", "chair1"))
     assert {name for name, made in measure_pair(space, cup, table) if made.holds} == {"touches"}
     assert "isNear" in {name for name, made in measure_pair(space, table, chair) if made.holds}
 
 
-def test_what_a_tbox_implies_of_them_is_told():
+def test_implied_properties_of_a_tbox_are_included():
     close, around = v.dm("isClose"), v.dm("isAround")
     derived = PairProperties(
         [
@@ -101,7 +101,7 @@ def test_what_a_tbox_implies_of_them_is_told():
     assert found == {(s, p, o) for p in derived.sources for s, o in (("<a>", "<b>"), ("<b>", "<a>"))}
 
 
-def test_a_tbox_without_them_has_none():
+def test_a_tbox_without_the_properties_has_no_facts():
     assert PairProperties([(v.dm("isOn"), v.RDF_TYPE, v.iri(v.OWL + "ObjectProperty"))]).sources == {}
 
 
@@ -110,7 +110,7 @@ def crowd(dice, count):
     return [ROOM, TABLE, *(thing(f"cup{k}", at) for k, at in enumerate(spread))]
 
 
-def test_in_a_crowd_so_many_are_compared_and_no_more():
+def test_comparisons_in_a_crowd_are_bounded():
     dice = random.Random(3)
     there = crowd(dice, 700)
     space = Space(there)
@@ -125,7 +125,7 @@ def test_in_a_crowd_so_many_are_compared_and_no_more():
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_what_is_kept_of_a_crowd_is_what_a_look_at_all_gives(seed, monkeypatch):
+def test_stored_pairs_of_a_crowd_equal_a_full_search(seed, monkeypatch):
     monkeypatch.setattr(crowds, "MOST", 8)
     dice = random.Random(seed)
     there = {entity.name: entity for entity in crowd(dice, 24)}
@@ -140,4 +140,4 @@ def test_what_is_kept_of_a_crowd_is_what_a_look_at_all_gives(seed, monkeypatch):
             size = (dice.uniform(0.05, 0.3), 0.08, 0.1)
             there[name] = thing(name, (dice.uniform(-0.4, 0.4), dice.uniform(-0.3, 0.3), TOP), size=size)
             pairs.update([there[name]])
-        assert facts(pairs, there.values()) == anew(there.values())
+        assert facts(pairs, there.values()) == rebuilt(there.values())

@@ -1,4 +1,4 @@
-"""What another process works out of where things will be is what holds when they have come."""
+"""Facts computed by another process equal those computed after the commit."""
 
 import sys
 from unittest.mock import patch
@@ -21,7 +21,7 @@ from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.schemas import codec
 from semmap.schemas.entities import orientation_from_yaw
-from tests.kb_node.relations.made import TABLE, TOP, thing
+from tests.kb_node.relations.entities import TABLE, TOP, thing
 
 FAR = Thresholds(gap_m=0.1)
 MODELS = ["table", "cup", "book", "tray", "fridge", "box"]
@@ -51,7 +51,7 @@ def world(rows):
 
 
 def coming(entities):
-    """As a load says of them; the looks of their classes are those of the models."""
+    """Return the expected entities, with the models of their classes."""
     looks = list(dict.fromkeys(ClassModel(entity.model, entity.place) for entity in entities))
     return ExpectedEntities(
         looks,
@@ -69,7 +69,7 @@ def coming(entities):
 
 
 def looking(entities):
-    """They have the models that are chosen for them."""
+    """Return the entities with their chosen models."""
     return [
         structs.replace(e, model=placed.model)
         for e, placed in zip(entities, coming(entities).placed(), strict=True)
@@ -90,7 +90,7 @@ def state(facts):
 
 
 class AtOnce:
-    """Works out in this process what the other one would."""
+    """A precomputation that runs in this process."""
 
     def __init__(self, said):
         self._found = compute_facts(codec.decode(codec.encode(said), PrecomputeRequest))
@@ -104,14 +104,14 @@ class AtOnce:
 
 @pytest.fixture
 def many():
-    """Few are many."""
+    """Use arrays for a single entity already."""
     with patch("semmap.nodes.kb_node.relations.facts.place_facts.MANY", 1):
         yield
 
 
 @settings(deadline=None, max_examples=100)
 @given(WORLDS, WORLDS)
-def test_with_a_process_and_without_the_facts_are_the_same(there, rows):
+def test_facts_are_the_same_with_and_without_a_process(there, rows):
     there, wanted = [structs.replace(e, name=f"old_{e.name}") for e in world(there)], world(rows)
     come = looking(wanted)
     with patch("semmap.nodes.kb_node.relations.facts.place_facts.MANY", 1):
@@ -120,7 +120,7 @@ def test_with_a_process_and_without_the_facts_are_the_same(there, rows):
             facts.update(there)
         helped.set_precomputation(AtOnce(foreseen(there, wanted)))
         with patch.object(
-            Facts, "_compute_in_steps", side_effect=AssertionError("it was worked out already")
+            Facts, "_compute_in_steps", side_effect=AssertionError("the facts were already computed")
         ):
             changed = helped.update(come)
         assert changed == alone.update(come)
@@ -131,11 +131,13 @@ def test_with_a_process_and_without_the_facts_are_the_same(there, rows):
 ON = {("cup1", "isOn", "table1")}
 
 
-def test_a_process_of_its_own_works_it_out(many):
+def test_a_separate_process_computes_the_facts(many):
     facts, beats = Facts(FAR), []
     facts.update([TABLE])
     facts.set_precomputation(Precomputation(foreseen([TABLE], [CUP]), lambda: beats.append(1)))
-    with patch.object(Facts, "_compute_in_steps", side_effect=AssertionError("it was worked out already")):
+    with patch.object(
+        Facts, "_compute_in_steps", side_effect=AssertionError("the facts were already computed")
+    ):
         assert facts.update([CUP]).come == ON
     assert beats
 
@@ -151,7 +153,7 @@ def test_a_process_of_its_own_works_it_out(many):
         [],
     ],
 )
-def test_what_was_foreseen_otherwise_is_worked_out_here(many, came):
+def test_an_unexpected_commit_is_computed_in_this_process(many, came):
     facts = Facts(FAR)
     facts.update([TABLE])
     wrong = Facts(FAR)
@@ -161,15 +163,17 @@ def test_what_was_foreseen_otherwise_is_worked_out_here(many, came):
     assert state(wrong) == state(facts)
 
 
-def test_who_has_no_position_does_not_matter(many):
+def test_entities_without_a_position_are_ignored(many):
     facts = Facts(FAR)
     facts.set_precomputation(AtOnce(foreseen([], [TABLE, CUP])))
-    with patch.object(Facts, "_compute_in_steps", side_effect=AssertionError("it was worked out already")):
+    with patch.object(
+        Facts, "_compute_in_steps", side_effect=AssertionError("the facts were already computed")
+    ):
         assert facts.update([*looking([TABLE, CUP]), thing("cup9", None)]).come >= ON
 
 
 @pytest.mark.parametrize("end", ["raise SystemExit(3)", "import os; os.kill(os.getpid(), 9)"])
-def test_a_process_that_dies_leaves_the_work_to_this_one(many, caplog, end):
+def test_a_failed_process_is_replaced_by_this_one(many, caplog, end):
     facts = Facts(FAR)
     facts.set_precomputation(
         Precomputation(foreseen([], [TABLE, CUP]), lambda: None, [sys.executable, "-c", end])
@@ -178,7 +182,7 @@ def test_a_process_that_dies_leaves_the_work_to_this_one(many, caplog, end):
     assert "the process that precomputes facts failed" in caplog.text
 
 
-def test_a_number_that_is_none_ends_the_process_and_the_work_is_done_here(many):
+def test_an_invalid_number_ends_the_process_and_this_one_computes(many):
     facts = Facts(FAR)
     said = foreseen([], [TABLE, CUP])
     arrivals = [said.coming.arrivals[0], said.coming.arrivals[1]._replace(position=('"x"', '"y"', '"z"'))]
@@ -189,7 +193,7 @@ def test_a_number_that_is_none_ends_the_process_and_the_work_is_done_here(many):
     assert facts.update([TABLE, CUP]).come >= ON
 
 
-def test_one_that_is_given_up_is_gone(many):
+def test_a_discarded_process_has_ended(many):
     facts = Facts(FAR)
     ahead = Precomputation(
         foreseen([], [CUP]), lambda: None, [sys.executable, "-c", "import time; time.sleep(60)"]
@@ -201,7 +205,7 @@ def test_one_that_is_given_up_is_gone(many):
     assert facts.update([TABLE, CUP]).come >= ON
 
 
-def test_few_need_none(many):
+def test_few_entities_need_no_process(many):
     facts = Facts(FAR)
     ahead = Precomputation(foreseen([], [CUP]), lambda: None)
     facts.set_precomputation(ahead)

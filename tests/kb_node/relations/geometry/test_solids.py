@@ -1,4 +1,4 @@
-"""A solid that replaces another is what it would be without that one."""
+"""A solid that replaces another equals a new one."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_bounds_bottom_and_top_after_a_change(
     assert (moved.is_place, moved.is_measured) == (fresh.is_place, fresh.is_measured)
 
 
-def test_what_stays_at_its_height_needs_no_parts() -> None:
+def test_a_horizontal_move_needs_no_parts() -> None:
     before = solid_of(_placed(HERE, size=(0.41, 0.31, 0.71)))
     assert before is not None
     before.form.clear_cache()

@@ -1,4 +1,4 @@
-"""A backup is the journal as it was when it was begun; one that is not whole is refused."""
+"""A backup is the journal at its start. An incomplete one is rejected."""
 
 import random
 import shutil
@@ -54,7 +54,7 @@ def opened(data):
 
 
 @pytest.mark.parametrize("size", [100, 3000, backup_parts.PART_BYTES])
-def test_what_is_restored_is_what_was_backed_up(tmp_path, semantic_map, size):
+def test_a_restored_map_equals_the_backup(tmp_path, semantic_map, size):
     there, commits = state(semantic_map), list(semantic_map._journal.commits())
     numbers = iter(range(10, 10_000))
 
@@ -80,7 +80,7 @@ def test_what_is_restored_is_what_was_backed_up(tmp_path, semantic_map, size):
 
 
 @pytest.mark.parametrize("semantic_map", ["fresh"], indirect=True)
-def test_a_file_that_is_there_is_kept_unless_that_is_wanted(tmp_path, semantic_map):
+def test_an_existing_file_is_kept_by_default(tmp_path, semantic_map):
     file = tmp_path / "b"
     file.write_text("precious")
     with pytest.raises(errors.BadFile, match="is there already; overwrite it with --overwrite"):
@@ -101,7 +101,7 @@ def test_a_file_that_is_there_is_kept_unless_that_is_wanted(tmp_path, semantic_m
         backed_up(semantic_map, tmp_path / "none" / "b")
 
 
-def test_a_backup_that_is_damaged_is_refused(tmp_path, semantic_map):
+def test_a_damaged_backup_is_rejected(tmp_path, semantic_map):
     file, chance, other = tmp_path / "b", random.Random(1), tmp_path / "other"
     backed_up(semantic_map, file)
     whole = file.read_bytes()
@@ -127,7 +127,7 @@ def test_a_backup_that_is_damaged_is_refused(tmp_path, semantic_map):
 
 
 def attempt(file, other):
-    """What becomes of a backup that looks sound: it is refused all the same, or is what was backed up."""
+    """Return the result of restoring a backup that looks intact: an error, or the original map."""
     try:
         restore(file, other)
     except errors.BadFile as error:
@@ -141,7 +141,7 @@ def attempt(file, other):
 
 
 @pytest.mark.parametrize("semantic_map", ["fresh"], indirect=True)
-def test_a_map_that_is_there_is_moved_aside_or_stays(tmp_path, semantic_map):
+def test_an_existing_map_is_kept_or_archived(tmp_path, semantic_map):
     backed_up(semantic_map, tmp_path / "b")
     other = tmp_path / "other"
     other.mkdir()
@@ -163,7 +163,7 @@ def test_a_map_that_is_there_is_moved_aside_or_stays(tmp_path, semantic_map):
     assert len(opened(other)[1]) == len(list(semantic_map._journal.commits()))
 
 
-def test_what_is_no_backup_is_refused(tmp_path):
+def test_other_files_are_rejected(tmp_path):
     (tmp_path / "b").write_text("a shopping list")
     with pytest.raises(errors.BadFile, match="is not a backup of a map"):
         restore(tmp_path / "b", tmp_path / "other")
@@ -171,7 +171,7 @@ def test_what_is_no_backup_is_refused(tmp_path):
         restore(tmp_path / "c", tmp_path / "other")
 
 
-def test_one_that_is_overtaken_by_compacting_is_begun_again(tmp_path, semantic_map):
+def test_compaction_during_a_backup_is_reported(tmp_path, semantic_map):
     journal = semantic_map._journal
     part = backup_parts.read_part(journal, "", size=100)
     compaction.compact(journal, HistoryReader(journal), 7)

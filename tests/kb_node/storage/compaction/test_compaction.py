@@ -1,4 +1,4 @@
-"""A compacted journal is the same map with less of a past, and says where that begins."""
+"""A compacted journal has the same map and a shorter history."""
 
 import shutil
 import time
@@ -25,7 +25,7 @@ DAY_NS = 86_400 * 1_000_000_000
 
 @pytest.fixture
 def day(monkeypatch):
-    """A clock that tells how many days have gone by; nothing is older than some years."""
+    """A clock that counts days."""
     began_ns, days = time.time_ns() - 100 * DAY_NS, [0.0]
     monkeypatch.setattr("time.time_ns", lambda: began_ns + int(days[0] * DAY_NS))
 
@@ -37,7 +37,7 @@ def day(monkeypatch):
 
 @pytest.fixture
 def semantic_map(tmp_path, day):
-    """A commit a day for ten days: eight chairs, the fifth day another TBox, on the tenth chair2 goes."""
+    """A commit a day for ten days: eight chairs, a new TBox on day 5, no chair2 on day 10."""
     made = home.new_map(tmp_path)
     for number in range(1, 11):
         day(number)
@@ -60,7 +60,7 @@ def opened(data):
 
 
 @pytest.mark.parametrize("until", range(1, 10))
-def test_the_map_and_what_is_kept_of_its_past_stay_as_they_were(tmp_path, semantic_map, until):
+def test_compaction_keeps_the_map_and_the_recent_history(tmp_path, semantic_map, until):
     journal, past = semantic_map._journal, HistoryReader(semantic_map._journal)
     before, commits, origin = state(semantic_map), list(journal.commits()), journal.origin()
     as_of = {seq: past.entities(seq) for seq in range(1, 11)}
@@ -81,7 +81,7 @@ def test_the_map_and_what_is_kept_of_its_past_stay_as_they_were(tmp_path, semant
     assert repair(tmp_path).startswith("nothing is damaged")
 
 
-def test_what_is_older_is_told_by_time(semantic_map, day):
+def test_the_range_depends_on_stamps(semantic_map, day):
     journal = semantic_map._journal
 
     def older(days):
@@ -96,7 +96,7 @@ def test_what_is_older_is_told_by_time(semantic_map, day):
     assert older(30) == (4, 0)
 
 
-def test_a_clock_that_went_wrong_does_not_decide(tmp_path, day):
+def test_stamps_in_the_future_are_ignored(tmp_path, day):
     semantic_map = home.new_map(tmp_path)
     for number, stamped in enumerate((1, 900, 2, 8, 3, 9), start=1):
         day(stamped)
@@ -107,7 +107,7 @@ def test_a_clock_that_went_wrong_does_not_decide(tmp_path, day):
     home.close(semantic_map)
 
 
-def test_where_the_history_begins_is_said(semantic_map, day):
+def test_the_start_of_the_history_is_listed(semantic_map, day):
     journal, past = semantic_map._journal, HistoryReader(semantic_map._journal)
     stamp_ns = journal.stamps.of(6)
     compaction.compact(journal, past, 6)
@@ -134,7 +134,7 @@ def test_where_the_history_begins_is_said(semantic_map, day):
     assert past.last_seen("chair2").removed is not None
 
 
-def test_an_end_in_the_middle_loses_nothing(tmp_path, semantic_map, monkeypatch):
+def test_an_interruption_loses_nothing(tmp_path, semantic_map, monkeypatch):
     journal, expected = semantic_map._journal, state(semantic_map)
     commits = list(journal.commits())
 
@@ -173,7 +173,7 @@ def test_compacting_again_goes_further(tmp_path, semantic_map):
     assert {e.name for e in opened(tmp_path)[0][2].entities} == {e.name for e in expected}
 
 
-def test_the_room_is_given_back(tmp_path):
+def test_disk_space_is_freed(tmp_path):
     semantic_map = home.new_map(tmp_path)
     for number in range(1, 101):
         one = chair("chair1", at=(number, 2.0, 0.0))
@@ -189,7 +189,7 @@ def test_the_room_is_given_back(tmp_path):
 
 @pytest.mark.parametrize("checkpoint", [True, False])
 @pytest.mark.parametrize("part", ["head", "body"])
-def test_a_snapshot_that_is_damaged_is_noticed(tmp_path, semantic_map, checkpoint, part):
+def test_a_damaged_snapshot_is_detected(tmp_path, semantic_map, checkpoint, part):
     expected = state(semantic_map)
     compaction.compact(semantic_map._journal, HistoryReader(semantic_map._journal), 6)
     if checkpoint:
@@ -219,7 +219,7 @@ def test_repair_keeps_the_snapshot(tmp_path, semantic_map):
     assert {e.name for e in after[2].entities} == {f"chair{n}" for n in (1, 3, 4, 6, 7, 9)}
 
 
-def test_an_older_journal_is_not_taken_for_a_compacted_one(tmp_path, semantic_map):
+def test_an_older_journal_is_not_compacted(tmp_path, semantic_map):
     home.close(semantic_map)
     copy = shutil.copytree(tmp_path, tmp_path / "copy")
     edit(copy / FILENAME, "UPDATE meta SET value = x'35' WHERE key = 'format'")

@@ -1,4 +1,4 @@
-"""Bodies on disk are compressed where they are large; a damaged one is told."""
+"""Large bodies are compressed on disk, and damaged ones are reported."""
 
 import zlib
 
@@ -10,7 +10,7 @@ from semmap.schemas import codec, errors
 from semmap.schemas.commits import Departed
 
 
-def test_what_is_large_is_compressed():
+def test_large_bodies_are_compressed():
     body = Departed(name="chair1", types=("Chair",) * 1000)
     small = body_encoding.encode(body, compressed_from=1000)
     assert len(small) < 100
@@ -28,12 +28,12 @@ def test_what_is_large_is_compressed():
         (zlib.compress(b"\xc1" * 10_000), "it is not valid MessagePack"),
     ],
 )
-def test_what_only_looks_compressed_is_malformed(body, text):
+def test_invalid_compressed_data_is_malformed(body, text):
     with pytest.raises(errors.BadRequest, match=text):
         body_encoding.decode(body, Departed)
 
 
-def test_what_unfolds_without_bounds_is_refused(monkeypatch):
+def test_a_decompression_bomb_is_rejected(monkeypatch):
     monkeypatch.setattr(body_encoding, "LARGEST", 1000)
     with pytest.raises(errors.BadRequest, match="larger than 0 MB"):
         body_encoding.decode(zlib.compress(bytes(2000)), Departed)

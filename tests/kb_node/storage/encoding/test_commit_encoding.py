@@ -16,7 +16,7 @@ def commit(*triples, **fields):
     return Commit(seq=7, stamp_ns=1, id="x", source="file", inserted=triples, **fields)
 
 
-def test_a_body_that_was_begun_is_the_whole(semantic_map):
+def test_an_early_body_is_complete(semantic_map):
     changed = semantic_map.commit(transaction("a", chair())).changed
     triples = [(v.entity_iri(f"c{i}"), v.RDF_TYPE, v.dm("Chair")) for i in range(2000)]
     begun = commit_encoding.begin_body(commit(*triples), "")
@@ -33,7 +33,7 @@ def test_a_commit_ends_with_its_effects():
 
 
 @pytest.mark.parametrize("comes", [0, 1, 2])
-def test_effects_are_those_that_were_expected_or_others(semantic_map, comes):
+def test_effects_may_differ_from_the_expected_ones(semantic_map, comes):
     changed = semantic_map.commit(transaction("a", chair())).changed * 300
     triples = [(v.entity_iri(f"c{i}"), v.RDF_TYPE, v.dm("Chair")) for i in range(2000)]
     begun = commit_encoding.begin_body(commit(*triples), "")
@@ -43,7 +43,7 @@ def test_effects_are_those_that_were_expected_or_others(semantic_map, comes):
     assert zlib.decompress(begun.finish(whole).result()) == codec.encode(whole)
 
 
-def test_one_without_effects(semantic_map):
+def test_a_commit_without_effects(semantic_map):
     whole = commit(*[(v.entity_iri(f"c{i}"), v.RDFS_LABEL, v.literal("x")) for i in range(2000)])
     assert zlib.decompress(commit_encoding.begin_body(whole, "").finish(whole).result()) == codec.encode(
         whole
@@ -68,7 +68,7 @@ def test_long_lists_are_encoded_in_pieces(monkeypatch, count):
     assert max(longest) < 2 << 20
 
 
-def test_one_that_is_given_up_is_not_encoded_to_its_end(monkeypatch):
+def test_a_discarded_body_is_not_encoded_to_its_end(monkeypatch):
     begins, encode = threading.Event(), codec.encode
     monkeypatch.setattr(codec, "encode", lambda message: begins.wait(10.0) and encode(message))
     whole = commit(*[(v.entity_iri(f"c{i}"), v.RDFS_LABEL, v.literal("x")) for i in range(2000)])
@@ -79,7 +79,7 @@ def test_one_that_is_given_up_is_not_encoded_to_its_end(monkeypatch):
 
 
 @pytest.mark.parametrize(("label", "name"), [(LONG, "b"), ("x", LONG)], ids=["triples", "effects"])
-def test_one_of_very_long_texts(label, name):
+def test_a_commit_with_very_long_texts(label, name):
     triples = [(v.entity_iri(f"c{i}"), v.RDFS_LABEL, v.literal("x")) for i in range(1000)]
     whole = commit(
         *triples,
@@ -91,5 +91,5 @@ def test_one_of_very_long_texts(label, name):
     assert is_the_whole
 
 
-def test_a_small_commit_is_written_at_once():
+def test_a_small_commit_has_no_early_body():
     assert commit_encoding.begin_body(commit(*chair()), "") is None

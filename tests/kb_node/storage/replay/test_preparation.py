@@ -1,4 +1,4 @@
-"""The journals of a replay: copies of one that may be in use, which stays as it is."""
+"""The journals of a replay are copies, and the original does not change."""
 
 import shutil
 from contextlib import closing
@@ -21,7 +21,7 @@ from tests.kb_node.storage.journal.test_journal import flip
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """A folder with a map of 6 commits, of which the fourth replaced the TBox; checkpoints after 2 and 5."""
+    """A folder with a map of 6 commits. The fourth replaced the TBox, with checkpoints after 2 and 5."""
     folder = tmp_path_factory.mktemp("whole")
     semantic_map = home.new_map(folder)
     for i in range(1, 7):
@@ -37,20 +37,20 @@ def whole(tmp_path_factory):
 
 @pytest.fixture
 def data(whole, tmp_path):
-    """A copy of it."""
+    """A copy of the folder."""
     return Path(shutil.copytree(whole, tmp_path / "data"))
 
 
 @pytest.fixture
 def folder(tmp_path):
-    """Where the replay is."""
+    """The folder of the replay."""
     made = tmp_path / "replay"
     made.mkdir()
     return made
 
 
 def replayed(folder, until):
-    """The map of a replay after each of its commits, and the digests of these."""
+    """Return the map of a replay after each commit, and their digests."""
     with closing(Journal(folder / FILENAME)) as journal, closing(Journal(folder / SOURCE)) as source:
         semantic_map = SemanticMap(journal)
         states = [state(semantic_map)]
@@ -62,7 +62,7 @@ def replayed(folder, until):
 
 
 @pytest.mark.parametrize("since", [1, 2, 3, 4, 5, 6])
-def test_the_map_is_as_it_was_and_becomes_what_it_became(data, folder, since):
+def test_a_replay_reproduces_the_map(data, folder, since):
     before = {path.name: path.read_bytes() for path in data.iterdir() if path.is_file()}
     assert prepare(data, folder, since=since) == (since, 6)
     states, digest = replayed(folder, 6)
@@ -75,7 +75,7 @@ def test_the_map_is_as_it_was_and_becomes_what_it_became(data, folder, since):
     assert before[FILENAME]
 
 
-def test_a_journal_that_is_in_use_is_copied_as_it_is_just_then(data, folder):
+def test_a_journal_in_use_can_be_copied(data, folder):
     with closing(Journal(data / FILENAME)) as journal:
         semantic_map = SemanticMap(journal)
         for i in range(7, 20):
@@ -84,14 +84,14 @@ def test_a_journal_that_is_in_use_is_copied_as_it_is_just_then(data, folder):
         assert state(semantic_map) == replayed(folder, 19)[0][-1]
 
 
-def test_the_log_that_is_begun_anew_during_a_copy_is_noticed(data, tmp_path, monkeypatch):
+def test_a_restarted_log_repeats_the_copy(data, tmp_path, monkeypatch):
     with closing(Journal(data / FILENAME)) as journal:
         semantic_map = SemanticMap(journal)
         copyfile, times = shutil.copyfile, []
 
         def copy_slowly(source, to):
             copyfile(source, to)
-            if not times:  # enough for SQLite to move the log into the file, and begin it anew
+            if not times:  # enough for SQLite to checkpoint and restart the log
                 times.append(1)
                 for i in range(7, 11):
                     semantic_map.commit(transaction(i, chair(f"chair{i}"), reason="x" * 1990))
@@ -121,12 +121,12 @@ def test_the_log_that_is_begun_anew_during_a_copy_is_noticed(data, tmp_path, mon
         ({"since": 0}, errors.Refused, "there was no map at that time"),
     ],
 )
-def test_a_span_that_is_not_there_is_refused(data, folder, span, kind, said):
+def test_an_invalid_span_is_rejected(data, folder, span, kind, said):
     with pytest.raises(kind, match=said):
         prepare(data, folder, **span)
 
 
-def test_what_was_compacted_is_not_replayed_and_said_to_be_gone(data, folder):
+def test_compacted_commits_cannot_be_replayed(data, folder):
     with closing(Journal(data / FILENAME)) as journal:
         compact(journal, HistoryReader(journal), 3)
     assert prepare(data, folder) == (3, 6)
@@ -136,13 +136,13 @@ def test_what_was_compacted_is_not_replayed_and_said_to_be_gone(data, folder):
         prepare(data, folder, since=2)
 
 
-def test_damage_is_told_of_the_map_itself_and_only_if_it_is_in_the_span(data, folder):
+def test_damage_in_the_span_names_the_original(data, folder):
     flip(data / FILENAME, "commits", 5)
     with pytest.raises(errors.Refused, match=rf"^{data / FILENAME}: commit 5 is damaged; .* --data {data} "):
         prepare(data, folder)
     assert prepare(data, folder, until=4) == (1, 4)
 
 
-def test_where_there_is_no_map_that_is_said(tmp_path, folder):
+def test_a_missing_map_is_reported(tmp_path, folder):
     with pytest.raises(errors.BadFile, match=f"there is no map in {tmp_path}"):
         prepare(tmp_path, folder)

@@ -1,13 +1,13 @@
-"""Entities by model and place."""
+"""Entities for tests of relations."""
 
 from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
 
-NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
+PROVENANCE = Provenance(commit=1, stamp_ns=0, source="file")
 
 
 def thing(name, at, model=None, *, yaw=0.0, turn=None, size=None, place=False, ref=None, types=()):
-    """`model` is the name without its number; "box" of `size` without a model of that name."""
+    """Return an entity. `model` is its name without the number, or "box" for a box of `size`."""
     model = name.rstrip("0123456789") if model is None else model
     return Entity(
         name=name,
@@ -19,10 +19,10 @@ def thing(name, at, model=None, *, yaw=0.0, turn=None, size=None, place=False, r
         place=place,
         model="" if place else model,
         preferred_reference=ref,
-        provenance=NOBODY,
-        pose_provenance=NOBODY,
-        shape_provenance=NOBODY,
-        reference_provenance=NOBODY,
+        provenance=PROVENANCE,
+        pose_provenance=PROVENANCE,
+        shape_provenance=PROVENANCE,
+        reference_provenance=PROVENANCE,
     )
 
 
