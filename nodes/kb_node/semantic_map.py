@@ -318,7 +318,7 @@ class SemanticMap(MapState):
             self.reasoner.believe(aside=start.triples)
             self.believes = True
         else:
-            self._applier.change(insert=tuple(start.said()), lenient=True)
+            self._applier.change(insert=tuple(start.all_triples()), lenient=True)
         self.seq, self.digest = start.seq, self._journal.digest(start.seq).hex()
         if start.seq == 0:
             self.show(entity_reading.of_the_tbox(self.reasoner, self.classes))

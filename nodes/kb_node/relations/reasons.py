@@ -94,7 +94,7 @@ def describe_support(space: Space, solid: Solid) -> str:
     if container is not None:
         return f"is inside {container[0].name}"
     if supports:
-        return f"is on {' and '.join(bearer.name for bearer, _ in supports)}"
+        return f"is on {' and '.join(support.name for support, _ in supports)}"
     if place is not None and stands_on_floor(space, solid):
         return f"is on the floor of {place[0].name}"
     return _UNSUPPORTED
@@ -143,16 +143,16 @@ def _by_way_of(space: Space, solid: Solid, other: Solid) -> str | None:
     container, supports, _ = space.spatial_relations(solid)
     if container is not None and container[0] is other:
         return f"it is inside {other.name}, and an object inside another is not also on it"
-    first = [bearer for bearer, _ in (*filter(None, (container,)), *supports)]
+    first = [support for support, _ in (*filter(None, (container,)), *supports)]
     seen = {solid, *first}
-    for bearer in first:
-        chain, waiting = [bearer], [bearer]
+    for support in first:
+        chain, waiting = [support], [support]
         while waiting:
             upper = waiting.pop()
             container, supports, _ = space.spatial_relations(upper)
             below = [lower for lower, _ in (*filter(None, (container,)), *supports)]
             if other in below:
-                chain = [bearer] if upper is bearer else [bearer, upper]
+                chain = [support] if upper is support else [support, upper]
                 return f"it {_clause(space, solid, chain, other)}"
             waiting += [lower for lower in below if lower not in seen]
             seen.update(below)
@@ -167,9 +167,9 @@ def _clause(space: Space, solid: Solid, chain: list[Solid], other: Solid) -> str
     return f"{text} is {_how(space, last, other)} {other.name}"
 
 
-def _how(space: Space, solid: Solid, bearer: Solid) -> str:
+def _how(space: Space, solid: Solid, support: Solid) -> str:
     container = space.spatial_relations(solid).container
-    return "inside" if container is not None and container[0] is bearer else "on"
+    return "inside" if container is not None and container[0] is support else "on"
 
 
 def _why_not_inside(space: Space, solid: Solid, other: Solid) -> str:

@@ -65,9 +65,11 @@ def list_relations(space: Space, query: Relations, *, is_fixed: bool = False) ->
     if viewer is not None or query.viewpoint is not None:
         view = View.of(viewer) if viewer is not None else View.at(*query.viewpoint or (0.0, 0.0, 0.0, 0.0))
         found = list(list_relations_from_view(space, query.name, view, viewer))
-        told = {query.other} if query.other is not None else _nearest(space, query.name, found, query.viewer)
+        reported = (
+            {query.other} if query.other is not None else _nearest(space, query.name, found, query.viewer)
+        )
         for relation in found:
-            if relation.object in told or relation.relation == "isVisibleFrom":
+            if relation.object in reported or relation.relation == "isVisibleFrom":
                 yield relation
 
 
@@ -81,39 +83,37 @@ def list_relations_of(space: Space, name: str, *, is_fixed: bool = False) -> Ite
     yield from (found := list(list_locations(space, name)))
     if solid.is_place:
         return
-    if not is_fixed and (hovering := describe_unsupported(space, solid)) is not None:
-        yield hovering
+    if not is_fixed and (floating := describe_unsupported(space, solid)) is not None:
+        yield floating
     above = set[str]()
     for relation, upper, (_, measure) in find_contents(space, solid):
         above.add(upper.name)
         yield _make_relation(space, relation, upper, solid, measure)
-    told = {relation.object for relation in found}
-    measure_pair = [o for o in space.counted_around(solid, space.limits.near_most_m) if not o.is_place]
-    measure_pair = sorted(measure_pair, key=lambda other: (measures.gap(solid, other), other.name))
-    for other in measure_pair:
-        if other.name not in told:
+    known = {relation.object for relation in found}
+    nearby = [o for o in space.counted_around(solid, space.limits.near_most_m) if not o.is_place]
+    nearby = sorted(nearby, key=lambda other: (measures.gap(solid, other), other.name))
+    for other in nearby:
+        if other.name not in known:
             holding = (relation for relation in _beside(space, solid, other) if relation.holds)
-            is_borne = other.name in above
-            yield from _drop_implied_near(r for r in holding if not (is_borne and r.relation == "touches"))
-    near = [other for other in measure_pair if other.name not in told and not other.is_place][
-        :_NEIGHBOURS_BETWEEN
-    ]
+            is_content = other.name in above
+            yield from _drop_implied_near(r for r in holding if not (is_content and r.relation == "touches"))
+    near = [other for other in nearby if other.name not in known and not other.is_place][:_NEIGHBOURS_BETWEEN]
     pairs = sorted(combinations(near, 2), key=lambda pair: measures.gap(*pair))
     amid = (pair for pair in pairs if solid in find_between(space, *pair))
     yield from (_between(solid, *pair) for pair in islice(amid, _MOST_BETWEEN))
 
 
-def _nearest(space: Space, name: str, list_sides: Iterable[Relation], viewer: str | None) -> set[str]:
+def _nearest(space: Space, name: str, sides: Iterable[Relation], viewer: str | None) -> set[str]:
     """Return the viewer and the nearest neighbours, for which sides are reported."""
-    others = {side.object for side in list_sides if side.object in space.solids and side.object != viewer}
+    others = {side.object for side in sides if side.object in space.solids and side.object != viewer}
     solid = space.solids[name]
     near = sorted(others, key=lambda other: (measures.gap(solid, space.solids[other]), other))
     return {*near[:_MOST_SIDES], *filter(None, (viewer,))}
 
 
-def _drop_implied_near(list_relations: Iterable[Relation]) -> Iterator[Relation]:
+def _drop_implied_near(relations: Iterable[Relation]) -> Iterator[Relation]:
     """Drop `isNear` between objects that are next to each other."""
-    found = tuple(list_relations)
+    found = tuple(relations)
     is_next = any(relation.relation == "isNextTo" for relation in found)
     return (relation for relation in found if not (is_next and relation.relation == "isNear"))
 
@@ -172,16 +172,16 @@ def list_relations_between(space: Space, name: str, other_name: str) -> Iterator
 def _find_implied_touch(space: Space, solid: Solid, other: Solid) -> Relation | None:
     """Return `touches` for an object that is on or attached to the other within the tolerance, or None."""
     for one, two in ((solid, other), (other, solid)):
-        find_contents: tuple[tuple[RelationName, Measure | None], ...] = (
+        implying: tuple[tuple[RelationName, Measure | None], ...] = (
             ("isOn", measure_relation(space, "isOn", one, two)),
             ("isAttachedTo", measure_attachment(space, one, two)),
         )
-        for relation, made in find_contents:
+        for relation, made in implying:
             if made is not None and made.holds:
-                told = _make_relation(space, relation, one, two, made)
-                text = f"{solid.name} touches {other.name}, because {told.text}"
+                implied = _make_relation(space, relation, one, two, made)
+                text = f"{solid.name} touches {other.name}, because {implied.text}"
                 return structs.replace(
-                    told, relation="touches", subject=solid.name, object=other.name, share=1.0, text=text
+                    implied, relation="touches", subject=solid.name, object=other.name, share=1.0, text=text
                 )
     return None
 
@@ -215,9 +215,9 @@ def explain_relation(space: Space, name: str, relation: RelationName, other_name
             if is_view_dependent
             else list_relations_between(space, name, other_name)
         )
-    for told in found:
-        if told.relation == relation and told.object == other_name:
-            return told
+    for relation_found in found:
+        if relation_found.relation == relation and relation_found.object == other_name:
+            return relation_found
     return _make_negative(space, relation, solid, other)
 
 

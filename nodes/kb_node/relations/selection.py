@@ -35,16 +35,16 @@ def select_entities(
     space: Space,
     entities: Sequence[Entity],
     where: Where,
-    everyone: Iterable[Entity],
+    candidates: Iterable[Entity],
     left_out: Set[Fact] = frozenset(),
 ) -> list[Entity]:
     """Return those of `entities` that satisfy `where`, nearest first if that is requested.
 
-    Words are resolved among `everyone`. Facts in `left_out` do not count. Raises UnknownName, BadRequest,
+    Words are resolved among `candidates`. Facts in `left_out` do not count. Raises UnknownName, BadRequest,
     and Refused if nothing can be on or in the targets.
     """
     require_complete(where)
-    those = resolve_words(where, tuple(everyone))
+    those = resolve_words(where, tuple(candidates))
     require_possible(space, those, where.within)
     return filter_entities(space, entities, where, those, left_out)
 
@@ -145,46 +145,53 @@ def _ends(space: Space, word: str | None, names: Iterable[str] | None) -> list[S
     return [space.solids[name] for name in sorted(names) if name in space.solids]
 
 
-def resolve_words(where: Where, everyone: Sequence[Entity]) -> Targets:
+def resolve_words(where: Where, candidates: Sequence[Entity]) -> Targets:
     """Return the targets of all words. Raises UnknownName."""
     on, in_, near, to = where.words
     return Targets(
-        None if on is None else resolve_word(everyone, on),
-        None if in_ is None else resolve_word(everyone, in_),
-        *(None if word is None or position_in(word) else resolve_word(everyone, word) for word in (near, to)),
+        None if on is None else resolve_word(candidates, on),
+        None if in_ is None else resolve_word(candidates, in_),
+        *(
+            None if word is None or position_in(word) else resolve_word(candidates, word)
+            for word in (near, to)
+        ),
     )
 
 
-def resolve_word(everyone: Sequence[Entity], word: str) -> frozenset[str]:
+def resolve_word(candidates: Sequence[Entity], word: str) -> frozenset[str]:
     """Return the entities that a word refers to: by name, else by label, else by class. Raises UnknownName.
 
     A class in its exact spelling (`Table`) takes precedence over a label (`table`). A leading article is
     ignored unless it is part of a label.
     """
-    if not any(word == e.name for e in everyone) and (names := [e.name for e in everyone if word in e.types]):
+    if not any(word == e.name for e in candidates) and (
+        names := [e.name for e in candidates if word in e.types]
+    ):
         return frozenset(names)
     folded = word.casefold().replace("_", " ")
-    for called in (
+    for words_of in (
         lambda e: (e.name,),
         lambda e: tuple(filter(None, (e.preferred_reference, *e.alternative_references))),
         lambda e: e.types,
     ):
-        names = [e.name for e in everyone if any(folded == w.casefold().replace("_", " ") for w in called(e))]
+        names = [
+            e.name for e in candidates if any(folded == w.casefold().replace("_", " ") for w in words_of(e))
+        ]
         if names:
             return frozenset(names)
     article, _, noun = folded.partition(" ")
     if article in _ARTICLES and noun:
-        return resolve_word(everyone, noun)
-    called_so = sorted({word for e in everyone for word in (e.name, e.preferred_reference or "", e.class_)})
-    known = {word.casefold(): word for word in called_so}.values()  # of Table and table, table
+        return resolve_word(candidates, noun)
+    all_words = sorted({word for e in candidates for word in (e.name, e.preferred_reference or "", e.class_)})
+    known = {word.casefold(): word for word in all_words}.values()  # of Table and table, table
     raise errors.UnknownName(
         f"no entity has the name, label or class '{word}'{errors.did_you_mean(word, known)}"
     )
 
 
-def resolve_single(everyone: Sequence[Entity], word: str) -> str:
+def resolve_single(candidates: Sequence[Entity], word: str) -> str:
     """Return the one entity that a word refers to. Raises UnknownName, BadRequest for several."""
-    names = sorted(resolve_word(everyone, word))
+    names = sorted(resolve_word(candidates, word))
     if len(names) > 1:
         raise errors.BadRequest(f"'{word}' is ambiguous: {wording.few(names, 5)}; name one of them")
     return names[0]
@@ -200,9 +207,9 @@ def is_on(space: Space, solid: Solid, carriers: Set[str], left_out: Set[Fact]) -
             supports = tuple(s for s in supports if (upper.name, "isOn", s[0].name) not in left_out)
             if container is not None and (upper.name, "isInside", container[0].name) in left_out:
                 container = None
-        if any(bearer.name in carriers for bearer, _ in supports):
+        if any(support.name in carriers for support, _ in supports):
             return True
-        below = [bearer for bearer, _ in (*filter(None, (container,)), *supports) if bearer not in seen]
+        below = [support for support, _ in (*filter(None, (container,)), *supports) if support not in seen]
         waiting += below
         seen.update(below)
     return False

@@ -17,7 +17,7 @@ def find_supporters(space: Space, solid: Solid) -> set[Solid]:
     found, waiting = set[Solid](), [solid]
     while waiting:
         container, supports, _ = space.spatial_relations(waiting.pop())
-        below = {bearer for bearer, _ in (*filter(None, (container,)), *supports)} - found
+        below = {support for support, _ in (*filter(None, (container,)), *supports)} - found
         found |= below
         waiting += below
     return found

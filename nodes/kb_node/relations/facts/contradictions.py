@@ -37,8 +37,8 @@ def fact_of(triple: Triple) -> Fact | None:
     if p not in PROPERTIES or o.startswith('"'):
         return None
     relation, is_inverse = PROPERTIES[p]
-    thing, other = v.entity_name(s), v.entity_name(o)
-    return (other, relation, thing) if is_inverse else (thing, relation, other)
+    subject, other = v.entity_name(s), v.entity_name(o)
+    return (other, relation, subject) if is_inverse else (subject, relation, other)
 
 
 def find_contradictions(space: Space, asserted: Iterable[Fact]) -> Iterator[Relation]:
@@ -102,8 +102,8 @@ def _against(space: Space, relation: RelationName, solid: Solid, other: Solid) -
         share = _share_within_box(solid, other, limits.gap_m)
         return f"{share:.0%} of its volume is within it" if share < limits.inside_share else None
     carrier = space.spatial_relations(solid)
-    is_supported = bool(carrier.supports) or carrier.container is not None
-    if not other.supports or not (is_supported or solid.bottom <= other.bottom + limits.gap_m):
+    has_support = bool(carrier.supports) or carrier.container is not None
+    if not other.supports or not (has_support or solid.bottom <= other.bottom + limits.gap_m):
         return None  # it may be attached or lean there
     made = measures.over(solid, other, limits)
     return (

@@ -61,13 +61,13 @@ def measure_pair(
 
 def is_separate(space: Space, solid: Solid, other: Solid) -> bool:
     """Return whether `solid` is not on or in `other`, nor a larger support or container of it."""
-    bears = _is_on_or_in(space, other, solid) and solid.footprint >= other.footprint
-    return not (bears or _is_on_or_in(space, solid, other))
+    is_content = _is_on_or_in(space, other, solid) and solid.footprint >= other.footprint
+    return not (is_content or _is_on_or_in(space, solid, other))
 
 
 def _is_on_or_in(space: Space, solid: Solid, other: Solid) -> bool:
     container, supports, _ = space.spatial_relations(solid)
-    return other in (container and container[0], *(bearer for bearer, _ in supports))
+    return other in (container and container[0], *(support for support, _ in supports))
 
 
 def are_near(space: Space, one: Solid, other: Solid) -> bool:
@@ -163,7 +163,7 @@ class PairFacts:
 
     def _support_state(self, solid: Solid) -> _SupportState:
         container, supports, _ = self.space.spatial_relations(solid)
-        return container and container[0].name, frozenset(bearer.name for bearer, _ in supports)
+        return container and container[0].name, frozenset(support.name for support, _ in supports)
 
     def _compute(
         self, names: Iterable[str], moved: Iterable[Solid] = (), more: Set[RelationName] = frozenset()

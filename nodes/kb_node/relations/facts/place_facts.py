@@ -231,17 +231,17 @@ class Facts:
                 for kept in self._kept:
                     kept.compute(space, concerned, gone, come)
         if len(concerned) >= MANY:
-            things = self._find_objects(concerned)
-            if len(things) < len(concerned):
-                left_over = concerned.keys() - {solid.name for solid in things}
+            objects = self._find_objects(concerned)
+            if len(objects) < len(concerned):
+                left_over = concerned.keys() - {solid.name for solid in objects}
                 for kept in self._kept:
                     kept.compute(space, left_over, gone, come)
             if (found := self._take_precomputed(changed)) is None:
-                for _ in self._compute_in_steps(things, gone, come, _MOST_AT_ONCE):
+                for _ in self._compute_in_steps(objects, gone, come, _MOST_AT_ONCE):
                     pass
             else:
                 for kept, of in zip(self._kept, found, strict=True):
-                    kept.set_facts(space, things, [of.get(solid.name, ()) for solid in things], gone, come)
+                    kept.set_facts(space, objects, [of.get(solid.name, ()) for solid in objects], gone, come)
         self._to_clear = min(self._to_clear + _CLEARED_PER_CHANGE * len(moved), len(space.solids))
         if self._to_clear > _MOST_TO_CLEAR:
             self.clear_caches()

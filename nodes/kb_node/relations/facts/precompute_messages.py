@@ -36,7 +36,7 @@ class ExpectedEntity(NamedTuple):
     """An entity that a commit adds, with an index into `classes`. Position and size in metres."""
 
     iri: Term
-    look: int
+    class_index: int
     position: Numbers
     orientation: Numbers | None
     size: Numbers | None
@@ -45,7 +45,7 @@ class ExpectedEntity(NamedTuple):
 class ExpectedEntities(Struct, frozen=True, array_like=True):
     """The entities that a commit adds, without those that have no position."""
 
-    looks: Sequence[ClassModel]
+    classes: Sequence[ClassModel]
     arrivals: Sequence[ExpectedEntity]
 
     def __len__(self) -> int:
@@ -53,8 +53,8 @@ class ExpectedEntities(Struct, frozen=True, array_like=True):
 
     def placed(self) -> Iterator[PlacedEntity]:
         """Yield each entity. Raises ValueError or IndexError for an invalid number."""
-        for iri, look, position, orientation, size in self.arrivals:
-            name, (model, place) = v.entity_name(iri), self.looks[look]
+        for iri, class_index, position, orientation, size in self.arrivals:
+            name, (model, place) = v.entity_name(iri), self.classes[class_index]
             position_m, turn, size_m = map(_read, (position, orientation, size))
             yield PlacedEntity(
                 name=name,

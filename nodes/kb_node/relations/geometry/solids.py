@@ -174,10 +174,10 @@ class Solid:
     def open_parts(self) -> list[Convex]:
         """Return the parts that a joint has moved from their drawn position, in the map frame."""
         form = self.form
-        translate = [
+        opened = [
             k for leaf, at in zip(form.shape.leaves, form.joints, strict=False) if at for k in leaf.parts
         ]
-        return [self.parts[k] for k in translate] if self.has_parts else []
+        return [self.parts[k] for k in opened] if self.has_parts else []
 
     def clear_cache(self) -> None:
         """Drop cached properties except the location. For many solids they take most of the memory."""

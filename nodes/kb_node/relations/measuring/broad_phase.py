@@ -43,13 +43,13 @@ class Cells:
     def entries(self, rows: Ints) -> tuple[Ints, Ints]:
         """Return the keys of the covered cells, and the row that covers each."""
         wide, deep = self._extent[rows].T
-        who, turn = repeat_rows(wide * deep)
-        deep = deep[who]
+        owner, turn = repeat_rows(wide * deep)
+        deep = deep[owner]
         x, y = (
-            self.low[rows, 0][who] + turn // np.maximum(deep, 1),
-            self.low[rows, 1][who] + turn % np.maximum(deep, 1),
+            self.low[rows, 0][owner] + turn // np.maximum(deep, 1),
+            self.low[rows, 1][owner] + turn % np.maximum(deep, 1),
         )
-        return key(x, y), rows[who]
+        return key(x, y), rows[owner]
 
 
 def key(x: Ints, y: Ints) -> Ints:
@@ -59,8 +59,8 @@ def key(x: Ints, y: Ints) -> Ints:
 
 def repeat_rows(counts: Ints) -> tuple[Ints, Ints]:
     """Repeat each row `counts` times and number the repetitions: [2, 1] gives [0, 0, 1] and [0, 1, 0]."""
-    who = np.repeat(np.arange(len(counts)), counts)
-    return who, np.arange(len(who)) - np.repeat(np.cumsum(counts) - counts, counts)
+    owner = np.repeat(np.arange(len(counts)), counts)
+    return owner, np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
 
 
 def sort_unique(numbers: Ints) -> Ints:
@@ -90,9 +90,9 @@ class BroadPhase:
         self._subjects: Final = subjects
         cells = Cells(bounds)
         self._low = cells.low
-        keys, who = cells.entries(np.flatnonzero(cells.is_filed))
+        keys, owner = cells.entries(np.flatnonzero(cells.is_filed))
         order = np.argsort(keys, kind="stable")
-        self._keys, self._who = keys[order], who[order]
+        self._keys, self._owner = keys[order], owner[order]
         large = self._counted(None, np.flatnonzero(cells.is_large))
         self._large: Final = large
         if grid.crowds:
@@ -111,11 +111,11 @@ class BroadPhase:
             if cell is not None:
                 at = key(*np.array(cell)[:, None])
                 (begin,), (end,) = np.searchsorted(self._keys, at), np.searchsorted(self._keys, at + 1)
-                there = self._who[begin:end]
+                there = self._owner[begin:end]
                 counts[self._counted(cell, there)] = True
                 kept[begin:end] = counts[there]
                 counts[there] = False
-        self._keys, self._who = self._keys[kept], self._who[kept]
+        self._keys, self._owner = self._keys[kept], self._owner[kept]
 
     def pairs(self, margin_m: float) -> tuple[Ints, Ints, Bools]:
         """Return (M,) rows of subjects and of their neighbours, and (S,) which are incomplete."""
@@ -123,7 +123,7 @@ class BroadPhase:
         keys, subject = cells.entries(np.flatnonzero(cells.is_filed))
         begin = np.searchsorted(self._keys, keys)
         which, turn = repeat_rows(np.searchsorted(self._keys, keys, side="right") - begin)
-        one, other = subject[which], self._who[begin[which] + turn]
+        one, other = subject[which], self._owner[begin[which] + turn]
         meets = self._meet(one, other, margin_m)
         one, other, keys = one[meets], other[meets], keys[which[meets]]
         if self._grid.crowds:  # it may not be counted in the first cell that they share
@@ -157,9 +157,9 @@ def add_to_grid(grid: Grid, solids: Sequence[Solid]) -> None:
     cells = Cells(bounds_of(solids))
     for row in np.flatnonzero(~cells.is_filed).tolist():
         grid.add(solids[row])
-    keys, who = cells.entries(np.flatnonzero(cells.is_filed))
+    keys, owner = cells.entries(np.flatnonzero(cells.is_filed))
     order = np.argsort(keys, kind="stable")
-    keys, filed = keys[order], [solids[row] for row in who[order].tolist()]
+    keys, filed = keys[order], [solids[row] for row in owner[order].tolist()]
     begins = np.flatnonzero(starts_run(keys))
     ends = np.append(begins, len(keys))[1:]
     for cell, begin, end in zip(_decoded(keys[begins]), begins.tolist(), ends.tolist(), strict=True):

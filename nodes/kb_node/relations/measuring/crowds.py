@@ -71,13 +71,13 @@ class Crowd:
         return self._solids[self._ranked[rank][1]] if rank < len(self._ranked) else None
 
 
-def describe_crowd(things: int, cell: tuple[int, int] | None, cell_m: float) -> str:
+def describe_crowd(count: int, cell: tuple[int, int] | None, cell_m: float) -> str:
     """Return the notice for a crowd in a cell. None is the list of very large objects."""
     where = "too large for the spatial index"
     if cell is not None:
         x, y = ((place + 0.5) * cell_m for place in cell)
         where = f"within {cell_m:g} m of ({x:g}, {y:g})"
-    return f"{things} objects are {where}; relations {_WHAT} are computed only with the {MOST} largest"
+    return f"{count} objects are {where}; relations {_WHAT} are computed only with the {MOST} largest"
 
 
 def _ranked(solid: Solid) -> tuple[float, str]:

@@ -227,28 +227,28 @@ class Space:
             container, self._supports(solid, below, container, floor) if below else (), place
         )
 
-    def may_support(self, bearer: Solid, solid: Solid) -> bool:
+    def may_support(self, support: Solid, solid: Solid) -> bool:
         """Return whether one solid contains another or touches it from above.
 
         If not, it is not one of its supports. `spatial_relations` compares with all solids around.
         """
-        if solid.is_place or bearer.top < solid.bottom - self.limits.gap_m:
+        if solid.is_place or support.top < solid.bottom - self.limits.gap_m:
             return False
-        if not self._may_support_attached(bearer, solid):
+        if not self._may_support_attached(support, solid):
             return False
-        if bearer.hollows and self._is_within(solid, bearer):
+        if support.hollows and self._is_within(solid, support):
             return True
-        made = measures.on(solid, bearer, self.limits)
+        made = measures.on(solid, support, self.limits)
         return made is not None and made.holds
 
-    def _may_support_attached(self, bearer: Solid, solid: Solid) -> bool:
+    def _may_support_attached(self, support: Solid, solid: Solid) -> bool:
         """Return whether a solid may support an attached one: a carried tray supports what moves with it.
 
         So do other objects that move with the tray. An example is a bowl on the tray that holds an apple.
         """
         if not self.holders or (holder := self.holders.get(solid.name)) is None:
             return True
-        return holder in self.holders and holder in (bearer.name, self.holders.get(bearer.name))
+        return holder in self.holders and holder in (support.name, self.holders.get(support.name))
 
     def _supports(
         self, solid: Solid, below: list[Found], container: Found | None, floor_m: float | None

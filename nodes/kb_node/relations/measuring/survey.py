@@ -90,8 +90,10 @@ class Survey:
         one, other, unknown = broad.pairs(margin_m)
         if grid.crowds:
             counts = np.array([grid.counts(solid) for solid in self.solids[: len(unknown)]], dtype=bool)
-            bears = counts[one] | columns.is_place[other] | (columns.volume[other] > columns.volume[one])
-            one, other = one[bears], other[bears]
+            may_support = (
+                counts[one] | columns.is_place[other] | (columns.volume[other] > columns.volume[one])
+            )
+            one, other = one[may_support], other[may_support]
         return one, other, unknown
 
     def _take_smallest(

@@ -70,7 +70,10 @@ def compact(journal: Journal, past: HistoryReader, until: int) -> None:
 def collect_asserted(journal: Journal, seq: int) -> set[Triple]:
     """Return all asserted triples after a commit, with the TBox."""
     start = journal.snapshot()
-    asserted = {*start.said(), *rdf.parse(journal.tbox(start.seq), f"the first TBox in {journal.path}")}
+    asserted = {
+        *start.all_triples(),
+        *rdf.parse(journal.tbox(start.seq), f"the first TBox in {journal.path}"),
+    }
     terms: dict[str, str] = {}
     share = terms.setdefault
     for changes in journal.decode_partially(_Changes):

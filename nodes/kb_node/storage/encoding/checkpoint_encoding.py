@@ -68,7 +68,7 @@ class Checkpoint(Struct, frozen=True, kw_only=True):
     """The format of the inferences from the triples: the entities and the columns."""
     columns: Columns | None = None
 
-    def said(self) -> Iterable[Triple]:
+    def all_triples(self) -> Iterable[Triple]:
         """Return all triples. With columns they include some of the TBox."""
         return self.triples if self.columns is None else chain(self.columns.triples(), self.triples)
 
@@ -109,9 +109,9 @@ def decode(body: bytes, progress: Callable[[], None] = lambda: None) -> Checkpoi
     terms: list[str] = []
     for frame in decompress_frames(stored.triples):
         progress()
-        said = _triples.decode(frame)
-        terms += said.new_terms
-        each = map(terms.__getitem__, _numbers(said.numbers))
+        frame_content = _triples.decode(frame)
+        terms += frame_content.new_terms
+        each = map(terms.__getitem__, _numbers(frame_content.numbers))
         triples += zip(each, each, each, strict=True)
     entities: list[Entity] = []
     shared = SharedParts()

@@ -91,12 +91,14 @@ def recover(path: Path) -> None:
         written = _HEADER.unpack_from(content)[-2:]
         theirs = "little" if _HEADER.unpack_from(content)[0] == _LITTLE_ENDIAN else "big"
     for start in range(_HEADER.size, len(content) - size - _FRAME.size + 1, _FRAME.size + size):
-        number, pages, own, *said = _FRAME.unpack_from(content, start)
+        number, pages, own, *stored_sums = _FRAME.unpack_from(content, start)
         if not _is_near(own, salts):
             break
         head, page = content[start : start + 8], content[start + _FRAME.size : start + _FRAME.size + size]
-        is_sound = written is None or _checksum(page, _checksum(head, written, theirs), theirs) == (*said,)
-        written = said[0], said[1]
+        is_sound = written is None or _checksum(page, _checksum(head, written, theirs), theirs) == (
+            *stored_sums,
+        )
+        written = stored_sums[0], stored_sums[1]
         if number == 1 and not pages and not is_sound:
             continue
         sums = _checksum(page, _checksum(head, sums, order), order)

@@ -71,7 +71,7 @@ def compute_abox_after(journal: Journal, seq: int, checkpoint: Checkpoint) -> fr
     None if a commit between is damaged.
     """
     try:
-        triples = {*checkpoint.said(), *_tbox(journal, checkpoint.seq)}
+        triples = {*checkpoint.all_triples(), *_tbox(journal, checkpoint.seq)}
         for number in range(checkpoint.seq, seq, -1):
             row = read_row(journal, number)
             commit = None if row is None else _verify_commit(number, row, b"", read_row(journal, number + 1))
