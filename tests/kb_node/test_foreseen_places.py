@@ -137,7 +137,7 @@ def test_where_more_is_there_than_comes_nothing_is_foreseen(new_map, helped):
 
 
 def test_few_need_no_process(new_map, monkeypatch):
-    monkeypatch.setattr(map_state, "Ahead", None)
+    monkeypatch.setattr(map_state, "Precomputation", None)
     semantic_map = new_map()
     assert semantic_map.commit(wanted(things())).changed
     assert semantic_map.commit(said(things(100, first=1000), "second")).changed
@@ -155,7 +155,7 @@ def test_a_guess_that_was_wrong_is_worked_out_here(new_map, helped, monkeypatch)
 
 
 def test_a_process_that_dies_costs_nothing_but_time(new_map, few_are_many, monkeypatch, caplog):
-    monkeypatch.setattr(map_state, "Ahead", partial(Precomputation, command=DIES))
+    monkeypatch.setattr(map_state, "Precomputation", partial(Precomputation, command=DIES))
     semantic_map, load = new_map(), wanted(things())
     there = seen(semantic_map, semantic_map.commit(load))
     assert "precomputes facts failed" in caplog.text
@@ -163,7 +163,7 @@ def test_a_process_that_dies_costs_nothing_but_time(new_map, few_are_many, monke
 
 
 def test_one_that_does_not_start_is_done_without(new_map, few_are_many, monkeypatch):
-    monkeypatch.setattr(map_state, "Ahead", partial(Precomputation, command=["/nowhere/python"]))
+    monkeypatch.setattr(map_state, "Precomputation", partial(Precomputation, command=["/nowhere/python"]))
     semantic_map, load = new_map(), wanted(things())
     there = seen(semantic_map, semantic_map.commit(load))
     assert there == alone(monkeypatch, new_map(), load)
@@ -176,7 +176,7 @@ def test_a_load_that_is_refused_leaves_no_process_and_nothing_behind(new_map, fe
         processes.append(Precomputation(*args))
         return processes[-1]
 
-    monkeypatch.setattr(map_state, "Ahead", kept)
+    monkeypatch.setattr(map_state, "Precomputation", kept)
     semantic_map = new_map()
     before = set(semantic_map.reasoner.given())
     again = [*things(), next(things())]

@@ -30,7 +30,7 @@ def test_stored_columns_are_restored(columns, monkeypatch, size):
     assert read == Checkpoint(seq=7, columns=columns)
     assert len(told) >= 1 + 13
     assert (
-        set(read.said())
+        set(read.all_triples())
         == set(columns.triples())
         == set(FACTS) - set(triples(":cup7 a :Cup ; :isOn :table ."))
     )
